@@ -35,8 +35,6 @@ from .rows import Row, Rows, kinds, rows
 from .system import Books, System
 from .turning import in_body
 
-TAKEN = ("tension", "slip", "crushing")
-"""Accounts of bonds."""
 GONE = math.exp(-9)
 """What is left of a bond when it counts as gone [-]."""
 CRACKED = 0.5
@@ -113,7 +111,7 @@ def hold_bonds(system: System, books: Books, h: float, axes: tuple[int, ...]) ->
 def let_go(books: Books, line: Row, bond: Row, axes: tuple[int, ...]) -> None:
     """Leave the line to itself whose bond has gone, but for its crushing where it has a strength for that."""
     if bond.tension > 0:
-        books.bonds[0] += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
+        books.totals[0].tension += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
         bond.tension = bond.cohesion = bond.secant = bond.worn = 0.0
         line.k, line.c, line.margin = bond.k, bond.c, bond.margin
     if bond.bears == math.inf:
@@ -134,7 +132,7 @@ def crush_line(books: Books, line: Row, bond: Row, gap: float, axes: tuple[int, 
         back = scaled(-closing, components(line.normal, axes))
         increase(line.origin, back)
         increase(line.between, scaled(-1.0, back))
-        books.bonds[2] += 0.5 * bond.k * closing * (max(-bond.gap, 0.0) - gap - closing)
+        books.totals[0].crushing += 0.5 * bond.k * closing * (max(-bond.gap, 0.0) - gap - closing)
     return closing
 
 
@@ -172,7 +170,7 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
             line.k = bond.k - bond.secant
             line.c = bond.c * line.k / bond.k
             if before > 0 or gap > 0:
-                books.bonds[0] += 0.5 * before * gap * (secant - bond.secant)
+                books.totals[0].tension += 0.5 * before * gap * (secant - bond.secant)
     velocity = relative(bodies, line, supports, meet, axes)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
     pressed = -bond.c * bond.secant / bond.k * rate
@@ -184,7 +182,7 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
     mean = scaled(0.5 * h, plus(last, drag))
     done = -dot(mean, slip)
     taken = min(taken, max(done + held - sheared(bond, axes), 0.0))  # no more than there is
-    books.bonds[1] += taken
+    books.totals[0].slip += taken
     books.totals[0].friction += done - taken
     if line.support >= 0:
         work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))

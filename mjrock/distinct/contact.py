@@ -199,7 +199,7 @@ def press_lines(
                 touched += 1
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
         if meet.past or line.past == 1:
-            books.ends[0] += lost_at_the_end(line, meet, h * rate)
+            books.totals[0].joint_ends += lost_at_the_end(line, meet, h * rate)
         last, drag = spin_components(line.dragged, axes), no_spin(axes)
         if push <= 0:
             if push < 0 and line.push > 0:

@@ -108,10 +108,10 @@ def solve_explicit(
     books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.is_slowed)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    counts = {"looks": len(steps.looks(steps.last + 1)), "actuators": len(setup.system.actuators)}
-    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, **counts)
+    samples = Samples.room(count, setup.system, books, ledger=ledger, looks=len(steps.looks(steps.last + 1)))
     if forces:
-        samples = samples.with_forces(*required_room(case, count))
+        joints, fixed, _, actuators = required_room(case, count)
+        samples = samples.with_forces(joints, fixed, actuators)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)

@@ -1,4 +1,4 @@
-"""Forces that are kept at a sample: of joints, of fixed blocks, of links and of what actuators drive.
+"""Forces that are kept at a sample: of joints, of fixed blocks and of what actuators drive.
 
 A row keeps the force along its normal and that of its friction in the last step. They are gathered when all forces of
 the step have acted, those of rigid friction and of touches too.
@@ -40,9 +40,9 @@ def keep_burden(system: System, samples: Samples, row: int, axes: tuple[int, ...
     """Keep what weight, ground motion and links do to the blocks of actuators, before any contact acts on them."""
     guided = samples.guided[row]
     for i in range(len(guided)):
-        if system.actuators[i].body < 0:
+        if system.guided[i] < 0:
             continue
-        body = system.bodies[system.actuators[i].body]
+        body = system.bodies[system.guided[i]]
         put(guided[i], components(body.force, axes))
         put(guided[i][len(axes) :], spin_components(body.moment, axes))
 
@@ -50,8 +50,7 @@ def keep_burden(system: System, samples: Samples, row: int, axes: tuple[int, ...
 @inlined
 def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
     """Keep the forces of the last step at a sample, where there is room for them."""
-    loads, held, pulled, ties = samples.loads[row], samples.held[row], samples.pulled[row], len(system.ties)
-    guided = samples.guided[row]
+    loads, held, guided = samples.loads[row], samples.held[row], samples.guided[row]
     if len(held) == 0:
         return
     for p in range(len(system.lines)):
@@ -74,11 +73,9 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
         if line.fixed >= 0:
             increase(held[line.fixed], force)
         for i in range(len(guided)):
-            if system.actuators[i].body < 0:
+            if system.guided[i] < 0:
                 continue
-            if system.actuators[i].body == line.body:
+            if system.guided[i] == line.body:
                 add_moment(guided[i], 1.0, meet.arm, force)
-            elif system.actuators[i].body == line.face:
+            elif system.guided[i] == line.face:
                 add_moment(guided[i], -1.0, meet.face_arm, force)
-    for i in range(len(pulled)):
-        pulled[i] = system.ties[i].pulled if i < ties else system.dampers[i - ties].pulled

@@ -30,9 +30,10 @@ from .bonds import bonded_energy, hold_bonds
 from .contact import press_lines, settle_touches
 from .friction import book_rubbing, stick
 from .gathering import keep_burden, keep_forces
-from .links import linked_energy, move_supports, pull_links
+from .links import act_all, hold_all
 from .rows import Rows
 from .slowing import oppose, slow_down
+from .supports import move_supports
 from .system import Books, Samples, System
 from .touches import in_transit, was_open
 from .turning import (
@@ -159,7 +160,10 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
         put(velocity, components(body.velocity, axes))
         put(velocity[d:], momentum_of(body, axes))
     keep_account(books.dashpots, samples.dashpots[row])
-    potential, elastic = linked_energy(system, axes)
+    energy, totals = samples.energy[row], books.totals[0]
+    energy.potential = energy.elastic = energy.driven = 0.0
+    hold_all(system.links, system, books, energy, samples.pulled[row])
+    elastic = energy.elastic
     bonded, sheared = bonded_energy(system, axes)
     for p in range(len(system.lines)):
         line = system.lines[p]
@@ -171,26 +175,17 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
         if line.k_s < math.inf:
             grip = spin_components(line.grip, axes)
             sheared += stored_along(line, dot(grip, grip))
-    energy, totals = samples.energy[row], books.totals[0]
-    energy.potential, energy.elastic = potential, elastic + bonded + sheared
-    energy.friction, energy.ground, energy.driven = totals.friction - sheared, totals.ground, books.driven.sum()
-    keep_account(books.dampers, samples.dampers[row])
-    keep_account(books.driven, samples.driven[row])
-    keep_account(books.ties, samples.ties[row])
-    keep_account(books.broken, samples.broken[row])
-    keep_account(books.ends, energy.ends)
-    for i in range(len(system.actuators)):
-        samples.actuators[row, i] = system.actuators[i].pulled
-    keep_account(books.bonds, energy.bonds)
+    energy.elastic = elastic + bonded + sheared
+    energy.friction, energy.ground = totals.friction - sheared, totals.ground
+    energy.tension, energy.slip, energy.crushing = totals.tension, totals.slip, totals.crushing
+    energy.joint_ends, energy.encounter_ends = totals.joint_ends, totals.encounter_ends
+    keep_account(books.links, samples.links[row])
 
 
 @inlined
 def keep_energy(samples: Samples, row: int, look: int) -> None:
     """Keep the energy of a sample as that of a look."""
-    of, energy = samples.energy[row], samples.looks[look]
-    energy.kinetic, energy.potential, energy.elastic = of.kinetic, of.potential, of.elastic
-    energy.friction, energy.ground, energy.driven = of.friction, of.ground, of.driven
-    keep_account(of.ends, energy.ends)
+    samples.looks[look] = samples.energy[row]
 
 
 @inlined
@@ -264,12 +259,11 @@ def make_steps(
         looked = n % clock.look == 0 or n == clock.last
         kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
         move_supports(system.supports, n * h, before)
-        move_supports(system.drives, n * h, before)
         push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
         if n == 0:
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
         start_forces(system, books, push, before, axes)
-        pull_links(system, books, n * h, before, axes)
+        act_all(system.links, system, books, n * h, before)
         if sampled:
             keep_burden(system, samples, row, axes)
         hold_bonds(system, books, before, axes)

@@ -116,7 +116,8 @@ def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) ->
     """A wall at the start of a case, or in a given state."""
     scene = scene_of(case, contacts)
     course = continued(course_of(case, scene), state)
-    system = started(system_of(scene), course.pose, course.velocity)._replace(ground=course.ground)
+    system = system_of(scene, effects=case.effects)._replace(ground=course.ground)
+    started(system, course.pose, course.velocity)
     # peaks and impacts are read off the samples
     followed = longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE
     return Setup(scene, course, system, *followed, of=(scene.key, contacts))
@@ -129,7 +130,7 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     unguided = longest_step(system)
-    system = driven_by(system, scene, masonry, tuple(case.actuators.values()))
+    system = driven_by(system, case)
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
     step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
@@ -157,11 +158,11 @@ def standing(
     """
     if not settled:
         drawn = drawn_masonry(masonry, effects)
-        system = system_of(drawn, masonry)
+        system = system_of(drawn, masonry, effects)
         return drawn, system, Encounters(masonry, system, drawn.contacts.joint)
     require_standing(masonry, effects)
     scene = standing_masonry(masonry, effects)
-    system = system_of(scene, masonry)
+    system = system_of(scene, masonry, effects)
     pose, drag = scene.found
     take_grips(system.lines, drag)
     started(system, pose)

@@ -216,7 +216,7 @@ def test_a_line_presses_both_bodies_by_the_law(d, face):
     np.testing.assert_allclose(kept.dashpots, [0.0, -0.5 * H * (7.0 + push - 300.0) * rate], rtol=1e-9)
     carried = 0.0 if face in (-1, 0) else whole.supports.moving[0] @ meet.normal
     assert kept.totals[0].ground == pytest.approx(0.5 * H * (150.0 + push) * carried, rel=1e-9)
-    assert (kept.totals[0].friction, kept.ends[0]) == (0.0, 0.0)
+    assert (kept.totals[0].friction, kept.totals[0].joint_ends) == (0.0, 0.0)
 
 
 @BOTH
@@ -367,9 +367,9 @@ def test_what_a_line_loses_past_its_end_is_booked(d):
         lost = contact.lost_at_the_end(line, meet, H * rate)
         kept, _ = pressed(whole)
         assert lost != 0
-        assert kept.ends[0] == pytest.approx(lost, rel=1e-9)
+        assert kept.totals[0].joint_ends == pytest.approx(lost, rel=1e-9)
         assert whole.lines[0].past == (1 if over > 0 else 0)
-        kept.ends[0] = 0.0
+        kept.totals[0].joint_ends = 0.0
 
 
 def test_a_line_whose_faces_are_turned_away_has_gone():

@@ -7,9 +7,7 @@ import pytest
 from by_hand import about, books, matrix, system
 
 from mjrock.distinct import contact, gathering
-from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.system import Samples
-from mjrock.geometry.frames import PLANE, SPACE
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
@@ -27,11 +25,10 @@ def along(d, size):
 def held(d, bonds=0):
     """Lines of body 1, closed by 2 mm but the last one: on body 0, on the ground, in no joint, and open.
 
-    Actuators drive both bodies. One tie and one damper pull.
+    Actuators drive both bodies.
     """
-    whole, link = system(d, 4), kinds(d).link
-    link = {name: rows(link, 1, pulled=pull) for name, pull in (("ties", -3.0), ("dampers", 4.0))}
-    whole = whole._replace(**link, actuators=rows(kinds(d).link, 2, body=[1, 0]), bonds=whole.bonds[:bonds])
+    whole = system(d, 4)
+    whole = whole._replace(guided=np.array([1, 0]), bonds=whole.bonds[:bonds])
     for i, line in enumerate(whole.lines):
         line.body, line.face, line.fixed = 1, 0 if i == 0 else -1, [-1, 1, 0, 1][i]
         line.at, line.origin, line.normal = AT[d] + 0.1 * i, ORIGIN[d], NORMAL[d]
@@ -44,7 +41,7 @@ def held(d, bonds=0):
         if i < 3:
             line.push, line.depth, line.k_s = 10.0 + i, 0.002, 1e6
             line.dragged = along(d, 2.0 + i)
-    samples = Samples.room(1, 2, books(whole), PLANE if d == 2 else SPACE).with_forces(JOINTS, 2, 2, 2)
+    samples = Samples.room(1, whole, books(whole)).with_forces(JOINTS, 2, 2)
     return whole, samples
 
 
@@ -76,7 +73,6 @@ def test_forces_of_lines_are_summed_by_joint_block_and_actuator(d):
     np.testing.assert_allclose(samples.loads[0], loads, rtol=1e-10)
     np.testing.assert_allclose(samples.held[0], blocks, rtol=1e-10)
     np.testing.assert_allclose(samples.guided[0], guided, rtol=1e-10)
-    np.testing.assert_array_equal(samples.pulled[0], [-3.0, 4.0])
     np.testing.assert_array_equal(samples.damage[0], 0.0)
 
 
@@ -101,10 +97,10 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
 @BOTH
 def test_without_room_nothing_is_kept(d):
     whole, samples = held(d)
-    samples = samples.with_forces(JOINTS, 0, 2, 2)
+    samples = samples.with_forces(JOINTS, 0, 2)
     gathering.keep_forces(whole, samples, 0, whole.axes)
     assert not samples.loads.any()
-    assert not samples.pulled.any()
+    assert not samples.guided.any()
 
 
 @BOTH

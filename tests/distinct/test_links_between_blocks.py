@@ -27,12 +27,12 @@ def tied():
 def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     scene, masonry = tied()
     system = system_of(scene, masonry)
-    assert system.ties["between"][0] == pytest.approx([GAP, 0.0])
+    assert system.links[0].rows["between"][0] == pytest.approx([GAP, 0.0])
     velocity = np.array([[0.0, 0.0, 0.0], [SPEED, 0.0, 0.0]])
     started(system, scene.at_rest, velocity)
     h = 0.2 * longest_step(system)
     books, count = Books.empty(system, 3), 600
-    samples = Samples.room(count + 1, 2, books, ledger=True)
+    samples = Samples.room(count + 1, system, books, ledger=True)
     advance(system, books, samples, Clock(0, h, 5, 0, 5 * count + 1, 5 * count, np.inf, 0.0, (0.0,) * len(system.axes)))
     mass = scene.bodies.mass[0]
     samples = samples.taken(slice(-1))
@@ -47,6 +47,6 @@ def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     np.testing.assert_allclose(apart[taut], exact[taut], atol=2e-3 * exact.max())
     assert relative.min() < -0.1
     energy = samples.energy
-    taken = samples.dampers[:, 0] + samples.dashpots.sum(axis=1)
+    taken = samples.links[:, system.links[1].rows[0].account] + samples.dashpots.sum(axis=1)
     whole = energy["kinetic"] + energy["potential"] + energy["elastic"] + taken
     assert np.ptp(whole) < 1e-3 * energy["kinetic"][0]

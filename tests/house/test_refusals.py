@@ -4,6 +4,7 @@ import math
 import subprocess
 import sys
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,7 +17,6 @@ from mjrock.study.store import FIXED
 WALL = mr.Block(0.3, 2.1)
 E = mr.Restitution.from_geometry(WALL)
 CASE = mr.Case(WALL, 0.05, 0.05)
-ANSWER = mr.solve_analytical(CASE, E)
 SHAKE = mr.GroundMotion([0.0, 1.0], 0.1)
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 
@@ -41,7 +41,16 @@ class Endless:
 LINES = ("a\nb", "a\n", "\ra", "a\x0bb", "a\u2028b")
 COLUMN = mr.Masonry.stack([WALL], 5e8)
 BOX = mr.Masonry.box((0.6, 0.4, 2.0))
-STANDS = mr.solve_explicit(mr.MasonryCase(COLUMN, 0.002))
+
+
+@cache
+def answer():
+    return mr.solve_analytical(CASE, E)
+
+
+@cache
+def stands():
+    return mr.solve_explicit(mr.MasonryCase(COLUMN, 0.002))
 
 
 def analysis():
@@ -49,8 +58,8 @@ def analysis():
 
 
 PATHS = {
-    "Response.csv": (lambda path: ANSWER.csv(path), "path"),
-    "animate": (lambda path: plotting.animate(ANSWER, path), "path"),
+    "Response.csv": (lambda path: answer().csv(path), "path"),
+    "animate": (lambda path: plotting.animate(answer(), path), "path"),
     "save": (lambda path: plotting.save(plotting.single(lambda ax: ax), path), "path"),
     "law.save": (lambda path: mr.CALIBRATED.save(path), "path"),
     "law.load": (lambda path: mr.DampingLaw.load(path), "path"),
@@ -153,8 +162,8 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
             lambda: mr.GroundMotion([0.0, 1.0], 0.1).scaled(Unspeakable(), peak=1.0),
             "factor = a Unspeakable, peak = 1.0",
         ),
-        (lambda: plotting.animate(ANSWER, "a.gif", title="\ud800"), "title = .* half of a surrogate pair"),
-        (lambda: plotting.animate(ANSWER, "a.gif", title="x" * 1001), "title = .* has 1001 characters"),
+        (lambda: plotting.animate(answer(), "a.gif", title="\ud800"), "title = .* half of a surrogate pair"),
+        (lambda: plotting.animate(answer(), "a.gif", title="x" * 1001), "title = .* has 1001 characters"),
         (lambda: filmed(outlines=[[(0, 0), (1,)]]), r"outlines\[0\] = .* has rows of different lengths"),
         (lambda: filmed(outlines=[object()]), r"outlines\[0\] = .* does not hold real numbers alone"),
         (lambda: filmed(outlines=1), "outlines = 1 of type int is not a sequence of outlines"),
@@ -170,15 +179,15 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
         (lambda: plotting.tornado(2, ax=2), "ax = 2 of type int is not a Axes"),
         (lambda: plotting.save(3, "x.png"), "figure = 3 of type int is not a Figure"),
         (lambda: plotting.save(plotting.single(lambda ax: ax), "0.5"), r"path = '0.5' ends in none of .*\.png"),
-        (lambda: plotting.thrust(ANSWER, ax=1), "ax = 1 of type int is not a Axes"),
+        (lambda: plotting.thrust(answer(), ax=1), "ax = 1 of type int is not a Axes"),
         (lambda: plotting.animate(COLUMN, "a.gif"), "response = .* is not a Response"),
         (lambda: plotting.blocks(COLUMN, ax=1), "ax = 1 of type int is not a Axes"),
-        (lambda: plotting.history(ANSWER, title=object()), "title = .* of type object is not a str"),
+        (lambda: plotting.history(answer(), title=object()), "title = .* of type object is not a str"),
         (lambda: mr.Grid(analysis, i=3), "the axis i = 3 of type int is not a row of values"),
         (lambda: mr.Grid(analysis, i=Endless()), "the axis i = .* has more values than memory holds"),
         (lambda: mr.Grid("nan", i=[1]), "build = 'nan' of type str is not a function"),
         (lambda: mr.GroundMotion(Endless(), 0.1), "accel = .* has more values than memory holds"),
-        (lambda: mr.compare(ANSWER, STANDS), "candidate is that of masonry; responses of one wall are compared"),
+        (lambda: mr.compare(answer(), stands()), "candidate is that of masonry; responses of one wall are compared"),
         (lambda: mr.collapse_multiplier(COLUMN, set()), "direction = set.* does not hold real numbers alone"),
         (lambda: mr.collapse_multiplier(BOX, set(), angle=0.1), "direction = set.* does not hold real numbers alone"),
         (lambda: mr.collapse_multiplier(BOX, 2, angle=0.1), "direction = 2 of type int is not a direction"),
@@ -197,10 +206,10 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
             lambda: mr.sensitivity(lambda k: 0.01 * k, {"k": np.datetime64("2020-01-01")}, {"k": [0.5]}),
             r"build fails at k = .*datetime64\('2020-01-01'\) of type datetime64: \w+: ufunc",
         ),
-        (lambda: plotting.rotation([ANSWER], ax=2), "ax = 2 of type int is not a Axes"),
+        (lambda: plotting.rotation([answer()], ax=2), "ax = 2 of type int is not a Axes"),
         (lambda: drawn(plotting.rotation, 3), "responses = 3 of type int is not a sequence of at least one"),
-        (lambda: drawn(plotting.energy, [ANSWER, 3]), r"responses\[1\] = 3 of type int is not a Response"),
-        (lambda: drawn(plotting.ties, [ANSWER], ["a", "b"]), "labels has 2 texts for 1 responses"),
+        (lambda: drawn(plotting.energy, [answer(), 3]), r"responses\[1\] = 3 of type int is not a Response"),
+        (lambda: drawn(plotting.ties, [answer()], ["a", "b"]), "labels has 2 texts for 1 responses"),
         (lambda: drawn(plotting.acceleration, CASE, math.nan), "until = nan is outside the valid range"),
         (lambda: drawn(plotting.pushover, {"a": 1}), r"curves\['a'\] = 1 of type int is not a PushoverCurve"),
         (lambda: drawn(plotting.pairs, [[1.0, 2.0]], ("a", "b"), (0.0, 1.0)), "limits = .* two positive numbers"),
@@ -210,7 +219,7 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
         (lambda: drawn(plotting.convergence, [1.0], {"a": [1.0, 2.0]}, 2), r"errors has the shape \(2,\)"),
         (lambda: plotting.panels([]), r"drawings = \[\] of type list is not a sequence of at least one"),
         (lambda: plotting.panels([("a", 3)]), r"drawings\[0\]\[1\] = 3 of type int is not a function that draws"),
-        (lambda: plotting.grid([("a", [ANSWER])], 0), "columns = 0 is outside the valid range 1 to 50"),
+        (lambda: plotting.grid([("a", [answer()])], 0), "columns = 0 is outside the valid range 1 to 50"),
         *((lambda name=name: mr.Polygon(SQUARE, name=name), "name = .* the end of a line") for name in LINES),
     ],
 )
@@ -243,7 +252,7 @@ def test_outlines_of_different_numbers_of_corners(tmp_path):
 
 
 def test_a_fraction_is_a_factor_and_a_file_may_have_any_name(tmp_path):
-    path = plotting.animate(ANSWER, tmp_path / "x\udcff.html", magnify=Fraction(1, 2), fps=5.0, dpi=20.0)
+    path = plotting.animate(answer(), tmp_path / "x\udcff.html", magnify=Fraction(1, 2), fps=5.0, dpi=20.0)
     assert "<title>x?</title>" in path.read_text(encoding="utf-8")
     assert mr.GroundMotion.sine(1.0, Fraction(1, 2)) == mr.GroundMotion.sine(1.0, 0.5)
 

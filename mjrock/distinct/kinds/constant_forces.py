@@ -1,0 +1,49 @@
+"""Constant forces of explicit steps."""
+
+from __future__ import annotations
+
+from ...compiled import inlined
+from ...geometry.vectors import dot, plus, read
+from ...problem.masonry.case import MasonryCase
+from ...problem.wall.case import Case
+from ...problem.wall.effect import Effect
+from ...scene.scene import Scene
+from ..contact import add_force
+from ..rows import Row
+from ..system import Books, System
+from ..turning import rotation_change
+from .link import Kind, Table
+
+
+class ConstantForces(Kind, Table):
+    """Forces `between` [N] that keep size and direction and follow points of bodies."""
+
+    told = ""
+
+    @classmethod
+    def of(cls, scene: Scene, effects: tuple[Effect, ...]) -> ConstantForces:
+        """Those of a scene."""
+        forces, count = scene.forces, len(scene.forces.body)
+        columns = {"body": forces.body, "at": forces.at, "between": forces.force} if count else {}
+        return cls(cls.table(scene.bodies.rest.shape[1], count, **columns))
+
+    def names(self, scene: Scene, case: Case | MasonryCase) -> tuple[str, ...]:
+        """Those of the scene."""
+        return scene.forces.names
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """At their points."""
+        for i in range(len(self.rows)):
+            row = self.rows[i]
+            body, at = system.bodies[row.body], read(row.at)
+            add_force(body, plus(at, rotation_change(body, at)), read(row.between))
+
+    @inlined
+    def hold(self, system: System, books: Books, energy: Row) -> None:
+        """They have a potential."""
+        for i in range(len(self.rows)):
+            row = self.rows[i]
+            body = system.bodies[row.body]
+            moved = plus(read(body.place), rotation_change(body, read(row.at)))
+            energy.potential -= dot(read(row.between), moved)

@@ -1,0 +1,39 @@
+"""Viscous dampers of explicit steps."""
+
+from __future__ import annotations
+
+from ...compiled import inlined
+from ...problem.masonry.case import MasonryCase
+from ...problem.wall.case import Case
+from ...problem.wall.effect import Effect
+from ...scene.scene import Scene
+from ..system import Books, System
+from .link import Kind, Table, book_support, lengthening, pull, push_apart
+
+
+class Dampers(Kind, Table):
+    """Dashpots: `c` [N s/m]. They resist the rate of their length both ways."""
+
+    own = ("c",)
+    booked = ("dashpots",)
+
+    @classmethod
+    def of(cls, scene: Scene, effects: tuple[Effect, ...]) -> Dampers:
+        """Those of a scene."""
+        return cls(cls.linking(scene.links.damped, scene.dampers.between))
+
+    def names(self, scene: Scene, case: Case | MasonryCase) -> tuple[str, ...]:
+        """Those of the scene."""
+        return scene.links.damped.names
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """They take what the mean of their force of two steps does."""
+        for i in range(len(self.rows)):
+            damper = self.rows[i]
+            now = pull(damper, system)
+            rate = lengthening(damper, system, now)
+            force = -damper.c * rate
+            books.links[damper.account] -= 0.5 * h * (force + damper.pulled) * rate
+            book_support(damper, system, books, now, force, h)
+            push_apart(damper, system, now, force)
