@@ -118,7 +118,7 @@ def test_a_keyword_that_no_joint_has_is_refused_with_the_nearest_one(build):
             "residual_friction of the joint = 0.7 is outside the valid range 0 to 0.6",
         ),
         (
-            lambda: mr.Mortar(DRY, mr.BONDS["cement mortar, wall J4D"]),
+            lambda: mr.Mortar(DRY, mr.BONDS["clay brick, SAFEGO"]),
             r"bond of the joint: its spring of k_n = 2e\+09 N/m3 gives back more than crushing takes; the valid range",
         ),
     ],

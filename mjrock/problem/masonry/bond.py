@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 from ...quantities import Implausible, keep, require_within
 from .bond_law import HARDENED, YIELDS
-from .of_joint import AnyJoint, FunctionOfJoint
 
 LEAST_POINTS = 3
 """Fewest contact lines of a joint with a bond: of these the stiffness in bending can be k_n I."""
@@ -161,24 +160,6 @@ class Bond:
         """Part of the energy of crushing that is taken before the peak [J/m2]."""
         return HARDENED * (self.crushing or 0.0) * (self.hardening or 0.0)
 
-
-@dataclass(frozen=True)
-class Halved:
-    """Bonds of a wall of divided units: `between` them, one or a function of the joint, and `within` them."""
-
-    between: OfBond
-    within: Bond
-
-    def __call__(self, joint: AnyJoint) -> Bond | None:
-        """The bond of a joint."""
-        first, second = joint.name.split("|")
-        if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
-            return self.within
-        return self.between(joint) if callable(self.between) else self.between
-
-
-OfBond = Bond | FunctionOfJoint[Bond | None] | None
-"""A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
 
 BONDS = {
     # shear wall J4D of Raijmakers and Vermeltfoort, as two independent micro-models of it have its mortar, after

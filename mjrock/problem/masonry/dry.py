@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Annotated, Any
 
-from ...quantities import keep, require_kind
+from ...quantities import Within, keep_declared, require_kind
 from .bond import Bond
-from .of_joint import AnyJoint, FunctionOfJoint, asked, required_number
 
 
 @dataclass(frozen=True, repr=False)
@@ -36,19 +34,19 @@ class Dry:
         1000000000.0
     """
 
-    k_n: float = 1e10
-    friction: float = 0.7
-    xi: float = 0.05
-    k_s: float | None = None
-    frequency: float | None = None
-    points: int = 2
+    k_n: Annotated[float, Within(1e4, 1e14, "N/m3")] = 1e10
+    friction: Annotated[float, Within(0, 10)] = 0.7
+    xi: Annotated[float, Within(0, 100)] = 0.05
+    k_s: Annotated[float | None, Within(1e4, 1e16, "N/m3")] = None
+    frequency: Annotated[float | None, Within(1e-3, 1e9, "rad/s")] = None
+    points: Annotated[int, Within(2, 1000, whole=True)] = 2
 
     def __repr__(self) -> str:
         numbers = ((each.name, getattr(self, each.name)) for each in fields(self))
         return f"Dry({', '.join(f'{name}={value:g}' for name, value in numbers if value is not None)})"
 
     def __post_init__(self) -> None:
-        keep(self, **{each.name: required_number(each.name, getattr(self, each.name)) for each in fields(self)})
+        keep_declared(self)
 
     @property
     def properties(self) -> dict[str, Any]:
@@ -91,62 +89,3 @@ class Mortar:
     def properties(self) -> dict[str, Any]:
         """The keywords of `Masonry` that stand for it."""
         return {**self.dry.properties, "bond": self.bond}
-
-
-PROPERTIES = tuple(Dry().properties)
-"""Names of what a joint has, which are keywords of `Masonry` too."""
-AnyJoints = Dry | Mortar | FunctionOfJoint[Dry | Mortar]
-"""What all joints of masonry are, or a function of the joint that says what it is."""
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A function of the joint that gives what it is, which is asked once of each joint."""
-
-    function: FunctionOfJoint[Dry | Mortar]
-    known: dict[AnyJoint, dict[str, Any]] = field(default_factory=dict, compare=False, repr=False)
-
-    def __call__(self, joint: AnyJoint) -> dict[str, Any]:
-        """The properties of a joint by name."""
-        if joint not in self.known:
-            chosen = asked("joints", self.function, joint)
-            require_kind(f"joints of {joint.name}", chosen, Dry, Mortar)
-            self.known[joint] = chosen.properties
-        return self.known[joint]
-
-
-@dataclass(frozen=True)
-class Chosen:
-    """One property of what a function of the joint gives."""
-
-    choice: Choice
-    name: str
-
-    def __call__(self, joint: AnyJoint) -> Any:
-        """The value of a joint."""
-        return self.choice(joint)[self.name]
-
-
-def properties_of(joints: AnyJoints | None, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The properties of joints by name, a number or a function of the joint each.
-
-    Args:
-        joints: what all joints are, or a function of the joint that gives it, or None.
-        given: the properties that are given by keyword instead; None takes that of a `Dry`.
-
-    Raises:
-        TypeError: for another kind.
-        ValueError: where both are given.
-    """
-    named = {name: value for name, value in given.items() if value is not None}
-    if joints is None:
-        usual = Dry().properties
-        checked = {n: v if callable(v) or n == "bond" else required_number(n, v) for n, v in named.items()}
-        return usual | checked
-    if named:
-        raise ValueError(f"joints is given with {', '.join(named)}, which it says itself; give one or the other")
-    if callable(joints):
-        choice = Choice(joints)
-        return {name: Chosen(choice, name) for name in PROPERTIES}
-    require_kind("joints", joints, Dry, Mortar)
-    return joints.properties

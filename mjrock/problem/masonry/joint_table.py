@@ -7,9 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, require_kind
-from .bond import Bond, OfBond
-from .of_joint import RANGES, AnyJoint, asked, values_of
+from ...quantities import Array, declared, require_kind
+from .bond import Bond
+from .dry import Dry
+from .of_joint import AnyJoint, OfBond, OfJoint, asked
+
+WITHOUT = {"k_s": np.inf, "frequency": np.nan}
+"""What stands for None in a table: a joint that sticks rigidly, and the lowest frequency of the masonry."""
 
 
 class JointTable(NamedTuple):
@@ -39,7 +43,7 @@ class JointTable(NamedTuple):
             TypeError, ValueError: with the name of the joint, for a value outside its range or a bond that its springs
                 cannot have.
         """
-        columns = {name: values_of(name, given[name], joints) for name in RANGES}
+        columns = {name: _values(name, given[name], joints) for name in ("k_n", "k_s", "friction", "xi", "frequency")}
         table = cls(**columns, bonds=_bonds(given["bond"], joints))
         springs = zip(table.k_n.tolist(), table.k_s.tolist(), table.friction.tolist(), strict=True)
         for joint, bond, (k_n, k_s, friction) in zip(joints, table.bonds, springs, strict=True):
@@ -52,6 +56,20 @@ class JointTable(NamedTuple):
         """Coefficient of friction of joints that have lost their bond [-], shape (joints,)."""
         given = [bond and bond.residual_friction for bond in self.bonds]
         return np.array([most if least is None else least for least, most in zip(given, self.friction, strict=True)])
+
+
+def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Array:
+    """A property of each joint, with what stands for None, shape (joints,)."""
+    if not callable(given):
+        return np.full(len(joints), WITHOUT[name] if given is None else given)
+    (within, optional), values = declared(Dry)[name], [asked(name, given, joint) for joint in joints]
+    pairs = zip(joints, values, strict=True)
+    return np.array(
+        [
+            WITHOUT[name] if optional and value is None else within.checked(f"{name} of {joint.name}", value)
+            for joint, value in pairs
+        ]
+    )
 
 
 def _bonds(given: OfBond, joints: Sequence[AnyJoint]) -> tuple[Bond | None, ...]:

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -20,6 +20,7 @@ from ...quantities import (
     Array,
     Implausible,
     Integers,
+    Within,
     frozen,
     keep,
     named,
@@ -36,13 +37,12 @@ from ..damping.contacts import AnyLaw, required_law
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from ..wall.section import Opening
-from .bond import Bond, Halved, OfBond
+from .bond import Bond
 from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, curved, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
 from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
-from .dry import PROPERTIES, AnyJoints, properties_of
 from .dxf_files import OfLayer, polygons_of, read_dxf
 from .joint_table import JointTable
 from .joints import Joint, joints_in_plane, names_of
@@ -50,7 +50,17 @@ from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
 from .mesh_files import obj_text, read_obj, read_stl
 from .meshes import Mesh, blocks_of
-from .of_joint import MOST_LINES, ByKind, OfJoint, OrElse, required_points
+from .of_joint import (
+    PROPERTIES,
+    AnyJoints,
+    ByKind,
+    Halved,
+    OfBond,
+    OfJoint,
+    OrElse,
+    properties_of,
+    required_points,
+)
 from .options import JointOptions, OtherOptions, keywords_checked, one_by_one
 from .polygon import Polygon
 from .polyhedron import Polyhedron
@@ -58,8 +68,8 @@ from .stack_law import damping_by_law
 from .vaults import Span, barrel_of, bridge_of, groin_of
 
 AnyPath = str | PathLike[str]
-MOST_IN_SPACE = 50
-"""Most `points` of a joint in space."""
+LINES = Within(2, 1000, whole=True), Within(2, 50, whole=True)
+"""Valid `points` of a joint in the plane and in space."""
 
 
 @keywords_checked
@@ -141,7 +151,7 @@ class Masonry:
     tolerance: float
     law: AnyLaw | str | None
     k_s: OfJoint | None
-    bond: OfBond = field(default=None, kw_only=True)
+    bond: OfBond
 
     def __init__(
         self,
@@ -168,7 +178,7 @@ class Masonry:
                 f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
                 f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
             )
-        keep(self, points=required_points(self.points, self.joints, MOST_IN_SPACE if self.in_space else MOST_LINES))
+        keep(self, points=required_points(self.points, self.joints, LINES[self.in_space]))
         if law is not None:
             keep(self, law=required_law(law, self.points))
         for odd in self._doubts():

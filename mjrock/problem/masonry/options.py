@@ -9,9 +9,7 @@ from functools import wraps
 from typing import Any, TypedDict, TypeVar
 
 from ..damping.contacts import AnyLaw
-from .bond import OfBond
-from .dry import PROPERTIES, AnyJoints, properties_of
-from .of_joint import OfJoint
+from .of_joint import PROPERTIES, AnyJoints, OfBond, OfJoint, properties_of
 
 Class = TypeVar("Class", bound=type)
 
