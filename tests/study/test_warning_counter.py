@@ -11,10 +11,10 @@ from mjrock.study.warning_counter import WarningCounter, collect_warnings
 
 
 def test_warnings_that_differ_in_numbers_are_of_one_kind():
-    overheard = WarningCounter()
+    counter = WarningCounter()
     texts = ["peaks at 0.3 g", "peaks at 1.2e-05 g", "falls at 0.3 g", "peaks at 7 g"]
-    assert [warning_counter.add(text) for text in texts] == [True, False, True, False]
-    assert warning_counter.lines() == ["warned 3 times, first: peaks at 0.3 g", "warned once: falls at 0.3 g"]
+    assert [counter.add(text) for text in texts] == [True, False, True, False]
+    assert counter.lines() == ["warned 3 times, first: peaks at 0.3 g", "warned once: falls at 0.3 g"]
 
 
 def numbers(heard):
