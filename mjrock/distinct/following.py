@@ -154,7 +154,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
 def looked_on(encounters: Encounters, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
     """A look at the encounters, see `Encounters.look_on`. What is not finite there ends the run."""
     try:
-        return encounters.look_on(system, books, clock.h)
+        return encounters.look_on(system, books, clock.step * clock.h, clock.h)
     except ArithmeticError as error:
         raise breakdown(str(error), clock.step * clock.h) from None
 

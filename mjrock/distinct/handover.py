@@ -324,7 +324,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
             put(new.at[i], place_of(new.rows[i], both, blocks, axes).at)
         for j in range(ends[0], ends[1]):
             old = gone.rows[j]
-            if old.push != 0 or old.depth > 0:
+            if old.push != 0 or max(old.depth, gone.depth[j]) > 0:  # at a start no step has written its depth
                 give_to_nearest(old, new, (begin, end), both, blocks, axes)
         for i in range(begin, end):
             line = new.rows[i]

@@ -12,11 +12,12 @@ from ...geometry.vectors import Vector, dot, increase, plus, read, scaled, spun
 from ...linear import entries
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.lines import free_numbers
+from ...quantities import Array, Integers
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
 from ..contact import add_force
 from ..rows import Row, Rows
-from ..supports import Supports, move_supports, moving, places
+from ..supports import Supports, move_supports, moving, places, surges
 from ..system import Books, System
 from ..turning import rotation_change, rotations
 from .link import AnyCase, Kind, Named
@@ -74,6 +75,11 @@ class Actuators(Kind, Histories):
         shares = np.hstack([ways, turning])[:, None] * (mass / mass.sum())[:, None]
         pairs = np.broadcast_to(np.arange(len(bodies)), shares.shape[:2])
         return csr_array(super().rates(bodies) + entries(shares, pairs, shares.shape[1] * shares.shape[2]))
+
+    def surges(self, t: float, until: float) -> tuple[Integers, Array]:
+        """Those of the histories, on what is driven alone."""
+        single = self.rows["body"] >= 0
+        return self.rows["body"][single], surges(self.drives, t, until)[single]
 
     def remembered(self, t: float) -> Actuators:
         """Their displacements count from there."""

@@ -19,7 +19,7 @@ from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, ve
 from ...linear import rates_of
 from ...problem.masonry.case import MasonryCase
 from ...problem.wall.case import Case
-from ...quantities import Array
+from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
 from ..contact import add_force
@@ -106,6 +106,10 @@ class Kind:
         between, arms = np.asarray(table["between"]), (np.asarray(table["at"]), np.asarray(table["origin"]))
         ways = between / np.linalg.norm(between, axis=1)[:, None]
         return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, ways, len(bodies))
+
+    def surges(self, t: float, until: float) -> tuple[Integers, Array]:
+        """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""
+        return np.empty(0, dtype=np.int64), np.empty(0)
 
     def remembered(self, t: float) -> Any:
         """The links for a run that carries on from a time [s], which counts its time from there."""
