@@ -20,7 +20,8 @@ from ..problem.masonry.joint_law import normal_force, shear_limit, stored
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction
 from .rows import POINT, Row, Rows
-from .system import Books, Supports, System
+from .supports import Supports
+from .system import Books, System
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
 from .turning import in_body, in_world, may_face_away, rotation_change, strike_body
 
