@@ -108,7 +108,7 @@ class Kind:
         return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, ways, len(bodies))
 
     def surges(self, t: float, until: float) -> tuple[Integers, Array]:
-        """The bodies that links drive, and by how much their speed changes at most from one time until another [m/s]."""
+        """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""
         return np.empty(0, dtype=np.int64), np.empty(0)
 
     def driven(self, bodies: Rows, case: MasonryCase) -> Any:
