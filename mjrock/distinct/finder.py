@@ -48,8 +48,8 @@ ALIKE = 1e-6
 """Relative difference up to which blocks are as large, and difference of heights over the smallest size up to which
 they are as high [-]."""
 ON_ENDS = 0.01
-"""Distance up to which a place outside of a block counts as inside, over the overlap there [-]: that of two prisms whose
-ends lie in one plane is on these ends, and rounding does not decide."""
+"""Distance up to which a place outside of a block counts as inside, over the overlap there [-]. That of two prisms
+whose ends lie in one plane is on these ends, and rounding does not decide."""
 OF_EDGES = 0.25
 """Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
 NONE = np.zeros(0, dtype=np.int64)
