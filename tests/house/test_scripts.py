@@ -217,6 +217,7 @@ LONG = {
     "vaults",
     "bonded_facade",
     "first_pictures",
+    "first_minute",
     "collapse",
 }
 """Scripts that take a while even with --quick."""

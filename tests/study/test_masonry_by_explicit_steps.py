@@ -17,7 +17,7 @@ def analysis(scale=3.0, duration=0.5, k_n=1e8, **options):
     """The column under a half sine of so many m/s2."""
     masonry = dataclasses.replace(COLUMN, k_n=k_n)
     motion = mr.GroundMotion.half_sine(scale, duration)
-    return mr.MasonryAnalysis(mr.MasonryCase(masonry, 1.5, motion=motion), options, solver="explicit")
+    return mr.MasonryAnalysis(mr.MasonryCase(masonry, 1.0, motion=motion), options, solver="explicit")
 
 
 def falls(scale):
