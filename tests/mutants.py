@@ -45,8 +45,14 @@ TOOLS = (
     *("filters", "meeting", "others"),
 )
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
-STEPS = ("contact", "faces", "friction", "links", "loop", "turning")
+STEPS = ("contact", "faces", "friction", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
+LINKS = (
+    "distinct/links.py",
+    "distinct/supports.py",
+    *(f"distinct/kinds/{name}.py" for name in ("link", "ties", "dampers", "actuators", "constant_forces")),
+)
+"""Modules of the links of explicit steps."""
 FINDING = ("clipping", "finder", "handover", "looking", "overlap", "pair_law", "solids")
 """Modules that find where blocks meet."""
 OWN = {
@@ -81,7 +87,7 @@ OWN = {
     "problem/masonry/surface.py": ("compound", "compound_blocks"),
     "problem/masonry/tilt.py": ("tilt", "tilting"),
     "problem/masonry/actuator.py": ("actuators",),
-    "distinct/links.py": ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit"),
+    **{name: ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit") for name in LINKS},
     "distinct/encounters.py": ("encounters", "encounters_in_space", "alike"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
     "problem/masonry/joint_forces.py": ("collapse_without_dilatancy",),
@@ -117,7 +123,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/gathering.py": ("forces_of_lines",),
     "distinct/handover.py": ("handing_over",),
     "distinct/impacts.py": ("impacts",),
-    "distinct/links.py": ("pulls_of_links",),
+    **{name: ("pulls_of_links",) for name in LINKS},
     "distinct/looking.py": ("looking",),
     "distinct/loop.py": ("loop_of_steps",),
     "distinct/overlap.py": ("overlap_of_blocks",),
@@ -125,12 +131,12 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/slowing.py": ("slowing",),
     "distinct/softening.py": ("softening",),
     "distinct/solids.py": ("solids", "finder", "handing_over", "overlap_of_blocks"),
-    "distinct/touches.py": ("touches_of_lines",),
+    "distinct/touches.py": ("touches_of_lines", "another_law"),
     "distinct/turning.py": ("turning",),
     "geometry/vectors.py": ("contact_lines", "friction_of_lines", "clipping", "pulls_of_links"),
     "problem/masonry/actuator.py": ("actuator_inputs",),
     "problem/masonry/bond_law.py": ("bond_law", "bonds_of_lines"),
-    "problem/masonry/joint_law.py": ("joint_law", "contact_lines", "looking"),
+    "problem/masonry/joint_law.py": ("joint_law", "contact_lines", "looking", "touches_of_lines", "handing_over"),
     "scene/rest.py": ("search_for_rest", "potential", "scene_in_space"),
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
@@ -250,7 +256,7 @@ EQUIVALENT = {
     "rest.py: FLAT = 2e-12": "what is put down to rounding is far below what lets bodies fall",
     "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
     "handover.py: sense = old.sense / new.sense": "a sense is 1 or -1",
-    "handover.py: share = min(REGAINED, had / force, math.sqrt(held / energy)) if force > 0 else 1": (
+    "handover.py: of_force, of_energy = (min(REGAINED, had / force), held / energy) if force > 0 else (1, 0.0)": (
         "where no place presses, none has an overlap that a share is taken of"
     ),
     "handover.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
@@ -281,13 +287,11 @@ EQUIVALENT = {
     **{
         f"finder.py: {line}": "there is more room than is taken"
         for line in (
-            "self._table, self._room = np.empty((512, 11)), np.empty((4 * most + 4, 3))",
-            "self._table, self._room = np.empty((256, 22)), np.empty((4 * most + 4, 3))",
-            "self._table, self._room = np.empty((256, 11)), np.empty((8 * most + 4, 3))",
-            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 8, 3))",
-            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 6))",
-            "self._table = np.empty((4 * count, 11))",
-            "self._table = np.empty((2 * count, 22))",
+            "self._table, self._room = rows(PLACE, 512), np.empty((4 * most + 4, 3))",
+            "self._table, self._room = rows(PLACE, 256), np.empty((8 * most + 4, 3))",
+            "self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 8, 3))",
+            "self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 6))",
+            "self._table = rows(PLACE, 4 * count)",
         )
     },
     **{
@@ -327,7 +331,7 @@ EQUIVALENT = {
     "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
         "a line that met its face a step ago was closed for the step, in both ways"
     ),
-    "links.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
+    "supports.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
         "a history of one sample has one place"
     ),
     "softening.py: d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (

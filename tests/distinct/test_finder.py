@@ -5,12 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import columns
 from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.distinct import finder
+from mjrock.distinct.clipping import PLACE
 from mjrock.distinct.finder import Finder, Found, Near
+from mjrock.distinct.rows import rows
 from mjrock.distinct.solids import Poses, Solids
 
 BOX = mr.Polyhedron.box
@@ -46,7 +49,7 @@ def test_blocks_are_apart_along_an_axis(axis):
     for low, apart in ((0.9, False), (1.0, False), (1.1, True)):
         at = np.zeros(3)
         at[axis] = low
-        near = Near(np.array([np.zeros(3), at]), np.array([np.ones(3), at + 1]), *[None] * 6)
+        near = Near(np.array([np.zeros(3), at]), np.array([np.ones(3), at + 1]), *[None] * 7)
         assert bool(finder.are_apart(near, 0, 1)) is bool(finder.are_apart(near, 1, 0)) is apart
 
 
@@ -122,14 +125,15 @@ def test_edges_that_cross_are_apart_along_the_direction_across_both(gap):
             == pytest.approx(2.0 if up > 0 else 1.6)
         )
         assert end[2] == pytest.approx(0.0 if up > 0 else gap)
-        table = np.zeros((3, 11))
+        table = rows(PLACE, 3)
         assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
+        table = columns(table)
         y, x = 0.0, 0.2 + 0.1 * math.tan(0.3)  # where the keel passes over the ridge
         np.testing.assert_allclose(table[1], [0, 1, x, y, 0.5 * gap, *way, gap, 0.25, 0.0], atol=1e-12)
         assert not table[[0, 2]].any()
-        table = np.zeros((1, 11))
+        table = rows(PLACE, 1)
         assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
-        assert not table.any()
+        assert not columns(table).any()
 
 
 @pytest.mark.parametrize(("sine", "across"), [(0.9e-3, False), (1.5e-3, True)])
@@ -152,8 +156,8 @@ def test_the_first_of_edges_that_reach_as_far_is_taken():
 
 
 def test_the_deepest_of_places_counts():
-    table = np.zeros((6, 11))
-    table[:, 8] = [-9.0, -0.1, -0.3, -0.3, -8.0, 7.0]
+    table = rows(PLACE, 6)
+    table["gap"] = [-9.0, -0.1, -0.3, -0.3, -8.0, 7.0]
     assert [finder.deepest(table, *ends) for ends in ((1, 4), (1, 6), (5, 6), (2, 2))] == [2, 4, 5, -1]
 
 
@@ -169,15 +173,14 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
         asked.append((face, blocks))
         if depth[face] is None:
             return count
-        table[count] = 0.0
-        table[count, 8] = depth[face]
+        table[count].at, table[count].gap = 0.0, depth[face]
         return count + 1
 
     monkeypatch.setattr(finder, "clip", clip)
     monkeypatch.setattr(finder, "outside", lambda _, face, other: out.get(face, -2.0))
     monkeypatch.setattr(finder, "lies_in", lambda _, block, at: True)
     monkeypatch.setattr(finder, "height", lambda _, face, at: heights.get(face, 0.0))
-    table, heights = np.zeros((3, 11)), {}
+    table, heights = rows(PLACE, 3), {}
     for least, expected, more in (
         (-0.3, (0, (0, 1), -0.5), []),
         (-0.45, (2, (0, 1), -0.1), [(2, (0, 1))]),
@@ -298,6 +301,49 @@ def test_of_faces_that_are_as_far_apart_the_larger_one_is_taken(monkeypatch):
         ((4.0, 7.0), -3.5e-6, one),
     ):
         assert decided(monkeypatch, (apart, apart + by), outlines=outlines) == (taken,)
+    for by in (1e-10, -1e-10):  # rounding decides nothing
+        assert decided(monkeypatch, (apart, apart + by), outlines=(4.0, 4.0)) == (one,)
+
+
+def test_fixed_blocks_come_first_then_the_largest_and_then_the_lowest():
+    fixed, volumes = [False, False, True, False, False, False], np.array([1.0, 1.0, 0.1, 2.0, 1.0, 1.0])
+    heights = np.array([0.5, 0.2, 5.0, 3.0, 0.2, 0.2])
+    expected = [5, 2, 0, 1, 3, 4]
+    assert finder.ranked(fixed, volumes, heights, 0.5).tolist() == expected
+    for seed in range(5):  # rounding decides nothing
+        off = 1e-12 * np.random.default_rng(seed).normal(size=(2, 6))
+        assert finder.ranked(fixed, volumes * (1 + off[0]), heights + off[1], 0.5).tolist() == expected
+
+
+def test_places_do_not_depend_on_the_numbers_of_blocks_nor_on_what_is_far_away():
+    """Boxes that are turned anyhow on a table, and two bars of which one lies on the other, edge on edge: pairs, their
+    order, and which has the normal."""
+    rng = np.random.default_rng(3)
+    table = mr.Polyhedron.box((3.0, 3.0, 0.2), (0.0, 0.0, -0.1), fixed=True, name="table")
+    boxes = []
+    for i, size in enumerate(rng.uniform(0.3, 0.6, 8)):
+        place = (0.4 * (i % 3) - 0.4, 0.4 * (i // 3) - 0.4, 0.3)
+        corners = moved(BOX((size, size, size)), place, Rotation.random(random_state=i)).corners
+        boxes.append(mr.Polyhedron(np.array(corners), name=f"box_{i}"))
+    for i, (way, high) in enumerate((("x", 5.0), ("y", 5.0 + 0.2 * math.sqrt(2) - 1e-3))):
+        lengths = (2.0, 0.2, 0.2) if way == "x" else (0.2, 2.0, 0.2)
+        corners = moved(BOX(lengths), (9.0, 0.0, high), Rotation.from_euler(way, 45, degrees=True)).corners
+        boxes.append(mr.Polyhedron(np.array(corners), name=f"bar_{i}"))
+    blocks, far = [table, *boxes], mr.Polyhedron.box((1.0, 1.0, 1.0), (0.0, 0.0, 90.0), fixed=True, name="far")
+
+    def among(chosen):
+        _, places = found(chosen, reach=0.01)
+        names = [chosen[i].name for i in places.face], [chosen[i].name for i in places.other]
+        return list(zip(*names, strict=True)), places
+
+    names, places = among(blocks)
+    assert [name for name, area in zip(names, places.area, strict=True) if area == 0] == [("bar_0", "bar_1")]
+    assert len(set(names)) > 8
+    for others in ([far, *blocks], blocks[::-1], [blocks[i] for i in (4, 2, 10, 8, 0, 6, 1, 9, 7, 3, 5)]):
+        again, where = among(others)
+        assert again == names
+        for name in ("place", "normal", "gap", "share", "area"):
+            np.testing.assert_array_equal(getattr(where, name), getattr(places, name))
 
 
 def test_faces_that_come_into_question_are_deeper_by_a_share_of_the_smaller_outline(monkeypatch):
@@ -341,7 +387,7 @@ def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(),
     drawn, poses = poses_of(blocks, by, change)
     whole = Finder(blocks, drawn)
     if room:
-        whole._table = np.empty((room, 11))
+        whole._table = rows(PLACE, room)
     which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
     a, b = np.reshape(np.array(skipped, dtype=np.int64), (-1, 2)).T
     places = whole.found(poses, np.broadcast_to(reach, len(blocks)).astype(float), which, np.sort(whole.between(a, b)))

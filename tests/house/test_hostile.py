@@ -39,6 +39,8 @@ GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True)
 L_UNIT = mr.Compound(
     [mr.Polygon([(0, 0), (1, 0), (1, 3), (0, 3)]), mr.Polygon([(1, 0), (2, 0), (2, 1), (1, 1)])], name="L"
 )
+DRY = mr.Dry(k_n=5e8, k_s=5e8, points=3)
+BOND = mr.Bond(2e5, 3e5, 18.0, 125.0)
 BOX = mr.Masonry([GROUND, mr.Polyhedron.box((0.6, 0.4, 2.0), (0, 0, 1))], k_n=5e8)
 
 
@@ -289,6 +291,9 @@ CALLS = OF_NUMBERS | {
             "tolerance": 1e-5, "law": None,
         },
     ),
+    "Masonry, joints": (mr.Masonry, {"blocks": COLUMN.blocks, "joints": DRY, "tolerance": 1e-5, "law": None}),
+    "Dry": (mr.Dry, {"k_n": 5e8, "friction": 0.7, "xi": 0.05, "k_s": 5e8, "frequency": 30.0, "points": 3}),
+    "Mortar": (mr.Mortar, {"dry": DRY, "bond": BOND}),
     "Masonry.stack": (mr.Masonry.stack, {"blocks": [WALL], "k_n": 5e8, "ground": True, "law": None, "friction": 0.7}),
     "Masonry.stack, side": (
         mr.Masonry.stack,

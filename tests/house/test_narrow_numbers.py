@@ -42,6 +42,9 @@ def push(scale):
 
 CALLS = OF_NUMBERS | {
     "Block": (mr.Block, {"b": 1, "h": 100, "length": 8, "density": 100, "inset": 0.5}),
+    "Dry": (
+        mr.Dry, {"k_n": 16384, "friction": 1, "xi": 1, "k_s": 16384, "frequency": 100, "points": 100},
+    ),
     "Bond": (
         mr.Bond,
         {
