@@ -11,21 +11,19 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
-from ..problem.wall.effect import Effect
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene
 from .faces import edges_of, margins, outlines_of_joints
 from .kinds.link import put_on_supports
-from .links import links_of, numbered
 from .rows import Rows, joined, kinds, rows
 from .supports import moving
 from .system import System
 from .turning import is_flat, start_turning
 
 
-def system_of(scene: Scene, masonry: Masonry | None = None, effects: tuple[Effect, ...] = ()) -> System:
-    """The system of a scene with effects, undeformed. Faces of masonry end where they end, those of a wall do not."""
+def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
+    """The system of a scene without its links, undeformed. Faces of masonry end, those of a wall do not."""
     d, n = scene.bodies.rest.shape[1], len(scene.bodies.mass)
     kind = kinds(d)
     inverse = np.linalg.inv(np.reshape(scene.bodies.inertia, (n, 2 * d - 3, -1)))
@@ -34,7 +32,7 @@ def system_of(scene: Scene, masonry: Masonry | None = None, effects: tuple[Effec
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
-    acting = links_of(scene, effects), np.zeros(0, dtype=np.int64), Ground.of(None), moving((), d)
+    acting = (), np.zeros(0, dtype=np.int64), Ground.of(None), moving((), d)
     system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), rows(kind.bond, 0), *acting)
     return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
@@ -107,14 +105,11 @@ def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[
     return system._replace(supports=moving([(each.t, each.displacement) for each in supports], len(system.axes)))
 
 
-def driven_by(system: System, case: MasonryCase) -> System:
-    """The system with what a case drives, and with the blocks that it guides."""
-    links = numbered(tuple(table.driven(system.bodies, case) for table in system.links))
+def guide(system: System, case: MasonryCase) -> None:
+    """Let the actuators of a case guide their blocks."""
     held, d = case.guided, len(system.axes)
     system.bodies["inverse_mass"][held[:, :d]] = 0.0
     system.bodies["inverse_inertia"][held[:, d:].any(axis=1)] = 0.0
-    driven = [table.rows["body"] for table in links if table.told == "actuators"]
-    return system._replace(links=links, guided=np.concatenate(driven))
 
 
 def guided_as(bodies: Rows, others: Rows) -> None:

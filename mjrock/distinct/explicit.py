@@ -15,7 +15,7 @@ from ..problem.wall.plausible import warn_if_still
 from ..quantities import require_flag, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
-from ..result.response import Response, State
+from ..result.response import End, Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
 from ..result.stopwatch import Stopwatch
@@ -40,7 +40,7 @@ def solve_explicit(
     output_step: float | None = None,
     ledger: bool = False,
     forces: bool = False,
-    start: State | None = None,
+    start: End | State | None = None,
     mass_damping: float = 0.0,
     local_damping: float = 0.0,
 ) -> Response:
@@ -131,7 +131,7 @@ def solve_explicit(
     if isinstance(case, MasonryCase):
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     looked = steps.looks(followed.steps)
-    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
+    run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 
 from ..compiled import inlined, method
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
-from ..problem.wall.effect import Effect
 from ..quantities import Array
 from ..scene.scene import Scene
 from .kinds.actuators import Actuators
 from .kinds.constant_forces import ConstantForces
 from .kinds.dampers import Dampers
-from .kinds.link import Kind
+from .kinds.link import AnyCase, Kind
 from .kinds.ties import Ties
-from .rows import Row
+from .rows import Row, Rows
 from .system import Books, Links, System
 
 KINDS: tuple[type[Kind], ...] = (Ties, Dampers, Actuators, ConstantForces)
@@ -27,9 +21,10 @@ KINDS: tuple[type[Kind], ...] = (Ties, Dampers, Actuators, ConstantForces)
 act, hold = method("act"), method("hold")
 
 
-def links_of(scene: Scene, effects: tuple[Effect, ...]) -> Links:
-    """The links of a scene with some effects, a table for each kind."""
-    return numbered(tuple(kind.of(scene, effects) for kind in KINDS))
+def links_of(scene: Scene, case: AnyCase, bodies: Rows) -> tuple[tuple[tuple[str, ...], ...], Links]:
+    """The links of a scene of a case, whose bodies are at rest: their names, and a table, for each kind."""
+    names, links = zip(*(kind.of(scene, case, bodies) for kind in KINDS), strict=True)
+    return names, numbered(links)
 
 
 def numbered(links: Links) -> Links:
@@ -40,13 +35,6 @@ def numbered(links: Links) -> Links:
         table.rows["number"], table.rows["account"] = number + each, account + booked * each
         number, account = number + len(each), account + booked * len(each)
     return links
-
-
-def named(links: Links, scene: Scene, case: Case | MasonryCase) -> Iterator[tuple[Any, Row, str]]:
-    """The table, the row and the name of each link."""
-    for table in links:
-        for row, name in zip(table.rows, table.names(scene, case), strict=True):
-            yield table, row, name
 
 
 @inlined

@@ -137,8 +137,8 @@ def write_motion(system: System, blocks: Blocks, motion: Motion, axes: tuple[int
     poses, supports = motion.poses, system.supports
     for b in range(len(blocks.free)):
         body, block = system.bodies[b], blocks.free[b]
-        take_turn(body, axes)
-        take_inverse_inertia(body, axes)
+        take_turn(body)
+        take_inverse_inertia(body)
         for i in range(len(axes)):
             put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, axes)))
         spin = spin_components(body.spin, axes)
@@ -286,7 +286,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
     for pair in range(len(slip)):
         slip[pair], gap[pair], tilt[pair] = 0.0, math.inf, 0.0
     for b in range(len(system.bodies)):
-        take_turn(system.bodies[b], axes)
+        take_turn(system.bodies[b])
     for p in range(len(pairs)):
         line = system.lines[p]
         body, at, normal = system.bodies[line.body], components(line.at, axes), components(line.normal, axes)
@@ -322,7 +322,7 @@ def held_by_lines(system: System, which: Integers, depth: Array, axes: tuple[int
     energy = 0.0
     for i in range(len(which)):
         line = system.lines[which[i]]
-        gap = meeting(system, line, axes).gap
+        gap = meeting(system, line).gap
         depth[i] = max(-gap, 0.0)
         energy += stored(line, gap)
     return energy

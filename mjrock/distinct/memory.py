@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from ..geometry.vectors import Vector
 from ..quantities import Array
-from ..result.response import State
+from ..result.response import End
 from .assembly import copied, guided_as
 from .encounters import Met
 from .loop import Clock, accelerated
@@ -40,22 +40,9 @@ class Memory(NamedTuple):
     look: int = 0
 
 
-class Remembered(tuple[Array, Array]):
-    """The end of a run by explicit steps: pose and velocity, with the `memory` of its steps."""
-
-    memory: Memory | None
-
-
-def remembered(end: State, memory: Memory | None) -> State:
-    """The end of a run with its memory, which a run that ended before its time does not have."""
-    carried = Remembered(end)
-    carried.memory = memory
-    return carried
-
-
 def memory_of(start: object, of: object) -> Memory | None:
     """The memory of a start, if it has one of what stands here."""
-    memory = getattr(start, "memory", None)
+    memory = start.memory if isinstance(start, End) else None
     return memory if isinstance(memory, Memory) and memory.of == of else None
 
 

@@ -19,18 +19,16 @@ from ..result.forces import Forces, Gathered, JointFrames, forces_of
 from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
 from ..result.reading import BesidePoses, Reading, masonry_reading, wall_reading
-from ..result.response import Response
+from ..result.response import End, Response
 from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
-from ..scene.course import Course
 from ..scene.scene import Scene
 from .bonds import cracked
 from .following import Followed
 from .kinds.ties import Ties
-from .links import named
-from .memory import remembered
 from .rows import Row, Rows
-from .system import Books, Samples
+from .setup import Setup
+from .system import ENERGY, Books, Samples
 
 OPEN = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
@@ -47,7 +45,7 @@ class Run:
     case: Case | MasonryCase
     contacts: Contacts | None
     scene: Scene
-    course: Course
+    setup: Setup
     followed: Followed
     books: Books
     samples: Samples
@@ -57,7 +55,9 @@ class Run:
     @property
     def links(self) -> Iterator[tuple[Any, Row, str]]:
         """The table, the row and the name of each link."""
-        return named(self.followed.system.links, self.scene, self.case)
+        for table, names in zip(self.followed.system.links, self.setup.names, strict=True):
+            for row, name in zip(table.rows, names, strict=True):
+                yield table, row, name
 
     def forces_of(self, told: str, pulled: Array) -> dict[str, Array]:
         """The force of each link that is told as a link or as an actuator, by name, among those of all."""
@@ -77,7 +77,7 @@ class Run:
         """The same of samples or looks, the first of which is the start."""
         at_rest = self.scene.rest_energies.sum()
         there = energy["kinetic"] + energy["potential"] + energy["elastic"]
-        preloaded = float(there[0] - at_rest - self.course.energy(self.scene))
+        preloaded = float(there[0] - at_rest - self.setup.course.energy(self.scene))
         return np.asarray(there - (float(at_rest) + preloaded))
 
     @property
@@ -111,7 +111,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         actuators=run.forces_of("actuators", samples.pulled[kept]),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
-        end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
+        end=End(samples.pose[-1].copy(), samples.velocity[-1].copy(), run.followed.memory),
     )
     if response.ledger is not None:
         residual = float(np.abs(response.ledger.residual).max())
@@ -160,7 +160,7 @@ def reading_of(run: Run) -> Reading:
         gone = cracked(run.followed.system.bonds, run.scene.contacts.joint, case.masonry)
         return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left, gone))
     assert contacts is not None
-    return wall_reading(case, contacts, run.t, motion, released=run.course.released)
+    return wall_reading(case, contacts, run.t, motion, released=run.setup.course.released)
 
 
 def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
@@ -205,8 +205,8 @@ def advice(stats: Mapping[str, Any], share: float, wanted: float) -> str:
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
     samples = run.samples.taken(kept)
-    energy = {name: np.asarray(samples.energy[name]) for name in samples.energy.dtype.names}
-    booked: dict[str, dict[str, Array]] = {"dashpots": {}, "actuators": {}, "ties": {}, "broken": {}}
+    energy: dict[str, Any] = {name: np.asarray(samples.energy[name]) for name in ENERGY.names or ()}
+    booked: dict[str, Any] = {"dashpots": {}, "actuators": {}, "ties": {}, "broken": {}}
     for table, row, name in run.links:
         for i, part in enumerate(table.booked):
             booked[part][name] = samples.links[:, row.account + i]

@@ -40,8 +40,8 @@ def system(d, lines=1, edges=0, still=False):
         bodies["angle" if d == 2 else "quaternion"] = 0.0 if d == 2 else [1.0, 0.0, 0.0, 0.0]
     axes = PLANE.axes if d == 2 else SPACE.axes
     for body in bodies:
-        take_turn(body, axes)
-        take_inverse_inertia(body, axes)
+        take_turn(body)
+        take_inverse_inertia(body)
     if not still:
         bodies["velocity"], bodies["spin"] = VELOCITY[:, which], SPIN[:, 1:2] if d == 2 else SPIN
     if d == 3:
@@ -63,6 +63,11 @@ def system(d, lines=1, edges=0, still=False):
 
 def books(system):
     return Books.empty(system, 2)
+
+
+def columns(places):
+    """Places as columns of numbers, shape (n, 11): the two blocks, where, the normal, gap, share and area."""
+    return np.column_stack([places[name] for name in places.dtype.names])
 
 
 def matrix(d, i):

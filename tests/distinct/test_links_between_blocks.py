@@ -8,6 +8,7 @@ from scenes import changed
 import mjrock as mr
 from mjrock.distinct.assembly import started, system_of
 from mjrock.distinct.limit import longest_step
+from mjrock.distinct.links import links_of
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.system import Books, Samples
 from mjrock.scene.masonry import standing_masonry
@@ -21,12 +22,14 @@ def tied():
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.0, frequency=100.0)
     tie, damper = mr.Tie(0.15, K, length=GAP, block=2), mr.Damper(0.15, c=C, length=GAP, block=2)
     scene = standing_masonry(masonry, (tie, damper))
-    return changed(scene, links={"anchor_body": [0, 0], "anchor_at": [(0.25, 0.0)] * 2}), masonry
+    case = mr.MasonryCase(masonry, 1.0, effects=(tie, damper))
+    return changed(scene, links={"anchor_body": [0, 0], "anchor_at": [(0.25, 0.0)] * 2}), case
 
 
 def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
-    scene, masonry = tied()
-    system = system_of(scene, masonry)
+    scene, case = tied()
+    system = system_of(scene, case.masonry)
+    system = system._replace(links=links_of(scene, case, system.bodies)[1])
     assert system.links[0].rows["between"][0] == pytest.approx([GAP, 0.0])
     velocity = np.array([[0.0, 0.0, 0.0], [SPEED, 0.0, 0.0]])
     started(system, scene.at_rest, velocity)

@@ -296,7 +296,7 @@ def test_springs_hold_what_they_store(d):
     lines = [(0, -0.003, 0.02), (0, 0.002, 0.0), (0, -0.001, 0.0)]
     whole, _ = worn(d, lines, [1.0])
     for body in whole.bodies:
-        looking.take_turn(body, whole.axes)
+        looking.take_turn(body)
     whole.lines["k"] = [1e5, 2e5, 4e5]
     depth = np.full(2, 9.0)
     energy = looking.held_by_lines(whole, np.array([2, 1]), depth, whole.axes)

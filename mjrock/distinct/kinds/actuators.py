@@ -12,8 +12,6 @@ from ...geometry.vectors import Vector, dot, increase, plus, read, scaled, spun
 from ...linear import entries
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.lines import free_numbers
-from ...problem.wall.case import Case
-from ...problem.wall.effect import Effect
 from ...quantities import Array, Integers
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
@@ -22,7 +20,7 @@ from ..rows import Row, Rows
 from ..supports import Supports, move_supports, moving, places, surges
 from ..system import Books, System
 from ..turning import rotation_change, rotations
-from .link import Kind
+from .link import AnyCase, Kind, Named
 
 
 class Histories(NamedTuple):
@@ -44,27 +42,19 @@ class Actuators(Kind, Histories):
     booked = ("actuators", "dashpots")
 
     @classmethod
-    def of(cls, scene: Scene, effects: tuple[Effect, ...]) -> Actuators:
-        """None: a case drives them."""
-        return cls(cls.table(scene.bodies.rest.shape[1], 0), moving((), 1))
-
-    def names(self, scene: Scene, case: Case | MasonryCase) -> tuple[str, ...]:
-        """Those of the case."""
-        return tuple(case.actuators) if isinstance(case, MasonryCase) else ()
-
-    def driven(self, bodies: Rows, case: MasonryCase) -> Actuators:
-        """Those of a case, which count displacements from the pose of rest."""
-        actuators = tuple(case.actuators.values())
-        if not actuators:
-            return self
-        number, d = free_numbers(case.masonry.blocks), bodies["rest"].shape[1]
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+        """Those of a case of masonry, which count displacements from the pose of rest."""
+        d = bodies["rest"].shape[1]
+        if not isinstance(case, MasonryCase) or not case.actuators:
+            return (), cls(cls.table(d, 0), moving((), 1))
+        number, actuators = free_numbers(case.masonry.blocks), tuple(case.actuators.values())
         held = np.array([GROUND if each.block is None else number[each.block] for each in actuators])
         way, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
         at = np.array([each.way if each.at is None else each.at for each in actuators])
         at = np.where(single, at - bodies["rest"][held], 0.0)
         change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
         mean = np.average(bodies["place"], axis=0, weights=bodies["mass"])
-        table = self.table(
+        table = cls.table(
             d,
             len(actuators),
             body=held,
@@ -75,7 +65,7 @@ class Actuators(Kind, Histories):
             reach=(np.where(single, bodies["place"][held] + change, mean) * way).sum(axis=1),
         )
         histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
-        return Actuators(table, moving(histories, 1))
+        return tuple(case.actuators), cls(table, moving(histories, 1))
 
     def rates(self, bodies: Rows) -> csr_array:
         """Rates of what they drive: a point, or the centroid of all."""

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from ...compiled import inlined
 from ...geometry.vectors import dot, plus, read
-from ...problem.masonry.case import MasonryCase
-from ...problem.wall.case import Case
-from ...problem.wall.effect import Effect
 from ...scene.scene import Scene
 from ..contact import add_force
-from ..rows import Row
+from ..rows import Row, Rows
 from ..system import Books, System
 from ..turning import rotation_change
-from .link import Kind, Table
+from .link import AnyCase, Kind, Named, Table
 
 
 class ConstantForces(Kind, Table):
@@ -21,15 +18,11 @@ class ConstantForces(Kind, Table):
     told = ""
 
     @classmethod
-    def of(cls, scene: Scene, effects: tuple[Effect, ...]) -> ConstantForces:
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         forces, count = scene.forces, len(scene.forces.body)
         columns = {"body": forces.body, "at": forces.at, "between": forces.force} if count else {}
-        return cls(cls.table(scene.bodies.rest.shape[1], count, **columns))
-
-    def names(self, scene: Scene, case: Case | MasonryCase) -> tuple[str, ...]:
-        """Those of the scene."""
-        return scene.forces.names
+        return forces.names, cls(cls.table(scene.bodies.rest.shape[1], count, **columns))
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from ...compiled import inlined
-from ...problem.masonry.case import MasonryCase
-from ...problem.wall.case import Case
-from ...problem.wall.effect import Effect
 from ...scene.scene import Scene
+from ..rows import Rows
 from ..system import Books, System
-from .link import Kind, Table, book_support, lengthening, pull, push_apart
+from .link import AnyCase, Kind, Named, Table, book_support, lengthening, pull, push_apart
 
 
 class Dampers(Kind, Table):
@@ -18,13 +16,9 @@ class Dampers(Kind, Table):
     booked = ("dashpots",)
 
     @classmethod
-    def of(cls, scene: Scene, effects: tuple[Effect, ...]) -> Dampers:
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
-        return cls(cls.linking(scene.links.damped, scene.dampers.between))
-
-    def names(self, scene: Scene, case: Case | MasonryCase) -> tuple[str, ...]:
-        """Those of the scene."""
-        return scene.links.damped.names
+        return cls.linking(scene.links.damped, scene.dampers.between)
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:

@@ -19,7 +19,6 @@ from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, ve
 from ...linear import rates_of
 from ...problem.masonry.case import MasonryCase
 from ...problem.wall.case import Case
-from ...problem.wall.effect import Effect
 from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
@@ -27,6 +26,10 @@ from ..contact import add_force
 from ..rows import Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
 from ..turning import rotation_change
+
+AnyCase = Case | MasonryCase
+Named = tuple[tuple[str, ...], Any]
+"""The names of links, and the links."""
 
 
 class Table(NamedTuple):
@@ -69,20 +72,17 @@ class Kind:
         return rows(np.dtype(fields), count, **{"anchor": -1, "anchor_block": -1, "support": -1} | columns)
 
     @classmethod
-    def linking(cls, links: Links, between: Array, **columns: Any) -> Rows:
-        """Rows of links of a scene with these columns. Their other `own` numbers are those of the law of the links."""
+    def linking(cls, links: Links, between: Array, **columns: Any) -> Named:
+        """Links of a scene with these columns. Their other `own` numbers are those of the law of the links."""
         count = len(links.body)
         taken = {name: getattr(links, name) for name in ("body", "anchor_block", *cls.own) if name not in columns}
         ends = {"anchor": links.anchor_body, "at": links.at, "origin": links.anchor_at, "between": between}
-        return cls.table(between.shape[1], count, **columns | taken | ends if count else {})
+        table = cls.table(between.shape[1], count, **columns | taken | ends if count else {})
+        return links.names, cls(table)  # type: ignore[call-arg]
 
     @classmethod
-    def of(cls, scene: Scene, effects: tuple[Effect, ...]) -> Any:
-        """The links of this kind in a scene with some effects."""
-        raise NotImplementedError
-
-    def names(self, scene: Scene, case: Case | MasonryCase) -> tuple[str, ...]:
-        """The name of each link."""
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+        """The links of this kind in a scene of a case, whose bodies are at rest."""
         raise NotImplementedError
 
     @inlined
@@ -110,10 +110,6 @@ class Kind:
     def surges(self, t: float, until: float) -> tuple[Integers, Array]:
         """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""
         return np.empty(0, dtype=np.int64), np.empty(0)
-
-    def driven(self, bodies: Rows, case: MasonryCase) -> Any:
-        """The links with those that a case drives, on bodies at rest."""
-        return self
 
     def remembered(self, t: float) -> Any:
         """The links for a run that carries on from a time [s], which counts its time from there."""

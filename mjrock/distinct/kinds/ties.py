@@ -4,16 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ...compiled import inlined
-from ...problem.masonry.case import MasonryCase
-from ...problem.wall.case import Case
-from ...problem.wall.effect import Effect
 from ...scene.scene import Scene
-from ..rows import Row
+from ..rows import Row, Rows
 from ..system import Books, System
-from .link import Kind, Table, book_support, lengthening, pull, push_apart
+from .link import AnyCase, Kind, Named, Table, book_support, lengthening, pull, push_apart
 
 
 class Ties(Kind, Table):
@@ -29,14 +24,10 @@ class Ties(Kind, Table):
     booked = ("ties", "broken")
 
     @classmethod
-    def of(cls, scene: Scene, effects: tuple[Effect, ...]) -> Ties:
-        """Those of a scene."""
-        state = {"reach": scene.ties.reach, "drawn": 0.0, "broken": np.inf}
-        return cls(cls.linking(scene.links.sprung, scene.ties.between, **state))
-
-    def names(self, scene: Scene, case: Case | MasonryCase) -> tuple[str, ...]:
-        """Those of the scene."""
-        return scene.links.sprung.names
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+        """Those of a scene, where they bear nothing at rest if they push too."""
+        ties = scene.ties
+        return cls.linking(scene.links.sprung, ties.between, reach=ties.reach, drawn=0.0, broken=math.inf)
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:

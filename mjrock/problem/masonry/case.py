@@ -116,7 +116,8 @@ class MasonryCase(Carrying):
         self._keep_sequence(Actuator)
         numbers: list[Effect] = []
         for i, effect in enumerate(self.effects):
-            require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
+            if not (isinstance(effect, Effect) and effect.only):
+                require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
             effect = numbered(f"effects[{i}]", effect, self.masonry)
             numbers.append(effect)
             if effect.block is None:

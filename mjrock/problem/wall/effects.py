@@ -16,7 +16,7 @@ from ...quantities import Within, keep, keep_declared, shown
 from .damper import Damper
 from .effect import Anchored, Effect
 from .friction_damper import FrictionDamper
-from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, written
+from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, short_repr
 from .tie import Tie
 
 
@@ -167,7 +167,7 @@ class SideStop:
 
     top: Annotated[float, Within(0.01, HIGHEST, "m")]
 
-    __repr__ = written
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep_declared(self, "side stop")
