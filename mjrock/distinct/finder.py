@@ -130,7 +130,7 @@ class Finder:
         self._fixed = np.array([block.fixed for block in blocks])[self.owner]
         centroids = (np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)[self.owner]
         solids = solids_of(blocks, self._half)
-        self.volumes = np.bincount(self.owner, weights=[solid.volume for solid in solids])
+        self.volumes = np.add.reduceat([solid.volume for solid in solids], self.first)
         self._rank = ranked([block.fixed for block in blocks], self.volumes, drawn[:, -1], self._half)
         inside = [flags for block in blocks for flags in inside_of(block)]
         self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
@@ -168,9 +168,9 @@ class Finder:
     def _in_order(self, found: Found) -> Found:
         """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
         in rank, those of a pair together."""
-        ranks = (self._rank[self.owner[solid]] for solid in (found.face, found.other))
-        pairs = pair_number(*ranks, len(self.number)), pair_number(found.face, found.other, len(self.owner))
-        return found.only(np.lexsort(pairs[::-1]))
+        rank = self._rank[self.owner]
+        of_blocks = pair_number(rank[found.face], rank[found.other], len(self.number))
+        return found.only(np.lexsort((pair_number(found.face, found.other, len(self.owner)), of_blocks)))
 
     def between(self, a: Integers, b: Integers) -> Integers:
         """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
