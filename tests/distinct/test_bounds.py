@@ -38,10 +38,22 @@ for loop, table in ((rows_beyond, rows(kinds(2).way, 2)), (numbers_beyond, np.ze
 """Rows and arrays, in the loop itself and in a function that takes the place of its call."""
 
 
-SMALL = (
-    "bonds_of_lines clipping contact_lines forces_of_lines friction_of_lines handing_over longest_step loop_of_steps "
-    "pulls_of_links slowing softening solids touches_of_lines turning"
-).split()
+SMALL = [
+    "bonds_of_lines",
+    "clipping",
+    "contact_lines",
+    "forces_of_lines",
+    "friction_of_lines",
+    "handing_over",
+    "longest_step",
+    "loop_of_steps",
+    "pulls_of_links",
+    "slowing",
+    "softening",
+    "solids",
+    "touches_of_lines",
+    "turning",
+]
 """Tests of single functions, and of a few steps."""
 
 
