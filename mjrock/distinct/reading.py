@@ -12,13 +12,13 @@ import numpy as np
 
 from ..geometry.frames import SPACE
 from ..problem.damping.contacts import Contacts
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers
-from ..result.forces import Forces, Gathered, JointFrames, forces_of
+from ..result.forces import Forces, Gathered, forces_of
 from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
-from ..result.reading import BesidePoses, Reading, masonry_reading, wall_reading
+from ..result.problem import problem_of
+from ..result.reading import BesidePoses, Reading
 from ..result.response import Response
 from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
@@ -42,7 +42,7 @@ class Run:
     """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s], and the times of
     the looks [s]."""
 
-    case: Case | MasonryCase
+    case: AnyCase
     contacts: Contacts | None
     scene: Scene
     course: Course
@@ -97,7 +97,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         joints=reading.joints,
         plastic=yielded,
         ledger=ledger_of(run, kept) if ledger else None,
-        actuators=dict(zip(actuators_of(run.case), samples.actuators[kept].T, strict=True)),
+        actuators=dict(zip(run.case.actuators, samples.actuators[kept].T, strict=True)),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
         end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
@@ -115,11 +115,6 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     return response
 
 
-def actuators_of(case: Case | MasonryCase) -> tuple[str, ...]:
-    """Names of the actuators of a case."""
-    return tuple(case.actuators) if isinstance(case, MasonryCase) else ()
-
-
 def kept_forces(run: Run, kept: Integers) -> Forces | None:
     """The forces of a run at some of its samples, if they were kept."""
     samples, links = run.samples.taken(kept), run.scene.links
@@ -127,12 +122,12 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
         return None
     pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
     damage = None
-    if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
-        dry = [bond is None for bond in run.case.masonry.bonds]
+    if len(run.followed.system.bonds):
+        dry = [bond is None for bond in run.case.bonds]
         damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
     gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, samples.guided, damage)
-    return forces_of(run.case, JointFrames.of(run.case), gathered)
+    return forces_of(run.case, run.case.frames, gathered)
 
 
 def plastic(run: Run) -> dict[str, Plastic]:
@@ -143,16 +138,13 @@ def plastic(run: Run) -> dict[str, Plastic]:
 
 def reading_of(run: Run) -> Reading:
     """What is read from a run."""
-    case, contacts, samples = run.case, run.contacts, run.samples
+    samples, system, joint = run.samples, run.followed.system, run.scene.contacts.joint
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
-    if isinstance(case, MasonryCase):
-        met = None if run.followed.memory is None else run.followed.memory.met
-        widest = run.followed.system.lines["widest"][: len(run.scene.contacts.joint)]
-        left = met is not None and bool(met.handed.any())
-        gone = cracked(run.followed.system.bonds, run.scene.contacts.joint, case.masonry)
-        return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left, gone))
-    assert contacts is not None
-    return wall_reading(case, contacts, run.t, motion, released=run.course.released)
+    met = None if run.followed.memory is None else run.followed.memory.met
+    left = met is not None and bool(met.handed.any())
+    beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked(system.bonds, joint, run.case))
+    problem = problem_of(run.case, run.contacts)
+    return problem.read(run.scene, run.t, motion, released=run.course.released, beside=beside)
 
 
 def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
@@ -195,7 +187,7 @@ def advice(stats: Mapping[str, Any], share: float, wanted: float) -> str:
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
-    scene, samples, driving = run.scene, run.samples.taken(kept), actuators_of(run.case)
+    scene, samples, driving = run.scene, run.samples.taken(kept), tuple(run.case.actuators)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
     dashpots = dict(zip((*scene.links.damped.names, *driving), samples.dampers.T, strict=True))
     groups = (*scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
@@ -209,6 +201,6 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         actuators=dict(zip(driving, samples.driven.T, strict=True)),
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
-        ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),
+        ends=dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)) if run.case.joints else {},
         bonds=dict(zip(TAKEN, energy["bonds"].T, strict=True)) if len(run.followed.system.bonds) else {},
     )

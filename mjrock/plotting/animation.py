@@ -25,7 +25,7 @@ from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
 from .bodies import Bodies
-from .forces import Moving, forces_on, require_shown
+from .forces import forces_on, require_shown
 from .histories import acceleration, rotation, ties
 from .perspective import fill, solids, ties_in_view
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
@@ -286,7 +286,7 @@ def scene(
     ax: Axes = (figure if halves is None else halves[0]).subplots(subplot_kw=depth)
     updates = _standing(ax, bodies, case)
     if pressed is not None:
-        updates.append(forces_on(ax, pressed[0], Moving(bodies.t, bodies.poses, bodies.magnify), pressed[1]))
+        updates.append(forces_on(ax, pressed[0], bodies.of_case(pressed[0].case), pressed[1]))
     scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
     clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)

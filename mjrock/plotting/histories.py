@@ -34,12 +34,12 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     fallen = [overturned_at(response) for response in responses]
     reached, styles = [0.0], styles_of(responses, labels)
     for response, end, style in zip(responses, fallen, styles, strict=True):
-        share = response.theta / response.case.wall.alpha
+        share = response.theta / response.of_wall[0].wall.alpha
         ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     far = 4 * max(reached)  # a line there would flatten the motion
-    for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
+    for limit in {case.overturning_rotation / case.wall.alpha for case, _ in (each.of_wall for each in responses)}:
         if abs(limit - 1) > 0.01 and limit < far:
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
             ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="top")
@@ -53,7 +53,7 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     ]
     if said:
         top = max(1.2, 1.05 * max(reached))
-        inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)
+        inwards = min(float(response.theta.min() / response.of_wall[0].wall.alpha) for response in responses)
         ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
         note = ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
@@ -65,7 +65,7 @@ def overturned_at(response: Response) -> float | None:
     """When the wall went beyond the rotation from which it comes back [s], or None if it did not overturn."""
     if response.outcome is not Outcome.OVERTURNED:
         return None
-    returns = np.flatnonzero(response.case.returns_from(response.theta))
+    returns = np.flatnonzero(response.of_wall[0].returns_from(response.theta))
     return float(response.t[min(returns[-1] + 1, len(response.t) - 1) if returns.size else 0])
 
 

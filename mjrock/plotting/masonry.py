@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,24 +9,20 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon as Patch
 from numpy.typing import ArrayLike
 
+from ..geometry.poses import displaced
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..quantities import Array, require_array, require_flag, require_kind, require_within
+from ..result.bodies import Moving
 from ..result.response import Response
 from ..result.samples import sample_at
 from .arguments import anything, picture
 from .bodies import ends_of, require_masonry, required_limits, window
-from .forces import Moving, forces_on, require_shown
+from .forces import forces_on, require_shown
 from .perspective import fill, solids
 from .solids import Solids
 
 BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
-
-
-def moved(corners: Array, centroid: Array, pose: Array) -> Array:
-    """Corners of a block that has moved by a pose x, z, theta [m, m, rad], shape (n, 2)."""
-    c, s = math.cos(pose[2]), math.sin(pose[2])
-    return np.asarray((corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2])
 
 
 @picture(limits=anything, joints=require_flag)
@@ -78,7 +73,7 @@ def blocks(
         there = run.pose[sample : sample + 1]
         if forces is not None:
             require_shown("forces", forces, run)
-            acting = run, Moving(time, there, require_within("magnified", magnified, 0.0, 1e6)), forces
+            acting = run, Moving(run.case, time, there, require_within("magnified", magnified, 0.0, 1e6)), forces
     elif at is not None or forces is not None:
         raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
     elif isinstance(masonry, Response):
@@ -101,7 +96,7 @@ def blocks(
     drawn: list[list[Array]] = [[], []]
     for i, block in enumerate(masonry.blocks):
         shift = shifts.get(masonry.names[i], 0.0)
-        corners = block.corners + shift if block.fixed else moved(block.corners, block.centroid, where[i])
+        corners = block.corners + (shift if block.fixed else displaced(block.corners - block.centroid, where[i]))
         drawn[block.fixed].append(corners)
         colour = STONE if block.fixed else BRICK
         ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.4 * width))

@@ -11,13 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..geometry.frames import SPACE, frames_of
+from ..geometry.frames import SPACE
+from ..geometry.poses import displaced, rotations
+from ..problem.masonry.case import AnyCase
 from ..problem.masonry.compound import Compound, SolidBlock
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..problem.wall.effect import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
+from ..result.bodies import Moving
 from ..result.response import Response
 from .bodies import interpolated, required_limits
 
@@ -84,7 +87,7 @@ class Solids:
         limits: ArrayLike | None = None,
     ) -> Solids:
         """The blocks of a response in space."""
-        case = response.case
+        case = response.of_masonry
         return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects, case.supports, limits)  # type: ignore[arg-type]
 
     def at(self, times: Array) -> Solids:
@@ -143,12 +146,9 @@ class Solids:
             row[: len(face)], row[len(face) :] = face, face[-1]
         return Facets(corners, body, part, counts)
 
-    def displaced(self, frame: int, block: int | None, point: Array) -> Array:
-        """Where a point of a block, given at rest [m], shape (3,), is drawn at a frame; one of the ground stays."""
-        if block not in self.shown:
-            return point
-        body = self.shown.index(block)
-        return np.asarray(self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0])
+    def of_case(self, case: AnyCase) -> Moving:
+        """Where the bodies of the case are drawn."""
+        return Moving(case, self.t, self.poses, self.magnify)
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
@@ -161,10 +161,10 @@ class Solids:
         the farthest centroid is next.
         """
         bodies = np.repeat(np.arange(len(self.shown)), np.diff(self._first))
-        frames, rests = self._frames(frame)[bodies], self.rests[bodies]
-        turned = np.eye(3) + frames[:, 3:].reshape(-1, 3, 3)
+        poses, rests = self._posed(frame)[bodies], self.rests[bodies]
+        turned = rotations(poses)
         arms = np.array([part.centroid for block in self._blocks for part in block.parts]) - rests
-        nearness = (rests + frames[:, :3] + (turned @ arms[:, :, None])[:, :, 0]) @ self.eye
+        nearness = (rests + poses[:, :3] + (turned @ arms[:, :, None])[:, :, 0]) @ self.eye
         waits, hidden = np.zeros(len(nearness), dtype=int), [list[int]() for _ in nearness]
         for below, above, normal in self._pairs:
             behind, before = (below, above) if turned[below] @ normal @ self.eye > 0 else (above, below)
@@ -224,19 +224,15 @@ class Solids:
             pairs += [(first + joint.below, first + joint.above, joint.normal) for joint in joined]
         return pairs
 
-    def _frames(self, frame: int) -> Array:
-        """Displacement and R - 1 of each body at a frame, shape (shown, 12)."""
-        frames, free = np.zeros((len(self.shown), 12)), list(self.masonry.free)
-        moves = [i for i, block in enumerate(self.shown) if block in free]
-        frames[moves] = frames_of(np.ascontiguousarray(self.poses[frame]).ravel(), SPACE)
+    def _posed(self, frame: int) -> Array:
+        """Pose of each block that is shown at a frame, shape (shown, 7)."""
+        poses = np.tile(np.eye(1, SPACE.nq, 3), (len(self.shown), 1))
+        poses[np.isin(self.shown, self.masonry.free)] = self.poses[frame]
         for support in self.supports:
-            frames[self.shown.index(self.masonry.names.index(support.block)), :3] = support.at(
-                self.t[frame : frame + 1]
-            )
-        return frames
+            body = self.shown.index(self.masonry.names.index(support.block))
+            poses[body, :3] = support.at(self.t[frame : frame + 1])
+        return poses
 
     def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
         """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
-        frames = self._frames(frame)[body]
-        moved = frames[:, None, :3] + points @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
-        return self.rests[body, None] + points + self.magnify * moved
+        return self.rests[body, None] + points + self.magnify * displaced(points, self._posed(frame)[body])

@@ -12,7 +12,7 @@ from ..result.samples import sample_at
 from . import masonry, section
 from .arguments import anything, picture
 from .bodies import Bodies
-from .forces import Moving, forces_on, require_shown
+from .forces import forces_on, require_shown
 
 
 @picture(limits=anything)
@@ -48,7 +48,7 @@ def thrust(
     sample = sample_at(response.t, at)
     bodies = Bodies.of(response, magnified, limits).at(response.t[sample : sample + 1])
     updates = [section.blocks(ax, bodies), section.surroundings(ax, response.case, bodies)]
-    updates.append(forces_on(ax, response, Moving(bodies.t, bodies.poses, bodies.magnify), "thrust"))
+    updates.append(forces_on(ax, response, bodies.of_case(response.case), "thrust"))
     section.together(updates)(0)
     for artist in ax.get_children():
         artist.set_animated(False)

@@ -112,8 +112,8 @@ def of_results(responses: Sequence[Response], names: Sequence[str]) -> TableRows
     """Outcome, peak and impacts of each response."""
     rows: TableRows = []
     for response, name in zip(responses, names, strict=True):
-        over, height = response.peak_over_alpha, 2 * response.case.block.h
-        top = "-" if over == float("inf") else f"{1e3 * over * response.case.wall.alpha * height:.0f} mm"
+        over, case = response.peak_over_alpha, response.of_wall[0]
+        top = "-" if over == float("inf") else f"{1e3 * over * case.wall.alpha * 2 * case.block.h:.0f} mm"
         peak = "overturned" if over == float("inf") else f"{over:.3f}"
         share = "-" if over == float("inf") else f"{response.peak_over_overturning:.3f}"
         rows.append((name, response.outcome.value, peak, share, top, str(len(response.impacts))))
@@ -236,7 +236,7 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
         said.append("There is no ground motion: this is the motion after a release.")
     for response, name in zip(responses, names, strict=True):
         if response.outcome is Outcome.TIME_ENDED:
-            share = abs(float(response.theta[-1])) / float(response.case.wall.alpha)
+            share = abs(float(response.theta[-1])) / float(case.wall.alpha)
             said.append(f"{name}: the wall still moves at the end of the run, at {share:.3g} alpha.")
         for tie, drawn in response.plastic.items():
             effect = response.case.links[tie]
