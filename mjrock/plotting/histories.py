@@ -99,12 +99,11 @@ def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
 
     The base is the ground or a floor.
     """
-    moved = [(getattr(case, name, None), *look) for name, look in GROUNDS.items()]
-    for motion, label, color in moved:
-        if motion is not None:
+    for name, (label, color) in GROUNDS.items():
+        if (motion := case.grounds.get(name)) is not None:
             t = np.append(motion.dt * np.arange(len(motion.accel)), [motion.duration, max(until, motion.duration)])
             ax.plot(t, np.append(motion.accel, [0.0, 0.0]), color=color, linewidth=0.8, label=label)
-    if sum(motion is not None for motion, *_ in moved) > 1 or case.vertical is not None:
+    if len(case.grounds) > 1 or case.vertical is not None:
         ax.legend(frameon=False, fontsize=7, loc="upper right", ncols=2)
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set(xlabel=TIME, ylabel="base [m/s²]")
@@ -194,7 +193,7 @@ def history(
     names = required_labels(given, labels)
     case, until = given[0].case, max(float(response.t[-1]) for response in given)
     tied = any(response.ties for response in given)
-    shaken = any(getattr(case, name, None) is not None for name in GROUNDS)
+    shaken = bool(case.grounds)
     heights = [1.0] * shaken + [2.0] + [1.2] * tied
     figure = Figure(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
@@ -214,7 +213,7 @@ def history(
 
 def same_ground(left: Response, right: Response) -> bool:
     """Whether two responses are those to the same ground motions."""
-    return all(getattr(left.case, name, None) == getattr(right.case, name, None) for name in GROUNDS)
+    return left.case.grounds == right.case.grounds
 
 
 def reversed_ground(left: Response, right: Response) -> bool:
@@ -222,7 +221,7 @@ def reversed_ground(left: Response, right: Response) -> bool:
     one, other = (response.case for response in (left, right))
     if one.motion is None or other.motion != one.motion.reversed():
         return False
-    return all(getattr(one, name, None) == getattr(other, name, None) for name in ("transverse", "vertical"))
+    return one.transverse == other.transverse and one.vertical == other.vertical
 
 
 def required_labels(responses: Sequence[Response], labels: object) -> list[str] | None:

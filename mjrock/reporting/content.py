@@ -98,10 +98,9 @@ def of_contacts(e: Restitution | None, contacts: Contacts | None) -> TableRows:
 def of_motions(responses: Sequence[Response]) -> TableRows:
     """The ground motions of the responses, each once."""
     rows: TableRows = []
-    for case in (response.case for response in responses):
+    for grounds in (response.case.grounds for response in responses):
         for direction, name in (("horizontal", "motion"), ("transverse", "transverse"), ("vertical", "vertical")):
-            motion = getattr(case, name, None)
-            if motion is not None:
+            if (motion := grounds.get(name)) is not None:
                 peak = float(abs(motion.accel).max())
                 said = f"{peak:.4g} m/s² = {peak / GRAVITY:.3g} g, {motion.duration:.4g} s, step {motion.dt:.4g} s"
                 rows.append((direction, motion.name, said))

@@ -332,9 +332,8 @@ class Response:
             of = f" of {body}" if self.rocking is None else ""
             for j, (name, unit) in enumerate(coordinates):
                 columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
-        for field_name, name in (("motion", "horizontal"), ("vertical", "vertical"), ("transverse", "transverse")):
-            if (motion := getattr(self.case, field_name)) is not None:
-                columns[f"ground {name} [m/s2]"] = motion(self.t)
+        for name, motion in self.case.grounds.items():
+            columns[f"ground {'horizontal' if name == 'motion' else name} [m/s2]"] = motion(self.t)
         columns |= {f"force of {name} [N]": force for name, force in self.actuators.items()}
         if self.ledger is not None:
             columns |= self.ledger.columns()

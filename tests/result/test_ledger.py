@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result import problem
 from mjrock.geometry.kinematics import gaps
+from mjrock.result import problem
 from mjrock.result.ledger import StepError, require_no_gain
 from scripts.shared.paper import FIGURE_3, K_N
 

@@ -180,6 +180,11 @@ class MasonryCase(Carrying):
         """Raise a ValueError that says what takes dry joints, where some have a bond."""
         self.masonry.require_dry(what)
 
+    def require_own_joints(self, *given: object) -> None:
+        """Raise a ValueError where restitution or contacts are given beside the case, which has its own."""
+        if any(one is not None for one in given):
+            raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
+
     @property
     def in_space(self) -> bool:
         """Whether the blocks are in space."""

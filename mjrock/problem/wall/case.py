@@ -261,6 +261,9 @@ class Case(Carrying):
     def require_dry(self, what: str) -> None:
         """Raise a ValueError where joints have a bond, which those of a wall have not."""
 
+    def require_own_joints(self, *given: object) -> None:
+        """Raise a ValueError where joints have what is given beside the case, which those of a wall have not."""
+
     @property
     def lopsided(self) -> bool:
         """Whether the wall rocks to both sides, and not alike."""
