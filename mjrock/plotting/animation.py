@@ -20,15 +20,14 @@ from PIL import Image
 from tqdm import tqdm
 
 from ..files import replacing
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
 from .bodies import Bodies
+from .filmed import filmed
 from .forces import forces_on, require_shown
-from .histories import acceleration, rotation, ties
-from .perspective import fill, solids, ties_in_view
-from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
+from .perspective import fill, solids
+from .section import Update, blocks, frame_view, together
 from .solids import Solids
 from .style import Drawing, titled
 
@@ -164,13 +163,7 @@ def animate(
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     else:
         bodies = Bodies.of(response, magnify, limits)
-    histories: list[Drawing] = []
-    if isinstance(case := response.case, Case):
-        if case.shaken:
-            histories.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
-        histories.append(lambda ax: rotation(ax, [response]))
-        if response.ties:
-            histories.append(lambda ax: ties(ax, [response]))
+    case, histories = response.case, filmed(response.case).beside(response)
     pressed = None
     if forces is not None:
         require_shown("forces", forces, response)
@@ -206,7 +199,7 @@ def _film(
     bodies: Bodies | Solids,
     path: str | Path,
     histories: Sequence[Drawing],
-    case: Case | MasonryCase | None,
+    case: AnyCase | None,
     *,
     speed: float,
     fps: float,
@@ -265,7 +258,7 @@ def frame_times(t: Array, step: float) -> Array:
 def scene(
     bodies: Bodies | Solids,
     histories: Sequence[Drawing],
-    case: Case | MasonryCase | None,
+    case: AnyCase | None,
     *,
     speed: float = 1.0,
     title: str = "",
@@ -314,19 +307,14 @@ def scene(
     return figure, update
 
 
-def _standing(ax: Axes, bodies: Bodies | Solids, case: Case | MasonryCase | None) -> list[Update]:
+def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None) -> list[Update]:
     """Draw bodies and what they meet."""
-    if isinstance(bodies, Solids):
-        assert isinstance(case, MasonryCase)
-        return [solids(ax, bodies), ties_in_view(ax, case, bodies)]
-    updates = [blocks(ax, bodies)]
-    if isinstance(case, Case):
-        updates.append(surroundings(ax, case, bodies))
-    else:
+    updates = [blocks(ax, bodies) if isinstance(bodies, Bodies) else solids(ax, bodies)]
+    if case is not None:
+        updates.append(filmed(case).around(ax, bodies))
+    elif isinstance(bodies, Bodies):
         frame_view(ax, bodies)
-        if case is not None:
-            updates.append(ties_of_masonry(ax, case, bodies))
-    if bodies.limits is not None:
+    if isinstance(bodies, Bodies) and bodies.limits is not None:
         ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
     return updates
 

@@ -183,7 +183,7 @@ def history(
     if not given:
         raise ValueError("responses is empty; at least one response is needed")
     for i, response in enumerate(given):
-        if isinstance(response.case, Case) != isinstance(given[0].case, Case):
+        if type(response.case) is not type(given[0].case):
             raise ValueError(f"responses[{i}] and responses[0] are one of a wall and one of masonry; draw each alone")
         if not same_ground(given[0], response) and not reversed_ground(given[0], response):
             raise ValueError(
@@ -199,7 +199,7 @@ def history(
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
     if shaken:
         acceleration(axes[0], case, until)
-    (rotation if isinstance(case, Case) else displacement)(axes[int(shaken)], given, names)
+    (rotation if given[0].joints is None else displacement)(axes[int(shaken)], given, names)
     if tied:
         ties(axes[-1], given, names)
     for ax in axes[:-1]:

@@ -39,15 +39,16 @@ def test_blocks_are_drawn_where_a_pose_has_brought_them():
     pose = REST.copy()
     pose[0] = [3.0, 1.0, 0.5, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0]
     solids = Solids(MASONRY, np.zeros(1), pose[None], 2.0)
-    at_rest = np.array([1.0, 0.5, 1.0])
+    at_rest, moving = np.array([1.0, 0.5, 1.0]), solids.of_case(mr.MasonryCase(MASONRY, 1.0))
+    drawn = moving.placed(1, at_rest[None])[0, 0]
     np.testing.assert_allclose(
-        solids.displaced(0, 1, at_rest),
+        drawn,
         at_rest + 2 * np.array([3.0, 1.0, 0.5]) + 2 * np.array([0, -1.0, 0]),
         atol=1e-12,
     )
     corners = solids.corners(0)[solids.facets.body == 0].reshape(-1, 3)
-    assert np.abs(corners - solids.displaced(0, 1, at_rest)).sum(axis=1).min() < 1e-12
-    np.testing.assert_array_equal(solids.displaced(0, None, at_rest), at_rest)
+    assert np.abs(corners - drawn).sum(axis=1).min() < 1e-12
+    np.testing.assert_array_equal(moving.placed(None, at_rest[None])[0, 0], at_rest)
 
 
 def test_a_picture_has_the_faces_that_are_seen_and_the_same_scale_along_every_axis():

@@ -180,6 +180,16 @@ class MasonryCase(Carrying):
         """Raise a ValueError that says what takes dry joints, where some have a bond."""
         self.masonry.require_dry(what)
 
+    @property
+    def built(self) -> Masonry:
+        """What stands: the masonry without its effects."""
+        return self.masonry
+
+    @property
+    def said(self) -> str:
+        """The same in words."""
+        return "masonry"
+
     def require_own_joints(self, *given: object) -> None:
         """Raise a ValueError where restitution or contacts are given beside the case, which has its own."""
         if any(one is not None for one in given):

@@ -261,6 +261,16 @@ class Case(Carrying):
     def require_dry(self, what: str) -> None:
         """Raise a ValueError where joints have a bond, which those of a wall have not."""
 
+    @property
+    def built(self) -> Block:
+        """What stands: the wall without its effects."""
+        return self.block
+
+    @property
+    def said(self) -> str:
+        """The same in words."""
+        return repr(self.block)
+
     def require_own_joints(self, *given: object) -> None:
         """Raise a ValueError where joints have what is given beside the case, which those of a wall have not."""
 
