@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ..geometry.poses import angle_of, tilt_of
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.standing import in_space
-from ..quantities import Array, require_path
+from ..quantities import Array, require_path, require_within
 from .bodies import Moving, bodies_of, frames_at, openings
 from .compas import results_text
 from .ending import Outcome
@@ -25,7 +25,7 @@ from .gltf import write_gltf
 from .joints import JointMotion
 from .ledger import Ledger
 from .motion import Motion
-from .rocking import Impact, Rocking, displacement_at, farthest, restitution_of
+from .rocking import Impact, Rocking, farthest, restitution_of
 from .samples import sample_at
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
@@ -189,19 +189,18 @@ class Response:
         Raises:
             AttributeError: for masonry.
         """
-        if self.rocking is None or not isinstance(self.case, Case):
+        if self.rocking is None:
             raise AttributeError(
                 "a response of masonry has opening, sliding and fallen of its joints; impacts, peaks and restitution "
                 "are those of one wall"
             )
-        return self.case, self.rocking
+        return cast(Case, self.case), self.rocking
 
     @property
     def of_masonry(self) -> MasonryCase:
         """The case of masonry; an AttributeError says that a wall has no joints."""
         _ = self.of_joints
-        assert isinstance(self.case, MasonryCase)
-        return self.case
+        return cast(MasonryCase, self.case)
 
     @property
     def of_joints(self) -> JointMotion:
@@ -226,7 +225,9 @@ class Response:
 
     def displacement(self, z: float) -> Array:
         """Horizontal displacement of the middle of a wall at the height z, from rest, seen from the base [m], (n,)."""
-        return displacement_at(self.of_wall[0], self.pose[:, 0], z)
+        height = 2 * self.of_wall[0].wall.h * (1 + 1e-12)
+        point = np.array([[0.0, require_within("height z", z, 0.0, height, "m")]])
+        return Moving(self.case, self.t, self.pose).displaced(0, point)[:, 0, 0]
 
     @property
     def opening(self) -> Array:

@@ -88,6 +88,17 @@ def test_functions_are_short(path):
             assert not numerics or len(arguments) <= MOST_ARGUMENTS, f"{node.name} takes {len(arguments)} arguments"
 
 
+def test_few_ask_whether_a_case_is_of_a_wall_or_of_masonry():
+    """A case answers for itself. It is asked which it is at the doors alone, where a class for it is chosen."""
+    kinds, doors = {"Case", "MasonryCase", "Masonry"}, []
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text())):
+            asks = isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("isinstance", "issubclass")
+            if asks and {one.id for one in ast.walk(node.args[1]) if isinstance(one, ast.Name)} & kinds:
+                doors.append(f"{path.relative_to(ROOT)}:{node.lineno}")
+    assert 1 < len(doors) <= 8, doors
+
+
 def test_no_name_stands_twice_in_the_explicit_steps():
     """There is one text for the plane and for space."""
     modules = [path for path in MODULES if path.relative_to(ROOT).parts[0] == "distinct"]
