@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import Protocol
 
 import numpy as np
 
 from ..geometry.frames import PLANE
-from ..quantities import Array
+from ..problem.masonry.case import AnyCase
+from ..problem.masonry.masonry import Masonry
 from ..scene.explicit_step import SHARE, stable_step, stepping_seconds
 from ..scene.scene import Scene
 
@@ -32,19 +32,7 @@ WORTH_SAYING = 3.0
 """How many times faster explicit steps must be than the middle of what fitted steps may take to be spoken of [-]."""
 
 
-class Jointed(Protocol):
-    """Masonry or a case of it, or of a wall, which has no such joints."""
-
-    @property
-    def joint_stiffness(self) -> Array:
-        """Along the normal [N/m3], shape (joints,)."""
-
-    @property
-    def joint_shear(self) -> Array:
-        """Along the face [N/m3], shape (joints,)."""
-
-
-def explicit_seconds(scene: Scene, masonry: Jointed) -> float:
+def explicit_seconds(scene: Scene, masonry: Masonry | AnyCase) -> float:
     """Time of a second by explicit steps [s], from the highest frequency and the strongest dashpot."""
     ratio, contacts = masonry.joint_shear / masonry.joint_stiffness, scene.contacts
     sprung = bool(np.isfinite(ratio).any())
@@ -69,7 +57,7 @@ def interpreted_seconds(scene: Scene, duration: float, timestep: float | None) -
     return INTERPRETED * duration * math.sqrt(weak * strong)
 
 
-def warn_if_slow(scene: Scene, masonry: Jointed) -> None:
+def warn_if_slow(scene: Scene, masonry: Masonry | AnyCase) -> None:
     """Warn of masonry of many blocks that explicit steps would follow in a fraction of the time."""
     blocks = len(scene.bodies.names)
     if blocks <= FEW:

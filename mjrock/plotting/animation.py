@@ -22,6 +22,7 @@ from tqdm import tqdm
 from ..files import replacing
 from ..problem.masonry.case import AnyCase
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
+from ..result.bodies import Moving
 from ..result.response import Response
 from .bodies import Bodies
 from .filmed import filmed
@@ -279,7 +280,8 @@ def scene(
     ax: Axes = (figure if halves is None else halves[0]).subplots(subplot_kw=depth)
     updates = _standing(ax, bodies, case)
     if pressed is not None:
-        updates.append(forces_on(ax, pressed[0], bodies.of_case(pressed[0].case), pressed[1]))
+        moving = Moving(pressed[0].case, bodies.t, bodies.poses, bodies.magnify)
+        updates.append(forces_on(ax, pressed[0], moving, pressed[1]))
     scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
     clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)

@@ -59,7 +59,7 @@ class FilmedMasonry(Filmed):
     def around(self, ax: Axes, bodies: Bodies | Solids) -> Update:
         """Its ties."""
         if isinstance(bodies, Solids):
-            return ties_in_view(ax, self.case, bodies)
+            return ties_in_view(ax, bodies)
         frame_view(ax, bodies)
         return ties_of_masonry(ax, self.case, bodies)
 

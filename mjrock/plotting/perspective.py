@@ -15,7 +15,6 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-u
 from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
 from ..geometry import convex
-from ..problem.masonry.case import MasonryCase
 from ..quantities import Array
 from .section import Update, pulling
 from .solids import Solids
@@ -105,12 +104,12 @@ def fill(ax: Axes, box: Any) -> None:
     space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((room / spans).min()))
 
 
-def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
+def ties_in_view(ax: Axes, bodies: Solids) -> Update:
     """Links of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
     gone once it broke."""
-    space, moves, moving = in_three(ax), [], bodies.of_case(case)
-    for link in case.links.values():
-        held = case.held_by(link)
+    space, moves, moving = in_three(ax), [], bodies.moving
+    for link in bodies.case.links.values():
+        held = bodies.case.held_by(link)
         ends = [(held, link.block), (link.anchor_of(held), link.anchor_block)]
         drawn = [moving.placed(block, point[None])[:, 0] for point, block in ends]
         (line,) = space.plot([], [], [], color=link.colour, linewidth=1.8, zorder=4, animated=True)

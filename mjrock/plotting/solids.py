@@ -13,12 +13,9 @@ from numpy.typing import ArrayLike
 
 from ..geometry.frames import SPACE
 from ..geometry.poses import displaced, rotations
-from ..problem.masonry.case import AnyCase
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.compound import Compound, SolidBlock
-from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.support import Support
-from ..problem.wall.effect import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.bodies import Moving
 from ..result.response import Response
@@ -44,27 +41,23 @@ class Solids:
     """Masonry in space and its motion.
 
     Args:
-        masonry: the blocks.
+        case: of the masonry, for its blocks, the masses that are added to them, and its supports.
         t: times [s], shape (n,), increasing.
         poses: displacement of each centroid from rest [m] and unit quaternion, w first, of each block that is not
             fixed, shape (n, bodies, 7).
         magnify: factor on the displacement of every point [-], 0 to 1e6; 1 is true to scale.
         camera: elevation and azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360; None is (18, 35).
-        effects: of the case. The pose of a block with added masses is that of their common centroid.
-        supports: fixed blocks that are moved.
         limits: lowest and highest x, y and z of the picture [m], three pairs; None shows the blocks, see `extent`.
 
     Raises:
         ValueError: for poses of another shape, or a value outside its range.
     """
 
-    masonry: Masonry
+    case: MasonryCase
     t: Array
     poses: Array
     magnify: float = 1.0
     camera: Sequence[float] | None = None
-    effects: tuple[Effect, ...] = ()
-    supports: tuple[Support, ...] = ()
     limits: Array | None = None
 
     def __post_init__(self) -> None:
@@ -87,8 +80,17 @@ class Solids:
         limits: ArrayLike | None = None,
     ) -> Solids:
         """The blocks of a response in space."""
-        case = response.of_masonry
-        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects, case.supports, limits)  # type: ignore[arg-type]
+        return cls(response.of_masonry, response.t, response.pose, magnify, camera, limits)  # type: ignore[arg-type]
+
+    @property
+    def masonry(self) -> Masonry:
+        """The blocks."""
+        return self.case.masonry
+
+    @property
+    def moving(self) -> Moving:
+        """Where the bodies are drawn."""
+        return Moving(self.case, self.t, self.poses, self.magnify)
 
     def at(self, times: Array) -> Solids:
         """The same blocks at other times, their poses interpolated linearly."""
@@ -118,7 +120,7 @@ class Solids:
         blocks = self.masonry.blocks
         lowest = min(float(blocks[i].corners[:, 2].min()) for i in self.masonry.free) + 1e-3
         below = [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
-        moved = {support.block for support in self.supports}
+        moved = {support.block for support in self.case.supports}
         return [low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)]
 
     @property
@@ -130,7 +132,7 @@ class Solids:
     @cached_property
     def rests(self) -> Array:
         """Centroid of each block that is shown, with its added masses, at rest [m], shape (shown, 3)."""
-        return laden(self.masonry, self.effects)[1][list(self.shown)]
+        return self.case.centroids[list(self.shown)]
 
     @cached_property
     def facets(self) -> Facets:
@@ -145,10 +147,6 @@ class Solids:
         for row, face in zip(corners, about, strict=True):
             row[: len(face)], row[len(face) :] = face, face[-1]
         return Facets(corners, body, part, counts)
-
-    def of_case(self, case: AnyCase) -> Moving:
-        """Where the bodies of the case are drawn."""
-        return Moving(case, self.t, self.poses, self.magnify)
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
@@ -228,9 +226,9 @@ class Solids:
         """Pose of each block that is shown at a frame, shape (shown, 7)."""
         poses = np.tile(np.eye(1, SPACE.nq, 3), (len(self.shown), 1))
         poses[np.isin(self.shown, self.masonry.free)] = self.poses[frame]
-        for support in self.supports:
-            body = self.shown.index(self.masonry.names.index(support.block))
-            poses[body, :3] = support.at(self.t[frame : frame + 1])
+        for body, support in enumerate(map(self.case.support_of, self.shown)):
+            if support is not None:
+                poses[body, :3] = support.at(self.t[frame : frame + 1])
         return poses
 
     def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
