@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..problem.masonry.joint_law import Law, stored_along
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
@@ -44,6 +45,7 @@ from .pair_law import SHARED, PairLaw, least_among, pair_number
 from .rows import chosen, joined, rows, unsound
 from .softening import Sides, shares_within
 from .solids import Poses
+from .supports import surges
 from .system import Books, System
 
 STAYED = 2e-4
@@ -111,14 +113,15 @@ class Encounters:
         self.longest = longest_step_of_loose(masonry, self.law, system)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
-        left = np.full(len(self.law.jointed), np.inf)
-        np.minimum.at(left, of, _serving(masonry))
+        left, rolled = np.full((2, len(self.law.jointed)), np.inf)
+        np.minimum.at(left, of, LEFT * np.array([joint.width for joint in masonry.joints]))
+        np.minimum.at(rolled, of, _rolled(masonry))
         self.jointed = _jointed(masonry, self.finder, of)
         self.finder.jointed = np.unique(self.jointed[1])
         self.kind, start = system.lines.dtype, self.motion(system).poses
         look = longest_time(self.sizes[self.blocks.free])
         self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
-        self.wear = Wear(of[joint], np.zeros(len(left)), np.zeros(len(left)), left)
+        self.wear = Wear.unworn(of[joint], left, rolled)
         self.met = self._nothing_met()
 
     def begun(self, supports: tuple[str, ...]) -> Encounters:
@@ -130,7 +133,7 @@ class Encounters:
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
         fresh.finder, wear = self.finder.apart(), self.wear
-        fresh.wear, fresh.met = wear._replace(slip=wear.slip.copy(), gap=wear.gap.copy()), self._nothing_met()
+        fresh.wear, fresh.met = Wear.unworn(wear.pairs, wear.left, wear.rolled), self._nothing_met()
         return fresh
 
     def _nothing_met(self) -> Met:
@@ -160,12 +163,13 @@ class Encounters:
         take_motion(system, self.blocks, motion)
         return motion
 
-    def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, int]:
-        """The system with the lines of the encounters that may happen until the next look, its books with room for
-        them, and the steps until then. With steps of h [s] they are stable."""
+    def look_on(self, system: System, books: Books, t: float, h: float) -> tuple[System, Books, int]:
+        """The system at a time [s] with the lines of the encounters that may happen until the next look, its books with
+        room for them, and the steps until then. With steps of h [s] they are stable."""
         met, seen = self.met, self.met.seen
         worn, left = self._worn(system)
         motion = self.motion(system)
+        self._add_surges(motion, system, t, t + h + self.reach.look)
         if watch(motion, self.sizes, self.reach, seen, left, met.since):
             met.handed = met.handed | worn
             stays = self._moves_of(met.pair) == met.found
@@ -183,13 +187,21 @@ class Encounters:
         met.since = steps * h
         return system, books, steps
 
+    def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
+        """Add to the speeds of what is driven, a fixed block or one at a link, by how much they change until a time."""
+        moves = np.flatnonzero(self.blocks.support >= 0)
+        motion.about[moves] += surges(system.supports, t, until)[self.blocks.support[moves]]
+        for table in system.links:
+            bodies, changes = table.surges(t, until)
+            np.add.at(motion.about, self.blocks.free[bodies], changes)
+
     def _worn(self, system: System) -> tuple[Flags, Flags]:
         """Which pairs of blocks have left their joints since the last look, shape (p,), and which blocks have left one,
         shape (blocks,)."""
         met, wear = self.met, self.wear
         worn, left = np.zeros(len(met.handed), dtype=bool), np.zeros(self.count, dtype=bool)
         if wears(system, wear):
-            worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
+            worn = wear.leave() & ~met.handed
             if len(system.bonds):
                 worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
             left[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
@@ -243,7 +255,8 @@ class Encounters:
         system = system._replace(lines=lines).with_ways()
         given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
         books.totals[0].friction -= given
-        books.ends[1] += before + given - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        now = held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        books.totals[0].encounter_ends += before + given - now
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:
@@ -263,24 +276,21 @@ def in_shear(system: System) -> float:
     energy = 0.0
     for table in (system.lines, system.bonds):
         sprung = np.asarray(table)[np.isfinite(table["k_s"])]
-        energy += 0.5 * float((sprung["k_s"] * (sprung["grip"].T ** 2).sum(axis=0)).sum())
+        energy += float(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0)).sum())
     return energy
 
 
-def _serving(masonry: Masonry) -> Array:
-    """Opening of the whole or slip of a part up to which each joint serves [m], shape (joints,).
-
-    Where a joint turns about its end, the other end slips by 1 less the cosine of the turn, times the width.
-    """
+def _rolled(masonry: Masonry) -> Array:
+    """1 less the cosine of the angle of its faces up to which each joint serves [-], shape (joints,)."""
     normals = [np.array([side.normal for side in block.sides]) for block in masonry.blocks]
-    serving = np.empty(len(masonry.joints))
+    rolled = np.empty(len(masonry.joints))
     for i, joint in enumerate(masonry.joints):
         cosine = -1.0
         for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
             beside = normals[block] @ normals[block][side]
             cosine = max(cosine, float(beside[beside < FLUSH].max(initial=-1.0)))
-        serving[i] = min(LEFT, 1 - math.cos(ROLLED * math.acos(cosine))) * joint.width
-    return serving
+        rolled[i] = 1 - math.cos(ROLLED * math.acos(cosine))
+    return rolled
 
 
 def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:

@@ -41,6 +41,12 @@ Faces of two blocks that are nearly flush differ by the cosine of their angle, s
 LEAD = 1e-6
 """By how much the other block may be less outside of a face, over how much longer its outline is than that of another
 face, for it to be taken [-]. The corners of the smaller one then lie over it."""
+HAIR = 1e-9
+"""How much farther, over its outline, a block must be outside of the face of the second block of a pair for this one to
+be taken [-]. So rounding does not decide between two that are equal."""
+ALIKE = 1e-6
+"""Relative difference up to which blocks are as large, and difference of heights over the smallest size up to which
+they are as high [-]."""
 OF_EDGES = 0.25
 """Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
 NONE = np.zeros(0, dtype=np.int64)
@@ -81,6 +87,8 @@ class Near(NamedTuple):
         axis: its number.
         reach: of each solid [m], shape (solids,).
         watched, fixed: shape (solids,). One of two solids is watched, and one is free.
+        rank: of the block of each solid, shape (solids,). Of two with equal faces, or whose edges cross, the first has
+            the normal.
         skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
         jointed: numbers of pairs of solids that had a joint, increasing.
         cells: of the grid of a joint, along x and z and along y.
@@ -93,6 +101,7 @@ class Near(NamedTuple):
     reach: Array
     watched: Flags
     fixed: Flags
+    rank: Integers
     skipped: Integers
     jointed: Integers = NONE
     cells: tuple[int, int] = (1, 1)
@@ -118,6 +127,7 @@ class Finder:
         centroids = (np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)[self.owner]
         solids = solids_of(blocks, self._half)
         self.volumes = np.bincount(self.owner, weights=[solid.volume for solid in solids])
+        self._rank = ranked([block.fixed for block in blocks], self.volumes, drawn[:, -1], self._half)
         inside = [flags for block in blocks for flags in inside_of(block)]
         self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
         most = int(np.diff(self.solids.first).max())
@@ -143,14 +153,22 @@ class Finder:
         low, high = low - reach[:, None], high + reach[:, None]
         axis = int(np.ptp(low, axis=0).argmax())
         order, pairs = np.argsort(low[:, axis]), (skipped, self.jointed)
-        near = Near(low, high, order, axis, reach, watched, self._fixed, *pairs, self._cells)
+        near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs, self._cells)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = np.empty((2 * count, 11))
-        table = self._table[:count]
+        table = self._in_order(self._table[:count])
         face, other = table[:, :2].astype(np.int64).T
         found = Found(face, other, *(table[:, part].copy() for part in (slice(2, 5), slice(5, 8), 8, 9, 10)))
         found = self._of_the_plane(found) if self.flat else found
         return found if self.number.max() == 1 else self._among_blocks(found)
+
+    def _in_order(self, table: Array) -> Array:
+        """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
+        in rank, those of a pair together."""
+        one, other = table[:, :2].astype(np.int64).T
+        ranks = (self._rank[self.owner[solid]] for solid in (one, other))
+        pairs = pair_number(*ranks, len(self.number)), pair_number(one, other, len(self.owner))
+        return np.asarray(table[np.lexsort(pairs[::-1])])
 
     def between(self, a: Integers, b: Integers) -> Integers:
         """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
@@ -182,7 +200,7 @@ class Finder:
         over = found.area > 0
         share = found.share * np.where(over, found.area / np.where(over, in_pair, 1.0), 1.0)
         area = np.where(over, in_pair, 0.0)
-        return found._replace(share=share, area=area).only(np.argsort(blocks, kind="stable"))
+        return found._replace(share=share, area=area)
 
     def _of_the_plane(self, found: Found) -> Found:
         """The places at one end of the prisms."""
@@ -191,6 +209,28 @@ class Finder:
         return kept._replace(
             place=kept.place[:, ::2], normal=normal, share=2 * kept.share, area=kept.area / (2 * self._half)
         )
+
+
+def ranked(fixed: Sequence[bool], volumes: Array, heights: Array, size: float) -> Integers:
+    """The rank of each block: fixed ones first, then the largest and then the lowest ones, whatever their numbers are
+    and whichever side is left. Only of those that are alike in all of these the first one in the drawing comes first.
+
+    Args:
+        fixed, volumes, heights: of the blocks, fixed or not, volume [m3] and height of the centroid [m], shape (n,).
+        size: of the smallest [m].
+    """
+    keys = steps_of(heights / size), steps_of(-np.log(volumes)), ~np.array(fixed)
+    rank = np.empty(len(fixed), dtype=np.int64)
+    rank[np.lexsort(keys)] = np.arange(len(fixed))
+    return rank
+
+
+def steps_of(values: Array) -> Integers:
+    """Values in steps: those that are alike have the same number, shape of the values."""
+    order = np.argsort(values, kind="stable")
+    steps = np.empty(len(values), dtype=np.int64)
+    steps[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > ALIKE)
+    return steps
 
 
 @inlined
@@ -225,7 +265,8 @@ def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
                 continue
             if solids.owner[a] == solids.owner[b]:
                 continue
-            pair, number = (min(a, b), max(a, b)), min(a, b) * blocks + max(a, b)
+            pair = (a, b) if near.rank[a] < near.rank[b] else (b, a)
+            number = min(a, b) * blocks + max(a, b)
             if are_apart(near, a, b) or among(near.skipped, number):
                 continue
             cells = near.cells if among(near.jointed, number) else (1, 1)
@@ -263,7 +304,8 @@ def find_pair(
     if count + len(room) > len(table):
         return count + len(room)
     least = best - SOUGHT * min(solids.extent[face], solids.extent[other_face])
-    if other_apart + LEAD * (solids.extent[other_face] - solids.extent[face]) > apart:
+    longer = solids.extent[other_face] - solids.extent[face]
+    if other_apart + LEAD * longer - HAIR * solids.extent[face] > apart:
         face, blocks = other_face, (b, a)
     if best < 0:
         face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)

@@ -17,7 +17,7 @@ from .finder import Found
 from .handover import Blocks
 from .solids import Poses
 from .system import System
-from .turning import rotation_change, take_inverse_inertia, take_turn
+from .turning import in_world, rotation_change, take_inverse_inertia, take_turn
 
 LOOK = 0.03
 """Longest time between two looks, over the time in which a block falls by half its size [-]: 5 ms for one of 0.27 m,
@@ -44,7 +44,8 @@ class Motion(NamedTuple):
     Args:
         poses: where they are.
         velocity: of their centroids [m/s], shape (blocks, d).
-        about: the largest velocity of a corner about the centroid of its block [m/s], shape (blocks,).
+        about: the largest velocity of a corner about the centroid of its block, and by how much that of a block that is
+            driven changes until the next look, see `surges` [m/s], shape (blocks,).
     """
 
     poses: Poses
@@ -102,13 +103,26 @@ class Wear(NamedTuple):
     Args:
         pairs: number of the pair of blocks of each line of a joint, shape (m,).
         slip, gap: largest way along the joints of each pair, and least opening [m], shape (pairs,).
+        tilt: 1 less the cosine of the angle of its faces [-], shape (pairs,).
         left: slip or gap from which on a pair has left its joints [m], shape (pairs,).
+        rolled: tilt from which on it has left them [-], shape (pairs,).
     """
 
     pairs: Integers
     slip: Array
     gap: Array
+    tilt: Array
     left: Array
+    rolled: Array
+
+    @classmethod
+    def unworn(cls, pairs: Integers, left: Array, rolled: Array) -> Wear:
+        """Of joints that are as drawn."""
+        return cls(pairs, np.zeros(len(left)), np.zeros(len(left)), np.zeros(len(left)), left, rolled)
+
+    def leave(self) -> Flags:
+        """Which pairs have left their joints, shape (pairs,)."""
+        return np.asarray((np.maximum(self.slip, self.gap) > self.left) | (self.tilt > self.rolled))
 
 
 @compiled_at_once
@@ -123,8 +137,8 @@ def write_motion(system: System, blocks: Blocks, motion: Motion, axes: tuple[int
     poses, supports = motion.poses, system.supports
     for b in range(len(blocks.free)):
         body, block = system.bodies[b], blocks.free[b]
-        take_turn(body, axes)
-        take_inverse_inertia(body, axes)
+        take_turn(body)
+        take_inverse_inertia(body)
         for i in range(len(axes)):
             put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, axes)))
         spin = spin_components(body.spin, axes)
@@ -261,22 +275,23 @@ def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags, lo
 
 @compiled_at_once
 def wears(system: System, wear: Wear) -> bool:
-    """Bring slip and gap of joints up to date. Returns whether a pair has left its joints."""
+    """Bring slip, gap and tilt of joints up to date. Returns whether a pair has left its joints."""
     return wears_joints(system, wear, system.axes)
 
 
 @inlined
 def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
     """`wears`, in the plane or in space."""
-    pairs, slip, gap = wear.pairs, wear.slip, wear.gap
+    pairs, slip, gap, tilt = wear.pairs, wear.slip, wear.gap, wear.tilt
     for pair in range(len(slip)):
-        slip[pair], gap[pair] = 0.0, math.inf
+        slip[pair], gap[pair], tilt[pair] = 0.0, math.inf, 0.0
     for b in range(len(system.bodies)):
-        take_turn(system.bodies[b], axes)
+        take_turn(system.bodies[b])
     for p in range(len(pairs)):
         line = system.lines[p]
         body, at, normal = system.bodies[line.body], components(line.at, axes), components(line.normal, axes)
         across = plus(components(line.between, axes), plus(components(body.place, axes), rotation_change(body, at)))
+        own = in_world(body, normal)
         if line.face >= 0:
             face = system.bodies[line.face]
             change = rotation_change(face, components(line.origin, axes))
@@ -287,10 +302,11 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
         apart = dot(normal, across)
         slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
         gap[pairs[p]] = min(gap[pairs[p]], apart)
+        tilt[pairs[p]] = max(tilt[pairs[p]], 1 - dot(own, normal))
         line.widest = max(line.widest, apart)
     left = False
     for pair in range(len(slip)):
-        left = left or max(slip[pair], gap[pair]) > wear.left[pair]
+        left = left or max(slip[pair], gap[pair]) > wear.left[pair] or tilt[pair] > wear.rolled[pair]
     return left
 
 
@@ -306,7 +322,7 @@ def held_by_lines(system: System, which: Integers, depth: Array, axes: tuple[int
     energy = 0.0
     for i in range(len(which)):
         line = system.lines[which[i]]
-        gap = meeting(system, line, axes).gap
+        gap = meeting(system, line).gap
         depth[i] = max(-gap, 0.0)
         energy += stored(line, gap)
     return energy

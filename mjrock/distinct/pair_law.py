@@ -36,6 +36,9 @@ WHOLE = 0.1
 LEAST = 0.25
 """Part of what a loose block has over its largest face, or a pair over its joint, that a smaller area has too [-]."""
 
+ROUNDED = 1e-9
+"""Relative difference up to which what two blocks have is the same [-]."""
+
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
     """One number for two blocks."""
@@ -121,11 +124,13 @@ class PairLaw(NamedTuple):
         both, fixed = self.of_block[0][ends], self.fixed[ends]
         over = both[::-1, :, -1] / both[..., -1]
         both = both * np.where(fixed, over, 1.0)[..., None]
-        less, more = both[0] < both[1], both[0] > both[1]
+        less, more = both[0] < (1 - ROUNDED) * both[1], (1 - ROUNDED) * both[0] > both[1]
         unlike = (less | more).argmax(axis=1)  # of equal stiffness the one with less of the next column
         first = ~np.take_along_axis(more, unlike[:, None], axis=1)[:, 0]
         second = fixed[0] | (~fixed[1] & ~first)
         rules = np.where(second, self.loose[ends[1]], self.loose[ends[0]])
+        alike = ~fixed.any(axis=0) & ~(less | more).any(axis=1)
+        rules |= alike & self.loose[ends].any(axis=0)  # the loose one of two
         return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
 
 

@@ -169,6 +169,8 @@ def add_links(case: AnyCase, gathered: Gathered, reactions: dict[str, Array]) ->
     """Add what links do to the reactions of the blocks that they are anchored on, and to that of all anchors."""
     moving, blocks = Moving(case, gathered.t, gathered.pose), case.blocks
     for name, pulled in gathered.pulled.items():
+        if name not in case.links:
+            continue  # of a device that only explicit steps know
         link = case.links[name]
         if case.body_of(link.anchor_block) is not None:
             continue

@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.frames import PLANE, SPACE
 from ..problem.masonry.case import AnyCase
 from ..quantities import require_array, require_within, shown
-from .response import State
+from .response import End, State
 
 PARTS = ("pose", "velocity")
 UNIT = 1e-6
@@ -26,6 +26,8 @@ def required_start(start: object, case: AnyCase) -> State:
     """
     if any(link.law.yields for link in case.links.values()):
         raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
+    if isinstance(start, End):
+        start = tuple(start)
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
     bodies, freedom = len(case.bodies), SPACE if case.in_space else PLANE

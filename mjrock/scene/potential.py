@@ -231,7 +231,7 @@ def _slip_rates(places: Places, frames: Array, axes: tuple[int, ...], unit: Arra
             for j in range(nv if bodies[side] >= 0 else 0):
                 unit[nv * bodies[side] + j] = 1.0
                 if len(axes) == 2:
-                    rates[0, i, side, j] = along(places, i, frames, unit).rate
+                    rates[0, i, side, j] = along(places, i, frames, unit).bodies
                 else:
                     meets = where_friction_acts(places, meeting(places, i, frames))
                     velocity = over_face(places, i, meets, frames, unit)

@@ -46,7 +46,7 @@ def test_blocks_are_apart_along_an_axis(axis):
     for low, apart in ((0.9, False), (1.0, False), (1.1, True)):
         at = np.zeros(3)
         at[axis] = low
-        near = Near(np.array([np.zeros(3), at]), np.array([np.ones(3), at + 1]), *[None] * 6)
+        near = Near(np.array([np.zeros(3), at]), np.array([np.ones(3), at + 1]), *[None] * 7)
         assert bool(finder.are_apart(near, 0, 1)) is bool(finder.are_apart(near, 1, 0)) is apart
 
 
@@ -298,6 +298,49 @@ def test_of_faces_that_are_as_far_apart_the_larger_one_is_taken(monkeypatch):
         ((4.0, 7.0), -3.5e-6, one),
     ):
         assert decided(monkeypatch, (apart, apart + by), outlines=outlines) == (taken,)
+    for by in (1e-10, -1e-10):  # rounding decides nothing
+        assert decided(monkeypatch, (apart, apart + by), outlines=(4.0, 4.0)) == (one,)
+
+
+def test_fixed_blocks_come_first_then_the_largest_and_then_the_lowest():
+    fixed, volumes = [False, False, True, False, False, False], np.array([1.0, 1.0, 0.1, 2.0, 1.0, 1.0])
+    heights = np.array([0.5, 0.2, 5.0, 3.0, 0.2, 0.2])
+    expected = [5, 2, 0, 1, 3, 4]
+    assert finder.ranked(fixed, volumes, heights, 0.5).tolist() == expected
+    for seed in range(5):  # rounding decides nothing
+        off = 1e-12 * np.random.default_rng(seed).normal(size=(2, 6))
+        assert finder.ranked(fixed, volumes * (1 + off[0]), heights + off[1], 0.5).tolist() == expected
+
+
+def test_places_do_not_depend_on_the_numbers_of_blocks_nor_on_what_is_far_away():
+    """Boxes that are turned anyhow on a table, and two bars of which one lies on the other, edge on edge: pairs, their
+    order, and which has the normal."""
+    rng = np.random.default_rng(3)
+    table = mr.Polyhedron.box((3.0, 3.0, 0.2), (0.0, 0.0, -0.1), fixed=True, name="table")
+    boxes = []
+    for i, size in enumerate(rng.uniform(0.3, 0.6, 8)):
+        place = (0.4 * (i % 3) - 0.4, 0.4 * (i // 3) - 0.4, 0.3)
+        corners = moved(BOX((size, size, size)), place, Rotation.random(random_state=i)).corners
+        boxes.append(mr.Polyhedron(np.array(corners), name=f"box_{i}"))
+    for i, (way, high) in enumerate((("x", 5.0), ("y", 5.0 + 0.2 * math.sqrt(2) - 1e-3))):
+        lengths = (2.0, 0.2, 0.2) if way == "x" else (0.2, 2.0, 0.2)
+        corners = moved(BOX(lengths), (9.0, 0.0, high), Rotation.from_euler(way, 45, degrees=True)).corners
+        boxes.append(mr.Polyhedron(np.array(corners), name=f"bar_{i}"))
+    blocks, far = [table, *boxes], mr.Polyhedron.box((1.0, 1.0, 1.0), (0.0, 0.0, 90.0), fixed=True, name="far")
+
+    def among(chosen):
+        _, places = found(chosen, reach=0.01)
+        names = [chosen[i].name for i in places.face], [chosen[i].name for i in places.other]
+        return list(zip(*names, strict=True)), places
+
+    names, places = among(blocks)
+    assert [name for name, area in zip(names, places.area, strict=True) if area == 0] == [("bar_0", "bar_1")]
+    assert len(set(names)) > 8
+    for others in ([far, *blocks], blocks[::-1], [blocks[i] for i in (4, 2, 10, 8, 0, 6, 1, 9, 7, 3, 5)]):
+        again, where = among(others)
+        assert again == names
+        for name in ("place", "normal", "gap", "share", "area"):
+            np.testing.assert_array_equal(getattr(where, name), getattr(places, name))
 
 
 def test_faces_that_come_into_question_are_deeper_by_a_share_of_the_smaller_outline(monkeypatch):

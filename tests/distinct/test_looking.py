@@ -46,7 +46,8 @@ def worn(d, lines, left, faces=(0,)):
         put_line(whole.lines[i], d, whole, faces[i % len(faces)], gap, slip)
     whole.bodies["turn"] = 9.0
     pairs, count = np.array([pair for pair, _, _ in lines]), len(left)
-    return whole, Wear(pairs, np.full(count, 7.0), np.full(count, -7.0), np.array(left))
+    written = np.full(count, 7.0), np.full(count, -7.0), np.full(count, 7.0)
+    return whole, Wear(pairs, *written, np.array(left), np.full(count, 2.0))
 
 
 @BOTH
@@ -79,12 +80,25 @@ def test_a_pair_has_left_its_joints_where_it_has_slipped_or_opened_too_far(d, li
     assert bool(looking.wears_joints(whole, wear, whole.axes)) is expected
 
 
+@BOTH
+@pytest.mark.parametrize("face", [-1, 0])
+def test_a_pair_has_left_its_joints_where_their_faces_have_tilted_too_far(d, face):
+    """A turn about the normal does not tilt them."""
+    whole, wear = worn(d, [(0, -0.001, 0.0), (1, -0.001, 0.0)], [1.0, 1.0], (face,))
+    own, other = matrix(d, 1) @ NORMAL[d], (matrix(d, 0) if face == 0 else np.eye(d)) @ NORMAL[d]
+    for rolled, left in ((1.01, False), (0.99, True)):
+        wear.rolled[:] = 2.0, rolled * (1 - own @ other)
+        assert bool(looking.wears_joints(whole, wear, whole.axes)) is left
+        np.testing.assert_allclose(wear.tilt, 1 - own @ other, rtol=1e-9)
+        np.testing.assert_array_equal(wear.leave(), [False, left])
+
+
 def test_at_the_limit_a_pair_has_not_left():
     whole, wear = worn(2, [(0, 0.0, 0.0)], [0.0])
     whole.bodies["place"], whole.lines["between"], whole.lines["face"] = 0.0, 0.0, -1
     whole.bodies["angle"] = 0.0
     assert not looking.wears_joints(whole, wear, whole.axes)
-    assert (wear.slip[0], wear.gap[0]) == (0.0, 0.0)
+    assert (wear.slip[0], wear.gap[0], wear.tilt[0]) == (0.0, 0.0, 0.0)
     np.testing.assert_array_equal(whole.lines["widest"], 0.0)
 
 
@@ -282,7 +296,7 @@ def test_springs_hold_what_they_store(d):
     lines = [(0, -0.003, 0.02), (0, 0.002, 0.0), (0, -0.001, 0.0)]
     whole, _ = worn(d, lines, [1.0])
     for body in whole.bodies:
-        looking.take_turn(body, whole.axes)
+        looking.take_turn(body)
     whole.lines["k"] = [1e5, 2e5, 4e5]
     depth = np.full(2, 9.0)
     energy = looking.held_by_lines(whole, np.array([2, 1]), depth, whole.axes)

@@ -157,6 +157,21 @@ def test_a_loose_block_that_is_softer_rules_over_one_with_joints(low, high):
     assert float(given["friction"][0]) == 0.1  # the least of the joints of the other one
 
 
+@pytest.mark.parametrize("rounded", [-1e-12, 0.0, 1e-12])
+@pytest.mark.parametrize("loose", [0, 1, 2])
+def test_a_loose_block_rules_over_one_that_is_as_stiff_whichever_comes_first(loose, rounded):
+    """A joint over 0.5 m has 4 N/m, as the face of the loose block. Over half of it the pair has half of them."""
+    ends = [i for i in range(3) if i != loose]
+    sides = [block(0.5 * (1 + rounded), length=2.0) if i == loose else block(9.0, length=2.0) for i in range(3)]
+    found = pair_law.PairLaw.of_joints(
+        masonry(sides, [ends], [0.5], np.full(1, 0.9)), rows(kinds(2).line, 1, k=4.0, friction=0.6), np.zeros(1, int)
+    )
+    for other in ends:
+        low, high = sorted((loose, other))
+        given = found.of_places(np.array([3 * low + high]), np.ones(1), np.full(1, 0.25), 3)["k"]
+        assert given == pytest.approx(0.5 * 4.0)
+
+
 def test_half_of_many_joints_is_more_than_the_stiffest():
     given = masonry([block(1.0)] * 5, [(0, 1), (0, 2), (0, 3)], [0.5] * 3, np.full(3, 0.9))
     table = rows(kinds(2).line, 3, k=[4.0, 5.0, 6.0], friction=0.6)

@@ -86,7 +86,7 @@ def outer_forces(answer: mr.Response) -> np.ndarray:
 def joint_forces(answer: mr.Response) -> np.ndarray:
     """What the joints do to each body at all samples [N], shape (n, bodies, d)."""
     kept, d = answer.forces, 3 if answer.in_space else 2
-    axes = kept.frames.placed(answer.case, answer.t, answer.pose)[1]
+    axes = Moving(answer.case, answer.t, answer.pose).joints(kept.frames)[1]
     shear = kept.shear.reshape(*kept.normal.shape, d - 1)
     force = np.einsum("njk,njkd->njd", np.concatenate([kept.normal[..., None], shear], axis=2), axes)
     total = np.zeros((len(answer.t), len(masses(answer.case)), d))

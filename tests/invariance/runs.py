@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import mjrock as mr
+from mjrock.distinct.setup import setup_of_masonry
 from mjrock.geometry.poses import rotations
 
 from .quantities import QUANTITIES, Quantity, Scene, changed
@@ -147,6 +148,12 @@ def solve(scene: Scene, **options: Any) -> mr.Response:
         return mr.solve_analytical(case, mr.Restitution.from_geometry(case.wall, case.stop_top), **options)
     call = mr.simulate if scene["solver"] == "MuJoCo" else mr.solve_explicit
     return call(case, contacts, scene["timestep"], **options)
+
+
+def default_step(scene: Scene) -> float:
+    """The step that explicit steps take of themselves for masonry [s]."""
+    setup = setup_of_masonry(masonry_case(scene), None)
+    return setup.share * setup.limit
 
 
 class Motion(NamedTuple):

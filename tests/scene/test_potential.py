@@ -6,7 +6,9 @@ from scenes import changed, two_blocks, unbalanced
 
 import mjrock as mr
 from mjrock.geometry.frames import frames_of
-from mjrock.geometry.kinematics import along
+from mjrock.geometry.kinematics import meeting
+from mjrock.geometry.poses import rotations
+from mjrock.geometry.vectors import tangent
 from mjrock.scene.parts import ConstantForces, Links
 
 
@@ -54,14 +56,34 @@ def test_the_energy_is_that_of_the_accounts(held):
         assert held.potential.energy(pose) == pytest.approx(stored.sum(), rel=1e-12)
 
 
-def test_rates_are_derivatives_of_openings_and_places(held):
-    """Of every gap, of the slack of the tie, and of where each point is along its face."""
+def carried(rest, body, place, pose):
+    """Function that gives where the part of a body that is at a place in one pose is in another one [m]."""
+    if body < 0:
+        return lambda at: place
+    centre, turn = rest[body] + pose[3 * body : 3 * body + 2], rotations(pose[3 * body : 3 * body + 3])
+
+    def there(at):
+        own = at[3 * body : 3 * body + 3]
+        return rest[body] + own[:2] + rotations(own) @ turn.T @ (place - centre)
+
+    return there
+
+
+def test_rates_are_derivatives_of_openings_and_of_what_slips(held):
+    """Of every gap, of the slack of the tie, and of the way along the face of the parts of both bodies that are halfway
+    between the point and the face."""
     potential, places, h = held.potential, held.places, 1e-6
-    pose = np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05])
-    none = np.zeros(6)
+    pose, rest = np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05]), held.bodies.rest
+    meets = [meeting(places, i, frames_of(pose)) for i in range(4)]
+    slips = []
+    for i, meet in enumerate(meets):
+        body, normal = places.body[i], np.array(meet.normal)
+        halfway = rest[body] + pose[3 * body : 3 * body + 2] + meet.arm - 0.5 * meet.gap * normal
+        ends = [carried(rest, each, halfway, pose) for each in (body, places.face_body[i])]
+        slips.append((*ends, np.array(tangent(meet.normal))))
 
     def along_faces(at):
-        return np.array([along(places, i, frames_of(at), none).place for i in range(4)])
+        return np.array([way @ (own(at) - other(at)) for own, other, way in slips])
 
     for j, way in enumerate(np.eye(6)):
         opened = (potential.openings(pose + h * way) - potential.openings(pose - h * way)) / (2 * h)

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import coo_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
+from ...geometry.graph import components
 from ...linear import loose
 from ...quantities import GRAVITY, Array, Flags
 from .joint_law import Law, shear_limit
@@ -242,8 +242,7 @@ def _lacking(masonry: Masonry, forces: Array) -> Flags:
     number, count = free_numbers(masonry.blocks), len(masonry.free)
     pairs = number[np.reshape([(joint.below, joint.above) for joint in masonry.joints], (-1, 2))]
     pairs = pairs[(pairs >= 0).all(axis=1)]
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    part = connected_components(graph, directed=False)[1]
+    part = components(pairs, count)
     unknowns = len(weight_of(masonry))
     first = (EDGES if masonry.in_space else 2) * len(masonry.lines.k)
     missing = forces[first : first + 2 * unknowns].reshape(2, count, -1).sum(axis=(0, 2))

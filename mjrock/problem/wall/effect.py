@@ -70,10 +70,12 @@ class Effect:
         on_face: whether it holds the inner face. Otherwise it acts at `offset` from the middle of base or block.
         on_block: whether its point has to lie on its block.
         offset: from there, outwards [m].
+        only: what may take it, "solve_explicit", or empty where all solvers do.
     """
 
     label: ClassVar[str]
     arguments: ClassVar[str]
+    only: ClassVar[str] = ""
     on_face: ClassVar[bool] = False
     on_block: ClassVar[bool] = True
     height: float
