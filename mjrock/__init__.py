@@ -68,10 +68,10 @@ if TYPE_CHECKING:
     from .result.compare import Comparison, compare
     from .result.ending import Outcome
     from .result.ledger import Ledger
+    from .result.problem import scene_of
     from .result.response import MasonryResponse, Response
     from .result.rocking import Impact
     from .scene.masonry import masonry_scene
-    from .scene.of_case import scene_of
     from .scene.scene import Scene
     from .scene.wall import wall_scene
     from .study.analysis import Analysis, MasonryAnalysis
