@@ -76,6 +76,14 @@ def test_no_circle():
             del waits[name]
 
 
+def test_the_engine_takes_scenes_and_knows_no_blocks():
+    """What it needs of a wall or of masonry is in the scene."""
+    paths = [path for path in MODULES if path.relative_to(ROOT).parts[0] == "engine"]
+    blocks = {"problem.wall.block", "problem.masonry.masonry"}
+    assert [f"{path.name} imports {target}" for path in paths for target in blocks & set(imports(path)[0])] == []
+    assert len(paths) > 20
+
+
 def test_functions_are_short():
     offenders = []
     for path in MODULES:

@@ -167,16 +167,6 @@ class MasonryCase(Carrying):
         """The bond of each joint, None where it is dry."""
         return self.masonry.bonds
 
-    @property
-    def joint_stiffness(self) -> Array:
-        """Stiffness of each joint along its normal [N/m3], shape (joints,)."""
-        return self.masonry.joint_stiffness
-
-    @property
-    def joint_shear(self) -> Array:
-        """Stiffness of each joint along its face [N/m3], infinite where it sticks rigidly, shape (joints,)."""
-        return self.masonry.joint_shear
-
     def require_dry(self, what: str) -> None:
         """Raise a ValueError that says what takes dry joints, where some have a bond."""
         self.masonry.require_dry(what)
