@@ -20,9 +20,9 @@ DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
-RUNS = ["contacts_in_your_model.md", "stiffness.md", "law_and_step.md", "solvers.md", "vaults.md"]
+RUNS = ["contacts_in_your_model.md", "stiffness.md", "law_and_step.md", "solvers.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "impacts.md"]
-LONG += ["space.md", "forces.md", "mortar.md", "slow_loading.md", "export.md"]
+LONG += ["vaults.md", "space.md", "forces.md", "mortar.md", "slow_loading.md", "export.md"]
 """Pages whose lines run."""
 
 
