@@ -287,13 +287,11 @@ EQUIVALENT = {
     **{
         f"finder.py: {line}": "there is more room than is taken"
         for line in (
-            "self._table, self._room = np.empty((512, 11)), np.empty((4 * most + 4, 3))",
-            "self._table, self._room = np.empty((256, 22)), np.empty((4 * most + 4, 3))",
-            "self._table, self._room = np.empty((256, 11)), np.empty((8 * most + 4, 3))",
-            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 8, 3))",
-            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 6))",
-            "self._table = np.empty((4 * count, 11))",
-            "self._table = np.empty((2 * count, 22))",
+            "self._table, self._room = rows(PLACE, 512), np.empty((4 * most + 4, 3))",
+            "self._table, self._room = rows(PLACE, 256), np.empty((8 * most + 4, 3))",
+            "self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 8, 3))",
+            "self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 6))",
+            "self._table = rows(PLACE, 4 * count)",
         )
     },
     **{

@@ -276,7 +276,7 @@ def in_shear(system: System) -> float:
     energy = 0.0
     for table in (system.lines, system.bonds):
         sprung = np.asarray(table)[np.isfinite(table["k_s"])]
-        energy += float(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0)).sum())
+        energy += float(np.sum(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0))))
     return energy
 
 

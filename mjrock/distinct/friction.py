@@ -36,7 +36,8 @@ from ..geometry.vectors import (
 from ..problem.masonry.joint_law import shear_limit
 from ..quantities import Array, Integers
 from .rows import Row, Rows
-from .system import Books, Supports, System
+from .supports import Supports
+from .system import Books, System
 from .turning import in_body, in_world, kick_place, spin_from_many, turn_momentum
 
 SWEEPS = 50

@@ -21,7 +21,7 @@ from .touches import was_open
 @inlined
 def whole_friction(system: System, line: Row) -> Vector:
     """Friction of a line in the last step, along its face [N]. One that sticks rigidly is dragged as it leaves."""
-    dragged = read(line.dragged)
+    dragged: Vector = read(line.dragged)
     if line.k_s < math.inf:
         return dragged
     return plus(dragged, last_friction(system.bodies, line, dragged))

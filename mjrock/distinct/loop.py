@@ -182,12 +182,6 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
 
 
 @inlined
-def keep_energy(samples: Samples, row: int, look: int) -> None:
-    """Keep the energy of a sample as that of a look."""
-    samples.looks[look] = samples.energy[row]
-
-
-@inlined
 def keep_account(account: Array, kept: Array) -> None:
     """Keep an account, for which there is room where there is a ledger."""
     for i in range(len(kept)):
@@ -202,10 +196,10 @@ def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float) -> No
     kinetic energy is that which the steps conserve: half the product of velocity and momentum before and after the
     pose, at a start after it and as far before it. It is less than that of the mean velocity, and below zero where a
     stiff contact turns a motion round."""
-    kinetic, potential, share, d = 0.0, 0.0, 0.5 if before > 0 else 0.0, bodies.place.shape[1]
+    kinetic, potential, share = 0.0, 0.0, 0.5 if before > 0 else 0.0
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
-        after = read(body.velocity)
+        after, d = read(body.velocity), len(body.place)
         linear, momentum = components(velocity, after), spin_components(velocity[d:], after)
         faster, turned = minus(after, linear), minus(momentum_of(body), momentum)
         linear, faster = plus(linear, scaled(share, faster)), scaled(1 - share, faster)
@@ -287,7 +281,7 @@ def make_steps(
         if sampled or looked:
             keep_velocity(system.bodies, samples, kept, before)
         if looked:
-            keep_energy(samples, kept, -(-n // clock.look))
+            samples.looks[-(-n // clock.look)] = samples.energy[kept]
         if sampled:
             keep_forces(system, samples, row)
             row += 1

@@ -28,7 +28,7 @@ from .following import Followed
 from .kinds.ties import Ties
 from .rows import Row, Rows
 from .setup import Setup
-from .system import Books, Samples
+from .system import ENERGY, Books, Samples
 
 OPEN = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
@@ -202,8 +202,8 @@ def advice(stats: Mapping[str, Any], share: float, wanted: float) -> str:
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
     samples = run.samples.taken(kept)
-    energy = {name: np.asarray(samples.energy[name]) for name in samples.energy.dtype.names}
-    booked: dict[str, dict[str, Array]] = {"dashpots": {}, "actuators": {}, "ties": {}, "broken": {}}
+    energy: dict[str, Any] = {name: np.asarray(samples.energy[name]) for name in ENERGY.names or ()}
+    booked: dict[str, Any] = {"dashpots": {}, "actuators": {}, "ties": {}, "broken": {}}
     for table, row, name in run.links:
         for i, part in enumerate(table.booked):
             booked[part][name] = samples.links[:, row.account + i]

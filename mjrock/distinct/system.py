@@ -119,7 +119,8 @@ class Samples(NamedTuple):
         freedom = PLANE if len(system.axes) == 2 else SPACE
         count, bodies, links = count + 1, len(system.bodies), sum(len(table.rows) for table in system.links)
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
-        arrays = [np.zeros((count, len(account) if ledger else 0)) for account in (books.dashpots, books.links)]
+        kept = (books.dashpots, books.links)
+        arrays: list[Any] = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         sizes: tuple[tuple[int, ...], ...] = ((freedom.nv,), (freedom.translations,), (), (freedom.nv,))
         arrays += [np.zeros((count, links)), *(np.zeros((count, 0, *size)) for size in sizes)]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *arrays)

@@ -141,7 +141,8 @@ def _momentum_in_plane(body: Row) -> Vector:
 
 @inlined
 def _momentum_in_space(body: Row) -> Vector:
-    return read(body.momentum)
+    momentum: Vector = read(body.momentum)
+    return momentum
 
 
 momentum_of = by_body(_momentum_in_plane, _momentum_in_space)

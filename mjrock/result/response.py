@@ -53,7 +53,8 @@ class End:
         return iter((self.pose, self.velocity))
 
     def __getitem__(self, part: int) -> Array:
-        return (*self,)[part]
+        both = self.pose, self.velocity
+        return both[part]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,9 +13,9 @@ from ..quantities import is_iterable, require_flag, require_path, require_real, 
 from .campaign_pool import Workers
 from .campaign_run import Runner
 from .campaign_task import Row, Task, carry_out_all, column_names, keyed
-from .overheard import listening
 from .progress import CampaignProgress
 from .store import Store
+from .warning_counter import collect_warnings
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
@@ -87,7 +87,7 @@ def campaign(
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry=retry, limit=limit)
         try:
-            with listening(run.warned.add):
+            with collect_warnings(run.warned.add):
                 _carry_out(run, tasks, executor, count)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(

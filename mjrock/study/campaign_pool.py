@@ -22,7 +22,7 @@ from pebble import ProcessPool
 from tqdm import tqdm
 
 from .campaign_task import Row, Task, carry_out
-from .overheard import listening
+from .warning_counter import collect_warnings
 
 CHUNK_SECONDS = 0.5
 """Work that a worker does before it hands over its rows [s]: long compared with the 1 ms of handing over, and short
@@ -128,7 +128,7 @@ def serve(content: bytes) -> list[Row]:
     end = time.monotonic() + CHUNK_SECONDS
     for task, history in tasks:
         warned: list[str] = []
-        with listening(warned.append):
+        with collect_warnings(warned.append):
             row = carry_out(task, history)
         row["warned"] = warned
         rows.append(row)

@@ -19,9 +19,9 @@ from pebble import ProcessExpired
 
 from .campaign_pool import CHUNK_SECONDS, QUIT
 from .campaign_task import VERSION, Refused, Row, Task, carry_out, column_names, failed_row, keyed
-from .overheard import Overheard
 from .progress import CampaignProgress
 from .store import Store
+from .warning_counter import WarningCounter
 
 DEATHS = 2
 """A task during which this many worker processes have died is run alone."""
@@ -52,7 +52,7 @@ class Runner:
         self.file, self.progress, self.folder, self.retry, self.limit = file, progress, folder, retry, limit
         self.statuses: Counter[str] = Counter()
         self.outcomes: Counter[str] = Counter()
-        self.warned = Overheard()
+        self.warned = WarningCounter()
         self.seconds = 0.0
         self.finished = 0
         self.skipped = 0

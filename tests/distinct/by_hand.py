@@ -65,6 +65,11 @@ def books(system):
     return Books.empty(system, 2)
 
 
+def columns(places):
+    """Places as columns of numbers, shape (n, 11): the two blocks, where, the normal, gap, share and area."""
+    return np.column_stack([places[name] for name in places.dtype.names])
+
+
 def matrix(d, i):
     """The rotation of a body of a system that moves."""
     if d == 3:

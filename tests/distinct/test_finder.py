@@ -5,12 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import columns
 from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.distinct import finder
+from mjrock.distinct.clipping import PLACE
 from mjrock.distinct.finder import Finder, Found, Near
+from mjrock.distinct.rows import rows
 from mjrock.distinct.solids import Poses, Solids
 
 BOX = mr.Polyhedron.box
@@ -61,9 +64,10 @@ def test_how_far_a_block_is_outside_of_a_face_and_reaches():
     assert solids.extent[face_of(solids, 1, (0, 1, 0))] == pytest.approx(2.8)
     assert finder.height(solids, face_of(solids, 0, (1, 0, 0)), (1.5, 9.0, 9.0)) == pytest.approx(0.2)
     assert finder.height(solids, face_of(solids, 1, (0, 0, -1)), (1.5, 9.0, 0.15)) == pytest.approx(0.1)
-    assert finder.lies_in(solids, 0, (1.2, 0.0, -0.1))
-    assert not finder.lies_in(solids, 0, (1.4, 0.0, -0.1))
-    assert not finder.lies_in(solids, 1, (0.2, 0.1, 0.2))
+    assert finder.lies_in(solids, 0, (1.2, 0.0, -0.1), 0.0)
+    assert not finder.lies_in(solids, 0, (1.4, 0.0, -0.1), 0.0)
+    assert finder.lies_in(solids, 0, (1.4, 0.0, -0.1), 0.11)
+    assert not finder.lies_in(solids, 1, (0.2, 0.1, 0.2), 0.0)
 
 
 def test_the_face_that_another_block_is_farthest_outside_of():
@@ -122,14 +126,15 @@ def test_edges_that_cross_are_apart_along_the_direction_across_both(gap):
             == pytest.approx(2.0 if up > 0 else 1.6)
         )
         assert end[2] == pytest.approx(0.0 if up > 0 else gap)
-        table = np.zeros((3, 11))
+        table = rows(PLACE, 3)
         assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
+        table = columns(table)
         y, x = 0.0, 0.2 + 0.1 * math.tan(0.3)  # where the keel passes over the ridge
         np.testing.assert_allclose(table[1], [0, 1, x, y, 0.5 * gap, *way, gap, 0.25, 0.0], atol=1e-12)
         assert not table[[0, 2]].any()
-        table = np.zeros((1, 11))
+        table = rows(PLACE, 1)
         assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
-        assert not table.any()
+        assert not columns(table).any()
 
 
 @pytest.mark.parametrize(("sine", "across"), [(0.9e-3, False), (1.5e-3, True)])
@@ -152,8 +157,8 @@ def test_the_first_of_edges_that_reach_as_far_is_taken():
 
 
 def test_the_deepest_of_places_counts():
-    table = np.zeros((6, 11))
-    table[:, 8] = [-9.0, -0.1, -0.3, -0.3, -8.0, 7.0]
+    table = rows(PLACE, 6)
+    table["gap"] = [-9.0, -0.1, -0.3, -0.3, -8.0, 7.0]
     assert [finder.deepest(table, *ends) for ends in ((1, 4), (1, 6), (5, 6), (2, 2))] == [2, 4, 5, -1]
 
 
@@ -169,15 +174,14 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
         asked.append((face, blocks))
         if depth[face] is None:
             return count
-        table[count] = 0.0
-        table[count, 8] = depth[face]
+        table[count].at, table[count].gap = 0.0, depth[face]
         return count + 1
 
     monkeypatch.setattr(finder, "clip", clip)
     monkeypatch.setattr(finder, "outside", lambda _, face, other: out.get(face, -2.0))
-    monkeypatch.setattr(finder, "lies_in", lambda _, block, at: True)
+    monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: True)
     monkeypatch.setattr(finder, "height", lambda _, face, at: heights.get(face, 0.0))
-    table, heights = np.zeros((3, 11)), {}
+    table, heights = rows(PLACE, 3), {}
     for least, expected, more in (
         (-0.3, (0, (0, 1), -0.5), []),
         (-0.45, (2, (0, 1), -0.1), [(2, (0, 1))]),
@@ -200,7 +204,7 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
     for above, taken in ((-0.09, 2), (-0.11, 0)):  # the deepest place of the first face lies so deep below this one
         heights[2] = above
         assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == taken
-    monkeypatch.setattr(finder, "lies_in", lambda _, block, at: block != 1)  # that place is not common to both
+    monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: block != 1)  # that place is not common to both
     assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == 2
     for gap, taken in ((-0.001, 2), (0.0, 0), (0.001, 0)):  # places that are open
         depth[2] = gap
@@ -263,6 +267,26 @@ def test_blocks_that_are_farther_than_they_reach_do_not_meet(monkeypatch):
 @pytest.mark.parametrize("gap", [0.005, -0.1])
 def test_blocks_that_are_near_and_do_not_lie_over_each_other_pass_by(monkeypatch, gap):
     assert decided(monkeypatch, (gap, -0.3), clipped=0)[0] == ("passes", 0, (0, 1), gap)
+
+
+@pytest.mark.parametrize("turn", [None, *range(8)])
+def test_prisms_whose_ends_lie_in_one_plane_meet_along_the_face_of_their_joint(turn):
+    """One lies on a side of the other with 0.9 mm of overlap at an end and 0.04 mm at the other one, beside a side that
+    is inclined by 9 degrees to it, over which it has 0.04 mm alone. The deepest place is on both ends of both."""
+    slope = math.atan(2 / 9)
+    along, up = np.array([math.cos(slope), math.sin(slope)]), np.array([-math.sin(slope), math.cos(slope)])
+    lower = mr.Polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 0.5), (0.1, 0.3), (0.0, 0.26)])
+    low, high = ((0.1, 0.3) + at * along - deep * up for at, deep in ((-0.01, 4e-5), (0.9, 9e-4)))
+    blocks = [lower, mr.Polygon([low, high, high + 0.3 * up, low + 0.3 * up])]
+    if turn is None:
+        normal, solids = up, blocks
+    else:
+        spun = Rotation.random(random_state=turn)
+        normal = spun.apply((up[0], 0.0, up[1]))
+        solids = [moved(mr.Polyhedron.prism(block), (0.0, 0.0, 0.0), spun) for block in blocks]
+    _, places = found(solids, reach=0.01)
+    assert places.gap.min() == pytest.approx(-9e-4, rel=1e-3)
+    assert np.abs(places.normal @ normal).min() > 0.999
 
 
 @pytest.mark.parametrize("in_space", [False, True])
@@ -384,7 +408,7 @@ def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(),
     drawn, poses = poses_of(blocks, by, change)
     whole = Finder(blocks, drawn)
     if room:
-        whole._table = np.empty((room, 11))
+        whole._table = rows(PLACE, room)
     which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
     a, b = np.reshape(np.array(skipped, dtype=np.int64), (-1, 2)).T
     places = whole.found(poses, np.broadcast_to(reach, len(blocks)).astype(float), which, np.sort(whole.between(a, b)))

@@ -113,12 +113,8 @@ def test_nothing_is_solved_as_tests_are_collected():
     """Each process that runs a share of the tests collects all of them."""
     paths = [*ROOT.parent.glob("tests/**/*.py"), *ROOT.parent.glob("scripts/**/*.py")]
     assert len(paths) > 200
-    assert [
-        f"{path.name} calls {name}"
-        for path in paths
-        for name in called_at_import(ast.parse(path.read_text()))
-        if SOLVES.fullmatch(name)
-    ] == []
+    calls = ((path.name, name) for path in paths for name in called_at_import(ast.parse(path.read_text())))
+    assert [f"{path} calls {name}" for path, name in calls if SOLVES.fullmatch(name)] == []
     text = "X = [lambda: mr.simulate(case)]\nfor x in f(mr.push()): pass\ndef g(): mr.solve_explicit(1)\n"
     assert [name for name in called_at_import(ast.parse(text)) if SOLVES.fullmatch(name)] == ["push"]
 

@@ -217,6 +217,15 @@ LONG = {
     "vaults",
     "bonded_facade",
     "first_pictures",
+    "stack_before_and_after",
+    "heap",
+    "mortar",
+    "tilting_table",
+    "table2",
+    "thrust_lines",
+    "facade",
+    "shear_wall",
+    "first_minute",
     "collapse",
 }
 """Scripts that take a while even with --quick."""

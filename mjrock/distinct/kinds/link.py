@@ -75,7 +75,8 @@ class Kind:
         count = len(links.body)
         taken = {name: getattr(links, name) for name in ("body", "anchor_block", *cls.own) if name not in columns}
         ends = {"anchor": links.anchor_body, "at": links.at, "origin": links.anchor_at, "between": between}
-        return links.names, cls(cls.table(between.shape[1], count, **columns | taken | ends if count else {}))
+        table = cls.table(between.shape[1], count, **columns | taken | ends if count else {})
+        return links.names, cls(table)  # type: ignore[call-arg]
 
     @classmethod
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:

@@ -13,7 +13,7 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 
 from ...quantities import Array
-from .in_space import Point, written
+from .in_space import Point, short_repr
 
 
 class LinkLaw(NamedTuple):
@@ -83,7 +83,7 @@ class Effect:
     at: Point | None
     offset: float = 0.0
 
-    __repr__ = written
+    __repr__ = short_repr
 
     @property
     def mass_added(self) -> float:

@@ -17,7 +17,7 @@ from ..ground.motion import GroundMotion
 from .damper import Damper
 from .effect import Anchored, Effect
 from .friction_damper import FrictionDamper
-from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, written
+from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, short_repr
 from .tie import Tie
 
 
@@ -168,7 +168,7 @@ class SideStop:
 
     top: Annotated[float, Within(0.01, HIGHEST, "m")]
 
-    __repr__ = written
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep_declared(self, "side stop")

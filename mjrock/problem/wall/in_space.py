@@ -18,7 +18,7 @@ IN_SPACE = {"in space": True}
 """Metadata of a field of an effect that only masonry in space takes."""
 
 
-def written(effect: Any) -> str:
+def short_repr(effect: Any) -> str:
     """An effect as it would be written, without what may be said by keyword and is not."""
     shown = ((field, getattr(effect, field.name)) for field in fields(effect))
     said = (f"{field.name}={value!r}" for field, value in shown if not (field.kw_only and value == field.default))

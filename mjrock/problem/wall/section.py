@@ -16,7 +16,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ...quantities import Array, Within, keep_declared, require_flag, require_within, shown
-from .in_space import written
+from .in_space import short_repr
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""
@@ -55,7 +55,7 @@ class Opening:
     round: bool = field(default=False, kw_only=True)
     at: Annotated[float | None, Within(-500, 500, "m")] = field(default=None, kw_only=True)
 
-    __repr__ = written
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         require_flag("round of the opening", self.round)
