@@ -54,7 +54,11 @@ def _imported_numba() -> Any:
 
 
 def _register(numba: Any, function: Callable[..., Any]) -> None:
-    numba.extending.register_jitable(forceinline=True, no_cfunc_wrapper=True)(function)
+    options, choose = {"forceinline": True, "no_cfunc_wrapper": True}, getattr(function, "choose", None)
+    if choose is None:
+        numba.extending.register_jitable(**options)(function)
+    else:
+        numba.extending.overload(function, jit_options=options, strict=False)(lambda first, *more: choose(first))
 
 
 def __getattr__(name: str) -> Any:
@@ -75,6 +79,25 @@ def inlined(function: Function) -> Function:
     else:
         _waiting.append(function)
     return function
+
+
+def by_type(choose: Callable[[Any], Callable[..., Any]]) -> Callable[..., Any]:
+    """A function that compiled loops call, with a text for each type of its first argument, which takes its place.
+
+    Args:
+        choose: gives the text from the first argument itself, or from numba's type of it.
+    """
+
+    def function(first: Any, *more: Any) -> Any:
+        return choose(first)(first, *more)
+
+    function.choose = choose  # type: ignore[attr-defined]
+    return inlined(function)
+
+
+def method(name: str) -> Callable[..., Any]:
+    """A function that calls a method of its first argument, a NamedTuple, by name, as compiled loops can."""
+    return by_type(lambda table: getattr(getattr(table, "instance_class", type(table)), name))
 
 
 class Loop:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import html
 import os
 import shutil
 import stat
@@ -115,3 +116,8 @@ def write_arrays(path: str | Path, **arrays: Any) -> None:
     """Write arrays to an .npz file, by their names."""
     with replacing(path) as partial, open(partial, "wb") as file:
         np.savez_compressed(file, **arrays)
+
+
+def quoted(value: str) -> str:
+    """A text as the value of an attribute in XML, within its quotes."""
+    return f'"{html.escape(value)}"'

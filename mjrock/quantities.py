@@ -5,11 +5,13 @@ from __future__ import annotations
 import inspect
 import math
 import os
+import sys
 from collections.abc import Iterable, Sequence
+from functools import cache
 from numbers import Real as RealNumber
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -88,6 +90,55 @@ def require_within(name: str, value: object, low: float, high: float, unit: str 
         unit = unit and f" {unit}"
         raise ValueError(f"{name} = {number:g}{unit} is outside the valid range {low:g} to {high:g}{unit}")
     return number
+
+
+class Within(NamedTuple):
+    """The valid range of a number, declared with its field: `height: Annotated[float, Within(0, 200, "m")]`.
+
+    Args:
+        low, high: the least and the largest valid value.
+        unit: of the number.
+        name: what messages call it; the name of the field where it is empty.
+        whole: whether it is a whole number.
+    """
+
+    low: float
+    high: float
+    unit: str = ""
+    name: str = ""
+    whole: bool = False
+
+    def checked(self, name: str, value: object) -> float:
+        """The value as a float or an integer; raises as `require_within` and `require_whole`."""
+        if self.whole:
+            return require_whole(name, value, int(self.low), int(self.high))
+        return require_within(name, value, self.low, self.high, self.unit)
+
+
+@cache
+def declared(kind: type) -> dict[str, tuple[Within, bool]]:
+    """The range of each field of a class that declares one, and whether the field may be None."""
+    hints = get_type_hints(kind, include_extras=True)
+    notes = {name: get_args(hint) for name, hint in hints.items() if get_origin(hint) is Annotated}
+    return {name: (note[1], type(None) in get_args(note[0])) for name, note in notes.items()}
+
+
+def keep_declared(instance: object, owner: str = "") -> None:
+    """Check and keep the fields of a frozen dataclass that declare a range, while it is made.
+
+    Args:
+        instance: the dataclass.
+        owner: what messages say that the number is of, as in "length of the tie".
+
+    Raises:
+        TypeError, ValueError: with the name, the value and the range, as `require_within`.
+    """
+    kind: Any = type(instance)  # mypy takes a class for a thing without a hash
+    for field, (within, optional) in declared(kind).items():
+        value = getattr(instance, field)
+        if value is not None or not optional:
+            name = within.name or (f"{field} of the {owner}" if owner else field)
+            keep(instance, **{field: within.checked(name, value)})
 
 
 def require_stiffness(name: str, value: object) -> float:
@@ -255,6 +306,8 @@ def _holds_truth(values: object) -> bool:
 
 def _is_masked(values: ArrayLike) -> bool:
     """Whether an array, or one of a list of arrays, has masked values."""
+    if "numpy.ma" not in sys.modules:  # nobody has made any
+        return False
     rows = values if isinstance(values, list | tuple) else [values]
     return any(isinstance(row, np.ma.MaskedArray) and np.ma.is_masked(row) for row in rows)
 

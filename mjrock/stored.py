@@ -11,7 +11,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from filelock import FileLock, Timeout
 from numba.core import event
 from numba.core.caching import FunctionCache
 
@@ -103,6 +102,8 @@ class LoopCache(FunctionCache):  # type: ignore[misc]
 
         A process that compiles for another one goes on to the next function instead.
         """
+        from filelock import FileLock, Timeout  # needed only where something is compiled
+
         with contextlib.suppress(OSError):  # a disk that cannot be written stores nothing either
             try:
                 self._locked = FileLock(f"{self._cache_file._index_path}.lock")

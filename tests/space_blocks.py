@@ -5,9 +5,10 @@ import math
 import numpy as np
 
 import mjrock as mr
-from mjrock.distinct.assembly import copied, moving
+from mjrock.distinct.assembly import copied
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, Samples, System
 from mjrock.geometry.frames import SPACE
 from mjrock.scene.ground import Ground
@@ -27,19 +28,17 @@ def free_body(mass, inertia, spin):
         quaternion=[1.0, 0, 0, 0],
         momentum=inertia @ spin,
     )
-    none = {"ties": kind.link, "dampers": kind.link, "forces": kind.link, "actuators": kind.link}
-    none |= {"lines": kind.line, "edges": kind.edge, "ways": kind.way, "bonds": kind.bond}
-    tables = {name: rows(of, 0) for name, of in none.items()}
-    return System(
-        axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), drives=moving((), 1), **tables
-    )
+    none = {"lines": kind.line, "edges": kind.edge, "ways": kind.way, "bonds": kind.bond}
+    tables: dict = {name: rows(of, 0) for name, of in none.items()}
+    tables |= {"links": (), "guided": np.zeros(0, dtype=np.int64)}
+    return System(axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), **tables)
 
 
 def followed(system, duration, h, every):
     """The samples of a system that is followed without being changed."""
     last = every * round(duration / (h * every))
     system, books = copied(system), Books.empty(system, 1)
-    samples = Samples.room(last // every + 1, len(system.bodies), books, SPACE)
+    samples = Samples.room(last // every + 1, system, books)
     advance(system, books, samples, Clock(0, h, every, 0, last + 1, last, math.inf, 0.0, (0.0, 0.0, 0.0)))
     return samples.taken(slice(-1)), system
 

@@ -7,12 +7,12 @@ import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import mujoco
 import numpy as np
 
 from ..engine.solref import inertia_of
+from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text
@@ -270,7 +270,7 @@ def _text(value: Any) -> str:
 
 
 def _element(name: str, attributes: dict[str, Any]) -> str:
-    return f"<{name} {' '.join(f'{key}={quoteattr(_text(value))}' for key, value in attributes.items())}/>"
+    return f"<{name} {' '.join(f'{key}={quoted(_text(value))}' for key, value in attributes.items())}/>"
 
 
 def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> Any:

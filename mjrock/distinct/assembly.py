@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from ..geometry.vectors import tangents
-from ..problem.masonry.actuator import Actuator
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
-from ..problem.wall.effect import LinkLaw
 from ..quantities import Array
-from ..scene.checks import GROUND
 from ..scene.ground import Ground
-from ..scene.parts import Links
 from ..scene.scene import Scene
 from .faces import edges_of, margins, outlines_of_joints
+from .kinds.link import put_on_supports
 from .rows import Rows, joined, kinds, rows
-from .system import Supports, System
-from .turning import is_flat, rotations, start_turning
+from .supports import moving
+from .system import System
+from .turning import is_flat, start_turning
 
 
 def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
-    """The system of a scene, undeformed. Faces of masonry end where they end, those of a wall do not."""
+    """The system of a scene without its links, undeformed. Faces of masonry end, those of a wall do not."""
     d, n = scene.bodies.rest.shape[1], len(scene.bodies.mass)
     kind = kinds(d)
     inverse = np.linalg.inv(np.reshape(scene.bodies.inertia, (n, 2 * d - 3, -1)))
@@ -34,7 +32,7 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
-    acting = *links_of(scene), rows(kind.link, 0), Ground.of(None), moving((), d), moving((), 1)
+    acting = (), np.zeros(0, dtype=np.int64), Ground.of(None), moving((), d)
     system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), rows(kind.bond, 0), *acting)
     return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
@@ -59,24 +57,6 @@ def lines_of(scene: Scene) -> Rows:
         k_s=np.inf,
         friction=scene.contacts.friction,
         margin=np.inf,
-    )
-
-
-def links_of(scene: Scene) -> tuple[Rows, Rows, Rows]:
-    """The links with a spring, those with a dashpot, and the constant forces of a scene."""
-    kind, forces = kinds(scene.bodies.rest.shape[1]).link, scene.forces
-
-    def links(some: Links, between: Array, **more: Array | float) -> Rows:
-        columns = {name: getattr(some, name) for name in LinkLaw._fields} | more
-        ends = {"anchor": some.anchor_body, "support": -1, "at": some.at, "origin": some.anchor_at, "between": between}
-        return rows(kind, len(some.body), body=some.body, **columns | ends if len(some.body) else {})
-
-    ties = links(scene.links.sprung, scene.ties.between, reach=scene.ties.reach, broken=np.inf)
-    held: dict[str, Any] = {"anchor": -1, "at": forces.at, "between": forces.force} if len(forces.body) else {}
-    return (
-        ties,
-        links(scene.links.damped, scene.dampers.between),
-        rows(kind, len(forces.body), body=forces.body, **held),
     )
 
 
@@ -117,57 +97,19 @@ def started(system: System, pose: Array, velocity: Array | None = None) -> Syste
 def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
     """The system with supports that move fixed blocks, and the links that are anchored on these."""
     numbers = {masonry.names.index(support.block): i for i, support in enumerate(supports)}
-    for links, of_scene in ((system.ties, scene.links.sprung), (system.dampers, scene.links.damped)):
-        links["support"] = [numbers.get(block, -1) for block in of_scene.anchor_block.tolist()]
+    for table in system.links:
+        put_on_supports(table.rows, numbers)
     below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
     of = scene.contacts.joint
     system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)
     return system._replace(supports=moving([(each.t, each.displacement) for each in supports], len(system.axes)))
 
 
-def moving(histories: Sequence[tuple[Sequence[float], Array]], d: int) -> Supports:
-    """Histories of displacement along d axes for compiled functions: times, and displacements of the shape (t, d)."""
-    return Supports(
-        np.concatenate([np.empty(0), *(t for t, _ in histories)]),
-        np.concatenate([np.empty((0, d)), *(displacement for _, displacement in histories)]),
-        np.cumsum([0, *(len(t) for t, _ in histories)]),
-        np.zeros((len(histories), d)),
-        np.zeros((len(histories), d)),
-    )
-
-
-def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequence[Actuator]) -> System:
-    """The system with actuators, which count displacements from the pose of rest, and with the blocks they guide.
-
-    One that drives all blocks has no body."""
-    if not actuators:
-        return system
-    number, d, bodies = free_numbers(masonry.blocks), len(system.axes), system.bodies
-    held = np.array([GROUND if each.block is None else number[each.block] for each in actuators])
-    way, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
-    at = np.array([each.way if each.at is None else each.at for each in actuators])
-    at = np.where(single, at - scene.bodies.rest[held], 0.0)
-    change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
-    mean = np.average(bodies["place"], axis=0, weights=bodies["mass"])
-    table = rows(
-        kinds(d).link,
-        len(actuators),
-        body=held,
-        anchor=-1,
-        support=-1,
-        at=at,
-        between=way,
-        k=np.array([each.stiffness for each in actuators]),
-        c=np.array([each.damping for each in actuators]),
-        reach=(np.where(single, bodies["place"][held] + change, mean) * way).sum(axis=1),
-    )
-    for body, each in zip(held, actuators, strict=True):
-        if each.guide.turning:
-            bodies["inverse_inertia"][body] = 0.0
-        if each.guide.rising:
-            bodies["inverse_mass"][body, d - 1] = 0.0
-    histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
-    return system._replace(actuators=table, drives=moving(histories, 1))
+def guide(system: System, case: MasonryCase) -> None:
+    """Let the actuators of a case guide their blocks."""
+    held, d = case.guided, len(system.axes)
+    system.bodies["inverse_mass"][held[:, :d]] = 0.0
+    system.bodies["inverse_inertia"][held[:, d:].any(axis=1)] = 0.0
 
 
 def guided_as(bodies: Rows, others: Rows) -> None:
@@ -182,8 +124,9 @@ def guided_as(bodies: Rows, others: Rows) -> None:
 
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    tables = ("bodies", "lines", "edges", "ways", "bonds", "ties", "dampers", "forces", "actuators")
-    return system._replace(**{name: getattr(system, name).copy() for name in tables})
+    tables = ("bodies", "lines", "edges", "ways", "bonds")
+    links = tuple(table._replace(rows=table.rows.copy()) for table in system.links)
+    return system._replace(links=links, **{name: getattr(system, name).copy() for name in tables})
 
 
 def take_grips(lines: Rows, drag: Array) -> None:

@@ -13,18 +13,7 @@ import math
 import numpy as np
 
 from ..compiled import inlined
-from ..geometry.vectors import (
-    Vector,
-    components,
-    dot,
-    increase,
-    minus,
-    no_spin,
-    plus,
-    put,
-    scaled,
-    spin_components,
-)
+from ..geometry.vectors import Vector, dot, increase, minus, no_spin, plus, put, read, scaled
 from ..problem.masonry.bond_law import bonded_limit, crush, tear, wear
 from ..problem.masonry.joint_law import normal_force, stored_along
 from ..problem.masonry.masonry import Masonry
@@ -35,8 +24,6 @@ from .rows import Row, Rows, kinds, rows
 from .system import Books, System
 from .turning import in_body
 
-TAKEN = ("tension", "slip", "crushing")
-"""Accounts of bonds."""
 GONE = math.exp(-9)
 """What is left of a bond when it counts as gone [-]."""
 CRACKED = 0.5
@@ -99,42 +86,42 @@ def released(lines: Rows, bonds: Rows, which: Flags) -> None:
 
 
 @inlined
-def hold_bonds(system: System, books: Books, h: float, axes: tuple[int, ...]) -> None:
+def hold_bonds(system: System, books: Books, h: float) -> None:
     """Add the forces of all bonds. `h` is the length of the step that led to the pose [s], zero at the start."""
     for p in range(len(system.bonds)):
         line, bond = system.lines[p], system.bonds[p]
         if bond.k > 0 and bond.left <= GONE:
-            let_go(books, line, bond, axes)
+            let_go(books, line, bond)
         if bond.k > 0:
-            hold(system, books, line, bond, h, axes)
+            hold(system, books, line, bond, h)
 
 
 @inlined
-def let_go(books: Books, line: Row, bond: Row, axes: tuple[int, ...]) -> None:
+def let_go(books: Books, line: Row, bond: Row) -> None:
     """Leave the line to itself whose bond has gone, but for its crushing where it has a strength for that."""
     if bond.tension > 0:
-        books.bonds[0] += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
+        books.totals[0].tension += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
         bond.tension = bond.cohesion = bond.secant = bond.worn = 0.0
         line.k, line.c, line.margin = bond.k, bond.c, bond.margin
     if bond.bears == math.inf:
         line.friction = bond.residual
-        put(line.grip, spin_components(bond.grip, axes))
-        put(line.dragged, spin_components(bond.dragged, axes))
-        put(bond.grip, no_spin(axes))
-        put(bond.dragged, no_spin(axes))
+        put(line.grip, read(bond.grip))
+        put(line.dragged, read(bond.dragged))
+        put(bond.grip, no_spin(read(line.normal)))
+        put(bond.dragged, no_spin(read(line.normal)))
         bond.k = bond.push = 0.0
 
 
 @inlined
-def crush_line(books: Books, line: Row, bond: Row, gap: float, axes: tuple[int, ...]) -> float:
+def crush_line(books: Books, line: Row, bond: Row, gap: float) -> float:
     """Crush a line at a gap [m]: its face steps back. Returns by how much [m]."""
-    grip = spin_components(bond.grip, axes)
+    grip = read(bond.grip)
     closing = crush(bond, gap, bond.k_s * math.sqrt(dot(grip, grip)))
     if closing > 0:
-        back = scaled(-closing, components(line.normal, axes))
+        back = scaled(-closing, read(line.normal))
         increase(line.origin, back)
         increase(line.between, scaled(-1.0, back))
-        books.bonds[2] += 0.5 * bond.k * closing * (max(-bond.gap, 0.0) - gap - closing)
+        books.totals[0].crushing += 0.5 * bond.k * closing * (max(-bond.gap, 0.0) - gap - closing)
     return closing
 
 
@@ -158,13 +145,13 @@ def slide(
 
 
 @inlined
-def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tuple[int, ...]) -> None:
+def hold(system: System, books: Books, line: Row, bond: Row, h: float) -> None:
     """Add the forces of one bond, after it has torn and been crushed as far as the pose asks."""
     bodies, supports, before = system.bodies, system.supports, bond.gap
-    meet = where_friction_rubs(meeting(system, line, axes))
+    meet = where_friction_rubs(meeting(system, line))
     gap = meet.gap
     if gap < 0 and bond.bears < math.inf:
-        gap += crush_line(books, line, bond, gap, axes)
+        gap += crush_line(books, line, bond, gap)
     secant = bond.secant
     if bond.tension > 0:
         tear(bond, gap)
@@ -172,19 +159,19 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
             line.k = bond.k - bond.secant
             line.c = bond.c * line.k / bond.k
             if before > 0 or gap > 0:
-                books.bonds[0] += 0.5 * before * gap * (secant - bond.secant)
-    velocity = relative(bodies, line, supports, meet, axes)
+                books.totals[0].tension += 0.5 * before * gap * (secant - bond.secant)
+    velocity = relative(bodies, line, supports, meet)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
     pressed = -bond.c * bond.secant / bond.k * rate
     push = pressed - bond.secant * gap
     books.dashpots[line.group] -= 0.5 * h * (bond.pressed + pressed) * rate
-    last = spin_components(bond.dragged, axes)
-    held = sheared(bond, axes)
+    last = read(bond.dragged)
+    held = sheared(bond)
     drag, taken = slide(bodies, line, bond, meet.normal, slip, push + normal_force(line, gap, rate), h)
     mean = scaled(0.5 * h, plus(last, drag))
     done = -dot(mean, slip)
-    taken = min(taken, max(done + held - sheared(bond, axes), 0.0))  # no more than there is
-    books.bonds[1] += taken
+    taken = min(taken, max(done + held - sheared(bond), 0.0))  # no more than there is
+    books.totals[0].slip += taken
     books.totals[0].friction += done - taken
     if line.support >= 0:
         work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))
@@ -201,19 +188,19 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
 
 
 @inlined
-def sheared(bond: Row, axes: tuple[int, ...]) -> float:
+def sheared(bond: Row) -> float:
     """Energy in the spring of a bond along the face [J]."""
-    grip = spin_components(bond.grip, axes)
+    grip = read(bond.grip)
     energy: float = stored_along(bond, dot(grip, grip))
     return energy
 
 
 @inlined
-def bonded_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
+def bonded_energy(system: System) -> tuple[float, float]:
     """Energy in the springs of all bonds along normals and along faces [J]."""
     along_normals, along_faces = 0.0, 0.0
     for p in range(len(system.bonds)):
         bond = system.bonds[p]
         along_normals += 0.5 * bond.secant * bond.gap * bond.gap
-        along_faces += sheared(bond, axes)
+        along_faces += sheared(bond)
     return along_normals, along_faces

@@ -10,12 +10,17 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ..compiled import inlined
 from ..geometry.frames import SPACE
 from ..geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
 from ..quantities import Array
+from .rows import Row, Rows, integers, numbers, vectors
 from .solids import Solids
 
+PLACE = np.dtype([*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area")])
+"""A place: block of the face, other block, where, normal out of the face, gap [m], share, and area of the part [m2]."""
 OUTSIDE = 1e-9
 """Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
 SAME = 1e-6
@@ -141,22 +146,22 @@ def distance_from(at: Vector, a: Vector, along: Vector) -> float:
 
 
 @inlined
-def write_place(table: Array, count: int, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
+def write_place(place: Row, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
     """Write a place of a face, the first block, and of a point on the other one."""
-    table[count, 0], table[count, 1], table[count, 8] = blocks[0], blocks[1], gap
-    put(table[count, 2:5], minus(at, scaled(0.5 * gap, normal)))
-    put(table[count, 5:8], normal)
+    place.face, place.other, place.gap = blocks[0], blocks[1], gap
+    put(place.at, minus(at, scaled(0.5 * gap, normal)))
+    put(place.normal, normal)
 
 
 @inlined
-def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, table: Array, count: int) -> None:
+def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, place: Row) -> None:
     """Write what a corner of the part of a face that lies over another is: a corner of either, or edges that cross.
 
     Args:
         solids: the blocks where they are.
         faces, blocks: the face below and that over it, and their blocks.
         at: the corner, on the face over the other [m].
-        table, count: where to write.
+        place: the row to write.
     """
     face, over = faces
     normal, edge, from_edge = normal_of(solids, face), -1, math.inf
@@ -165,7 +170,7 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
         along = minus(next_corner(solids, over, i), corner)
         if length_of(minus(at, corner)) < SAME * length_of(along):
             gap = dot(normal, minus(at, corner_of(solids, solids.first[face])))
-            write_place(table, count, blocks, at, normal, gap)
+            write_place(place, blocks, at, normal, gap)
             return
         distance = distance_from(at, corner, along)
         if distance < from_edge:
@@ -178,7 +183,7 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
         if length_of(off) < SAME * length_of(own):
             normal = normal_of(solids, over)
             gap = dot(normal, minus(corner, corner_of(solids, solids.first[over])))
-            write_place(table, count, (blocks[1], blocks[0]), corner, normal, gap)
+            write_place(place, (blocks[1], blocks[0]), corner, normal, gap)
             return
         distance = distance_from(off, scaled(0.0, own), own)
         if distance < from_crossed:
@@ -192,18 +197,17 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
     size = length_of(across)
     if abs(dot(across, normal)) > UPRIGHT * size and size > PARALLEL * length_of(along) * length_of(own):
         normal = scaled(math.copysign(1 / size, dot(across, normal)), across)
-    write_place(table, count, blocks, at, normal, dot(normal, minus(at, below)))
+    write_place(place, blocks, at, normal, dot(normal, minus(at, below)))
 
 
 @inlined
-def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
+def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count: int, room: Array) -> int:
     """Write the places where a block lies over a face of another. Returns how many places there are then.
 
     Args:
         solids: the blocks where they are.
         face, blocks: the face, its block, and the other one.
-        table: places, a row each: block of the face, other block, place, normal out of the face, gap [m], share, and
-            the area of the part [m2].
+        table: rows of `PLACE`.
         count: how many places there are.
         room: for the corners of two faces, twice.
     """
@@ -216,7 +220,7 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count
         share = turn_at(room, corners, i)
         if share > SAME:
             if count < len(table):
-                meet(solids, faces, blocks, vector(room, i, SPACE.axes), table, count)
-                table[count, 9], table[count, 10] = share, area
+                meet(solids, faces, blocks, vector(room, i, SPACE.axes), table[count])
+                table[count].share, table[count].area = share, area
             count += 1
     return count

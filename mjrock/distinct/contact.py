@@ -15,26 +15,13 @@ import math
 from typing import NamedTuple
 
 from ..compiled import inlined
-from ..geometry.vectors import (
-    Vector,
-    components,
-    dot,
-    increase,
-    minus,
-    moment,
-    no_spin,
-    plus,
-    put,
-    scaled,
-    spin_components,
-    spun,
-    vector,
-)
+from ..geometry.vectors import Vector, dot, increase, minus, moment, no_spin, plus, put, read, scaled, spun, vector
 from ..problem.masonry.joint_law import normal_force, shear_limit, stored
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction
 from .rows import POINT, Row, Rows
-from .system import Books, Supports, System
+from .supports import Supports
+from .system import Books, System
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
 from .turning import in_body, in_world, may_face_away, rotation_change, strike_body
 
@@ -66,27 +53,35 @@ class Meeting(NamedTuple):
 
 
 @inlined
-def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
-    """Where a line is."""
-    body, at, normal = system.bodies[line.body], components(line.at, axes), components(line.normal, axes)
+def over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector]:
+    """Where the point of a line is from its face, the normal of that, and the arms to it, see `Meeting`."""
+    body, at, normal = system.bodies[line.body], read(line.at), read(line.normal)
     change = rotation_change(body, at)
-    arm, across = plus(at, change), plus(components(line.between, axes), plus(components(body.place, axes), change))
-    face_arm, turned = arm, may_face_away(body, axes)
+    arm, across = plus(at, change), plus(read(line.between), plus(read(body.place), change))
+    face_arm = arm
     if line.face >= 0:
-        face, origin = system.bodies[line.face], components(line.origin, axes)
-        turned = turned or may_face_away(face, axes)
+        face, origin = system.bodies[line.face], read(line.origin)
         change = rotation_change(face, origin)
-        across = minus(across, plus(components(face.place, axes), change))
+        across = minus(across, plus(read(face.place), change))
         face_arm = plus(plus(origin, change), across)
         normal = plus(normal, rotation_change(face, normal))
     else:
         if line.support >= 0:
-            across = minus(across, vector(system.supports.moved, line.support, axes))
+            across = minus(across, vector(system.supports.moved, line.support, at))
         if line.face == POINT:
             normal, arm = in_world(body, normal), minus(arm, across)
+    return across, normal, arm, face_arm
+
+
+@inlined
+def meeting(system: System, line: Row) -> Meeting:
+    """Where a line is."""
+    body = system.bodies[line.body]
+    across, normal, arm, face_arm = over_face(system, line)
     gap = dot(normal, across)
     if gap < 0 and line.margin < math.inf:
-        if turned and dot(normal, in_world(body, components(line.normal, axes))) < 0:
+        turned = may_face_away(body) or (line.face >= 0 and may_face_away(system.bodies[line.face]))
+        if turned and dot(normal, in_world(body, read(line.normal))) < 0:
             return Meeting(TURNED_OVER, normal, arm, face_arm, True)
         if dot(across, across) - gap * gap > line.margin:
             return at_the_end(system, line, across, Meeting(gap, normal, arm, face_arm, False))
@@ -98,16 +93,16 @@ def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meet
     """Where a line is that may have moved past the outline of its face, `across` from its place there at rest [m]."""
     fixed = line.face < 0
     face, body = system.bodies[max(line.face, 0)], system.bodies[line.body]
-    reached = plus(components(line.origin, across), across if fixed else in_body(face, across))
+    reached = plus(read(line.origin), across if fixed else in_body(face, across))
     inside, share = pulled_inside(system.edges, line.first, line.last, reached)
     if share == 0:
         return meet
     over = minus(reached, inside)
     apart = plus(scaled(meet.gap, meet.normal), over if fixed else in_world(face, over))  # from the outline
-    own = in_world(body, components(line.normal, across))
+    own = in_world(body, read(line.normal))
     gap = dot(own, apart)
     along = minus(apart, scaled(gap, own))
-    place = minus(components(line.at, across), in_body(body, along))
+    place = minus(read(line.at), in_body(body, along))
     if is_beside(system.edges, line.own_first, line.own_last, place):
         gap = OPEN
     normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
@@ -116,16 +111,16 @@ def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meet
 
 
 @inlined
-def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting, axes: tuple[int, ...]) -> Vector:
+def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> Vector:
     """Velocity of the point of a line over the face [m/s]."""
     body = bodies[line.body]
-    velocity = plus(components(body.velocity, axes), spun(spin_components(body.spin, axes), meet.arm))
+    velocity = plus(read(body.velocity), spun(read(body.spin), meet.arm))
     if line.face >= 0:
         face = bodies[line.face]
-        of_face = plus(components(face.velocity, axes), spun(spin_components(face.spin, axes), meet.face_arm))
+        of_face = plus(read(face.velocity), spun(read(face.spin), meet.face_arm))
         velocity = minus(velocity, of_face)
     elif line.support >= 0:
-        velocity = minus(velocity, vector(supports.moving, line.support, axes))
+        velocity = minus(velocity, vector(supports.moving, line.support, velocity))
     return velocity
 
 
@@ -159,9 +154,7 @@ def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
 
 
 @inlined
-def press_lines(
-    system: System, books: Books, h: float, kick: float, lead: float, axes: tuple[int, ...]
-) -> tuple[int, int]:
+def press_lines(system: System, books: Books, h: float, kick: float, lead: float) -> tuple[int, int]:
     """Add the forces of all lines but rigid friction, and list the lines that stick rigidly, and those that touched.
 
     Args:
@@ -169,7 +162,6 @@ def press_lines(
         h: length of the step that led to the pose [s], zero at the start.
         kick: time for which the forces act on the velocities [s].
         lead: by how many steps dashpots look ahead, see `foreseen`.
-        axes: of the system.
 
     Returns:
         How many lines stick rigidly, and how many met or left their face in the last step.
@@ -180,14 +172,14 @@ def press_lines(
         line = lines[p]
         if line.k == 0 and line.margin == math.inf:
             continue  # its bond is intact, see `bonds`, or it is handed over, see `encounters`
-        meet = meeting(system, line, axes)
+        meet = meeting(system, line)
         if 0 <= meet.gap < TURNED_OVER:
             line.widest = max(line.widest, 0.0 if meet.past else meet.gap)
             if was_open(line):
-                put(line.grip, no_spin(axes))
+                put(line.grip, no_spin(meet.normal))
                 continue
         meet = where_friction_rubs(meet)
-        velocity = relative(bodies, line, supports, meet, axes)
+        velocity = relative(bodies, line, supports, meet)
         rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
         sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
         if lead > 0 and push > 0 and line.push > 0:
@@ -199,18 +191,20 @@ def press_lines(
                 touched += 1
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
         if meet.past or line.past == 1:
-            books.ends[0] += lost_at_the_end(line, meet, h * rate)
-        last, drag = spin_components(line.dragged, axes), no_spin(axes)
+            books.totals[0].joint_ends += lost_at_the_end(line, meet, h * rate)
+        last, drag = read(line.dragged), no_spin(meet.normal)
         if push <= 0:
             if push < 0 and line.push > 0:
                 drag = scaled(push / line.push, last_friction(bodies, line, last))
-            put(line.grip, no_spin(axes))
+            put(line.grip, no_spin(meet.normal))
         elif line.k_s < math.inf:
             drag = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))
         elif line.friction > 0:
             books.active[active] = p
-            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, (meet.arm, meet.face_arm), velocity, kick)
-            begin(system, line, (len(axes) - 1) * active, shear_limit(line, push), kick, axes)
+            list_rigid(
+                system, line, (len(meet.normal) - 1) * active, meet.normal, (meet.arm, meet.face_arm), velocity, kick
+            )
+            begin(system, line, (len(meet.normal) - 1) * active, shear_limit(line, push), kick, meet.normal)
             active += 1
         mean = scaled(0.5 * h, plus(last, drag))
         rubbed -= dot(mean, slip)
@@ -233,7 +227,7 @@ def press_lines(
 
 
 @inlined
-def settle_touches(system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]) -> tuple[float, float]:
+def settle_touches(system: System, books: Books, count: int, kick: float) -> tuple[float, float]:
     """Let the springs of lines that met or left their face do the work of their touch, see `touches`.
 
     Returns what the halves of these impulses before the pose have taken, which a sample counts as held by the springs,
@@ -245,12 +239,12 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
     for _ in range(PASSES):
         for i in range(count):
             line = system.lines[books.touched[i]]
-            meet = meeting(system, line, axes)
-            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet, axes))
+            meet = meeting(system, line)
+            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
             books.asked[i] = due_impulse(line, rate) - books.struck[i]
         for i in range(count):
             line, impulse = system.lines[books.touched[i]], books.asked[i]
-            meet = meeting(system, line, axes)
+            meet = meeting(system, line)
             strike_body(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
             if line.face >= 0:
                 strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
@@ -259,7 +253,7 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
         line = system.lines[books.touched[i]]
         if line.support >= 0:
             impulse = 0.5 * books.struck[i]
-            put_in += carried(line, system.supports, scaled(impulse, meeting(system, line, axes).normal))
+            put_in += carried(line, system.supports, scaled(impulse, meeting(system, line).normal))
         line.push, line.due = line.push + books.struck[i] / kick, 0.0
         taken -= 0.5 * books.struck[i] * line.rate
     books.totals[0].ground += put_in

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..problem.masonry.joint_law import Law, stored_along
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
@@ -35,7 +36,6 @@ from .looking import (
     fallen,
     held,
     longest_time,
-    surges,
     take_motion,
     wait,
     watch,
@@ -46,6 +46,7 @@ from .pair_law import SHARED, PairLaw, least_among, pair_number
 from .rows import chosen, joined, rows, unsound
 from .softening import Sides, shares_within
 from .solids import Poses
+from .supports import surges
 from .system import Books, System
 
 STAYED = 2e-4
@@ -188,11 +189,12 @@ class Encounters:
         return system, books, steps
 
     def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
-        """Add to the speeds of what is driven, a fixed block or one at a jack, by how much they change until a time."""
-        moves, jacks = np.flatnonzero(self.blocks.support >= 0), np.flatnonzero(system.actuators["body"] >= 0)
+        """Add to the speeds of what is driven, a fixed block or one at a link, by how much they change until a time."""
+        moves = np.flatnonzero(self.blocks.support >= 0)
         motion.about[moves] += surges(system.supports, t, until)[self.blocks.support[moves]]
-        driven = self.blocks.free[system.actuators["body"][jacks]]
-        np.add.at(motion.about, driven, surges(system.drives, t, until)[jacks])
+        for table in system.links:
+            bodies, changes = table.surges(t, until)
+            np.add.at(motion.about, self.blocks.free[bodies], changes)
 
     def _worn(self, system: System) -> tuple[Flags, Flags]:
         """Which pairs of blocks have left their joints since the last look, shape (p,), and which blocks have left one,
@@ -256,7 +258,7 @@ class Encounters:
         books.totals[0].friction -= given
         after, gives = held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         late = 0.5 * h * (gives - gave) if met.since > 0 else 0.0  # forces change half a step before the pose
-        books.ends[1] += before + given - after - late
+        books.totals[0].encounter_ends += before + given - after - late
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:
@@ -276,7 +278,7 @@ def in_shear(system: System) -> float:
     energy = 0.0
     for table in (system.lines, system.bonds):
         sprung = np.asarray(table)[np.isfinite(table["k_s"])]
-        energy += 0.5 * float((sprung["k_s"] * (sprung["grip"].T ** 2).sum(axis=0)).sum())
+        energy += float(np.sum(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0))))
     return energy
 
 

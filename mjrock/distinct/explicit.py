@@ -15,7 +15,7 @@ from ..problem.wall.plausible import warn_if_still
 from ..quantities import require_flag, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
-from ..result.response import Response, State
+from ..result.response import End, Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
 from ..result.stopwatch import Stopwatch
@@ -40,7 +40,7 @@ def solve_explicit(
     output_step: float | None = None,
     ledger: bool = False,
     forces: bool = False,
-    start: State | None = None,
+    start: End | State | None = None,
     mass_damping: float = 0.0,
     local_damping: float = 0.0,
 ) -> Response:
@@ -108,10 +108,10 @@ def solve_explicit(
     books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.is_slowed)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    counts = {"looks": len(steps.looks(steps.last + 1)), "actuators": len(setup.system.actuators)}
-    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, **counts)
+    samples = Samples.room(count, setup.system, books, ledger=ledger, looks=len(steps.looks(steps.last + 1)))
     if forces:
-        samples = samples.with_forces(*required_room(case, count))
+        joints, fixed, _, actuators = required_room(case, count)
+        samples = samples.with_forces(joints, fixed, actuators)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
@@ -131,7 +131,7 @@ def solve_explicit(
     if isinstance(case, MasonryCase):
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     looked = steps.looks(followed.steps)
-    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
+    run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)

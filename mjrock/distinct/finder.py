@@ -17,13 +17,14 @@ import numpy as np
 
 from ..compiled import compiled_at_once, inlined
 from ..geometry.frames import SPACE
-from ..geometry.vectors import Vector, dot, minus, plus, scaled, spun, vector
+from ..geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, vector
 from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.joints import each_with_each, numbered_parts
 from ..quantities import Array, Flags, Integers
-from .clipping import clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
+from .clipping import PLACE, clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
 from .grid import lay_out
 from .pair_law import pair_number
+from .rows import Rows, rows
 from .solids import Poses, Solids, inside_of, solids_of
 
 EDGES = 0.8
@@ -129,17 +130,17 @@ class Finder:
         self._fixed = np.array([block.fixed for block in blocks])[self.owner]
         centroids = (np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)[self.owner]
         solids = solids_of(blocks, self._half)
-        self.volumes = np.bincount(self.owner, weights=[solid.volume for solid in solids])
+        self.volumes = np.add.reduceat([solid.volume for solid in solids], self.first)
         self._rank = ranked([block.fixed for block in blocks], self.volumes, drawn[:, -1], self._half)
         inside = [flags for block in blocks for flags in inside_of(block)]
         self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
         most = int(np.diff(self.solids.first).max())
-        self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 3))
+        self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 3))
 
     def apart(self) -> Finder:
         """The same with room of its own, which runs in two threads must not share."""
         fresh = copy(self)
-        fresh._table, fresh._room = np.empty_like(self._table), np.empty_like(self._room)
+        fresh._table, fresh._room = self._table.copy(), np.empty_like(self._room)
         return fresh
 
     def found(self, poses: Poses, reach: Array, watched: Flags, skipped: Integers) -> Found:
@@ -158,20 +159,18 @@ class Finder:
         order, pairs = np.argsort(low[:, axis]), (skipped, self.jointed)
         near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs, self._cells)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
-            self._table = np.empty((2 * count, 11))
-        table = self._in_order(self._table[:count])
-        face, other = table[:, :2].astype(np.int64).T
-        found = Found(face, other, *(table[:, part].copy() for part in (slice(2, 5), slice(5, 8), 8, 9, 10)))
+            self._table = rows(PLACE, 2 * count)
+        table = self._table[:count]
+        found = self._in_order(Found(*(table[name].copy() for name in PLACE.names or ())))
         found = self._of_the_plane(found) if self.flat else found
         return found if self.number.max() == 1 else self._among_blocks(found)
 
-    def _in_order(self, table: Array) -> Array:
+    def _in_order(self, found: Found) -> Found:
         """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
         in rank, those of a pair together."""
-        one, other = table[:, :2].astype(np.int64).T
-        ranks = (self._rank[self.owner[solid]] for solid in (one, other))
-        pairs = pair_number(*ranks, len(self.number)), pair_number(one, other, len(self.owner))
-        return np.asarray(table[np.lexsort(pairs[::-1])])
+        rank = self._rank[self.owner]
+        of_blocks = pair_number(rank[found.face], rank[found.other], len(self.number))
+        return found.only(np.lexsort((pair_number(found.face, found.other, len(self.owner)), of_blocks)))
 
     def between(self, a: Integers, b: Integers) -> Integers:
         """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
@@ -250,7 +249,7 @@ def among(values: Integers, number: int) -> bool:
 
 
 @compiled_at_once
-def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
+def find(solids: Solids, near: Near, table: Rows, room: Array) -> int:
     """Write the places of all pairs that are near, see `clipping.clip`, those of faces in the grid of their joint where
     they had one.
 
@@ -291,7 +290,7 @@ def find_pair(
     solids: Solids,
     reach: float,
     blocks: tuple[int, int],
-    table: Array,
+    table: Rows,
     count: int,
     room: Array,
     cells: tuple[int, int] = (1, 1),
@@ -325,21 +324,21 @@ def find_pair(
 
 
 @inlined
-def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Array, count: int) -> int:
+def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Rows, count: int) -> int:
     """Write a corner of a face that another block is near and does not lie over, as two that come together at their
     corners: a place without a share, so that it is known when to look again. Returns how many places there are then."""
     corner = solids.first[face]
     for i in range(corner, solids.first[face + 1]):
         if corner_of(solids, i)[1] > corner_of(solids, corner)[1]:  # at the end of the prisms that is kept
             corner = i
-    write_place(table, count, blocks, corner_of(solids, corner), normal_of(solids, face), gap)
-    table[count, 9], table[count, 10] = 0.0, 0.0
+    write_place(table[count], blocks, corner_of(solids, corner), normal_of(solids, face), gap)
+    table[count].share = table[count].area = 0.0
     return count + 1
 
 
 @inlined
 def shallowest(
-    solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Array, count: int, room: Array
+    solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Rows, count: int, room: Array
 ) -> tuple[int, tuple[int, int], float]:
     """The face of two blocks that overlap along which their places are least deep, its block and the other one, and the
     least gap of these places [m].
@@ -356,7 +355,7 @@ def shallowest(
     first = deepest(table, count, clip(solids, face, blocks, table, count, room))
     there, most, middle = first >= 0, -math.inf, corner_of(solids, solids.first[face])
     if there:
-        most, middle = table[first, 8], vector(table[:, 2:5], first, SPACE.axes)
+        most, middle = table[first].gap, read(table[first].at)
     slack = ON_ENDS * max(-most, 0.0)
     common = there and lies_in(solids, blocks[0], middle, slack) and lies_in(solids, blocks[1], middle, slack)
     best, of_best, taken = face, blocks, LESS * most
@@ -365,7 +364,7 @@ def shallowest(
         for one in range(solids.face[block], solids.face[block + 1]):
             if one != face and not solids.inside[one] and outside(solids, one, other) > least:
                 row = deepest(table, count, clip(solids, one, (block, other), table, count, room))
-                gap = table[row, 8] if row >= 0 else -math.inf
+                gap = table[row].gap if row >= 0 else -math.inf
                 open_or_beside = (there and gap >= 0) or (common and gap > height(solids, one, middle))
                 if gap > taken and not open_or_beside:
                     best, of_best, taken, most = one, (block, other), gap, gap
@@ -373,11 +372,11 @@ def shallowest(
 
 
 @inlined
-def deepest(table: Array, first: int, last: int) -> int:
+def deepest(table: Rows, first: int, last: int) -> int:
     """Which of some places has the least gap, -1 for none."""
     best = -1
     for i in range(first, last):
-        if best < 0 or table[i, 8] < table[best, 8]:
+        if best < 0 or table[i].gap < table[best].gap:
             best = i
     return best
 
@@ -465,12 +464,12 @@ def edge_towards(solids: Solids, block: int, way: Vector) -> tuple[Vector, Vecto
 
 
 @inlined
-def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: float, table: Array, count: int) -> int:
+def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: float, table: Rows, count: int) -> int:
     """Write the place where two edges cross. Returns how many places there are then."""
     if count < len(table):
         start, along = edge_towards(solids, blocks[0], normal)
         other, way = edge_towards(solids, blocks[1], scaled(-1.0, normal))
         share = dot(spun(minus(start, other), along), normal) / dot(spun(way, along), normal)
-        write_place(table, count, blocks, plus(other, scaled(share, way)), normal, apart)
-        table[count, 9], table[count, 10] = OF_EDGES, 0.0
+        write_place(table[count], blocks, plus(other, scaled(share, way)), normal, apart)
+        table[count].share, table[count].area = OF_EDGES, 0.0
     return count + 1

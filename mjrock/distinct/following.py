@@ -17,7 +17,7 @@ from ..scene.explicit_step import stepping_seconds
 from .encounters import Encounters
 from .loop import Clock, advance
 from .memory import Memory, remember
-from .rows import unsound
+from .rows import ENDLESS, unsound
 from .setup import Setup
 from .system import Books, Samples, System
 
@@ -166,8 +166,10 @@ def breakdown(what: str, t: float) -> RuntimeError:
 
 def require_sound_rows(system: System) -> None:
     """Raise a RuntimeError that names the rows of a system in which a number is not finite."""
-    for name, table in system._asdict().items():
-        if isinstance(table, np.ndarray) and table.dtype.names and len(wrong := unsound(table)):
+    tables = [(name, getattr(system, name), ENDLESS) for name in ("bodies", "lines", "edges", "ways", "bonds")]
+    tables += [(type(links).__name__, links.rows, links.endless) for links in system.links]
+    for name, table, endless in tables:
+        if len(wrong := unsound(table, endless)):
             raise RuntimeError(
                 f"the {name} {wrong[:5].tolist()} of the explicit steps have numbers that are not finite"
             )

@@ -18,13 +18,13 @@ import math
 from ..compiled import inlined
 from ..geometry.vectors import (
     Vector,
-    components,
     dot,
     increase,
     minus,
     moment,
     plus,
     put,
+    read,
     scaled,
     spin_components,
     spun,
@@ -36,7 +36,8 @@ from ..geometry.vectors import (
 from ..problem.masonry.joint_law import shear_limit
 from ..quantities import Array, Integers
 from .rows import Row, Rows
-from .system import Books, Supports, System
+from .supports import Supports
+from .system import Books, System
 from .turning import in_body, in_world, kick_place, spin_from_many, turn_momentum
 
 SWEEPS = 50
@@ -115,7 +116,7 @@ def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
     """Friction of a line in the last step [N], of which `dragged` is that of its shear spring."""
     if line.k_s < math.inf:
         return dragged
-    grip = spin_components(line.grip, dragged) if len(dragged) == 3 else (line.grip[0],)
+    grip = read(line.grip) if len(dragged) == 3 else (line.grip[0],)
     return in_world(bodies[line.face], grip) if line.face >= 0 else grip
 
 
@@ -125,7 +126,7 @@ def yielding(body: Row, way: Vector) -> float:
 
     It is not quite zero of a body that a guide holds, so that it can be divided by.
     """
-    light: float = dot(way, times(components(body.inverse_mass, way), way))
+    light: float = dot(way, times(read(body.inverse_mass), way))
     return light if light * body.mass > HELD else HELD / body.mass
 
 
@@ -187,23 +188,23 @@ def list_rigid(
     list_way(system, line, first, way, arm, face_arm, velocity)
     list_way(system, line, first + 1, other, arm, face_arm, velocity)
     a.drift, b.drift = dot(way, drift), dot(other, drift)
-    a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
+    a.coupling = dot(read(a.lever), read(b.spin))
     if line.face >= 0:
-        a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
+        a.coupling += dot(read(a.lever_on_face), read(b.spin_of_face))
     area = 1 / (a.compliance * b.compliance - a.coupling * a.coupling)
     a.stiffness, a.shared, b.stiffness = area * b.compliance, area * a.coupling, area * a.compliance
 
 
 @inlined
-def slip_along(system: System, row: Row, axes: tuple[int, ...]) -> float:
+def slip_along(system: System, row: Row) -> float:
     """Velocity along a way of a line that sticks rigidly [m/s]."""
-    body, way = system.bodies[row.body], components(row.way, axes)
-    slip = dot(way, components(body.velocity, axes))
-    slip += dot(spin_components(row.lever, axes), spin_components(body.spin, axes))
+    body, way = system.bodies[row.body], read(row.way)
+    slip = dot(way, read(body.velocity))
+    slip += dot(read(row.lever), read(body.spin))
     if row.face >= 0:
         face = system.bodies[row.face]
-        slip -= dot(way, components(face.velocity, axes))
-        slip -= dot(spin_components(row.lever_on_face, axes), spin_components(face.spin, axes))
+        slip -= dot(way, read(face.velocity))
+        slip -= dot(read(row.lever_on_face), read(face.spin))
     return slip - carried(row, system.supports, way)
 
 
@@ -216,16 +217,16 @@ def along_ways(impulses: Vector, first: Vector, second: Vector) -> Vector:
 
 
 @inlined
-def strike(system: System, first: int, impulses: Vector, axes: tuple[int, ...]) -> None:
+def strike(system: System, first: int, impulses: Vector) -> None:
     """Let impulses along the ways of a line act on the velocities of its body and of that of its face [N s]."""
     a, b = system.ways[first], system.ways[first + len(impulses) - 1]
-    body, kick = system.bodies[a.body], along_ways(impulses, components(a.way, axes), components(b.way, axes))
+    body, kick = system.bodies[a.body], along_ways(impulses, read(a.way), read(b.way))
     kick_place(body, kick)
-    increase(body.spin, along_ways(impulses, spin_components(a.spin, axes), spin_components(b.spin, axes)))
+    increase(body.spin, along_ways(impulses, read(a.spin), read(b.spin)))
     if a.face >= 0:
         face = system.bodies[a.face]
         kick_place(face, scaled(-1.0, kick))
-        spin = along_ways(impulses, spin_components(a.spin_of_face, axes), spin_components(b.spin_of_face, axes))
+        spin = along_ways(impulses, read(a.spin_of_face), read(b.spin_of_face))
         increase(face.spin, scaled(-1.0, spin))
 
 
@@ -238,17 +239,17 @@ def impulses_of(system: System, first: int, axes: tuple[int, ...]) -> Vector:
 
 
 @inlined
-def begin(system: System, line: Row, first: int, held: float, kick: float, axes: tuple[int, ...]) -> None:
+def begin(system: System, line: Row, first: int, held: float, kick: float, axes: Vector) -> None:
     """Let the ways of a line start with the friction of the last step, as far as the face holds it now [N]."""
     limit: float = kick * held
-    grip = scaled(kick, spin_components(line.grip, axes))
+    grip = scaled(kick, read(line.grip))
     if line.face >= 0:
         grip = in_world(system.bodies[line.face], grip)
     if len(axes) == 2:
         impulses = shortened(grip, limit)
     else:
         a, b = system.ways[first], system.ways[first + 1]
-        impulses = shortened((dot(components(a.way, axes), grip), dot(components(b.way, axes), grip)), limit)
+        impulses = shortened((dot(read(a.way), grip), dot(read(b.way), grip)), limit)
     for i in range(len(axes) - 1):
         row = system.ways[first + i]
         row.impulse, row.limit = impulses[i], limit
@@ -262,11 +263,11 @@ def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
     takes nothing, and stays where it is.
     """
     a = system.ways[first]
-    slip, limit = slip_along(system, a, axes) + a.drift, a.limit
+    slip, limit = slip_along(system, a) + a.drift, a.limit
     if len(axes) == 2:
         return shortened((a.impulse - slip * a.stiffness,), limit)
     b = system.ways[first + 1]
-    other = slip_along(system, b, axes) + b.drift
+    other = slip_along(system, b) + b.drift
     along = a.impulse - (a.stiffness * slip - a.shared * other)
     across = b.impulse - (b.stiffness * other - a.shared * slip)
     if along * along + across * across > limit * limit:  # it slips, and friction is against the slip
@@ -283,7 +284,7 @@ def stop(system: System, first: int, axes: tuple[int, ...]) -> float:
     """Stop the slip of one line as far as its face can. Returns by how much its impulses have changed [N s]."""
     impulses = stopping(system, first, axes)
     change = minus(impulses, impulses_of(system, first, axes))
-    strike(system, first, change, axes)
+    strike(system, first, change)
     system.ways[first].impulse = impulses[0]
     if len(axes) == 2:
         return abs(change[0])
@@ -301,7 +302,7 @@ def stick(system: System, active: Integers, count: int, kick: float, axes: tuple
     each, largest = len(axes) - 1, 0.0
     for i in range(count):
         largest = max(largest, system.ways[each * i].limit)
-        strike(system, each * i, impulses_of(system, each * i, axes), axes)
+        strike(system, each * i, impulses_of(system, each * i, axes))
     for sweep in range(SWEEPS):
         changed = 0.0
         for start in range(STRIDE):
@@ -322,11 +323,11 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[i
         line.grip[0] = impulses[0] / kick
         return
     a, b = system.ways[first], system.ways[first + 1]
-    lever = along_ways(impulses, spin_components(a.lever, axes), spin_components(b.lever, axes))
+    lever = along_ways(impulses, read(a.lever), read(b.lever))
     turn_momentum(system.bodies[a.body], lever)
-    grip = scaled(1 / kick, along_ways(impulses, components(a.way, axes), components(b.way, axes)))
+    grip = scaled(1 / kick, along_ways(impulses, read(a.way), read(b.way)))
     if a.face >= 0:
-        lever = along_ways(impulses, spin_components(a.lever_on_face, axes), spin_components(b.lever_on_face, axes))
+        lever = along_ways(impulses, read(a.lever_on_face), read(b.lever_on_face))
         turn_momentum(system.bodies[a.face], scaled(-1.0, lever))
         grip = in_body(system.bodies[a.face], grip)
     put(line.grip, grip)
@@ -339,8 +340,8 @@ def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]
     totals, rubbed, put_in = books.totals[0], 0.0, 0.0
     for i in range((len(axes) - 1) * count):
         row = system.ways[i]
-        totals.friction -= 0.5 * row.impulse * (row.slip + slip_along(system, row, axes))
-        work = row.impulse * carried(row, system.supports, components(row.way, axes))
+        totals.friction -= 0.5 * row.impulse * (row.slip + slip_along(system, row))
+        work = row.impulse * carried(row, system.supports, read(row.way))
         totals.ground += work
         rubbed -= 0.5 * row.impulse * row.slip
         put_in += 0.5 * work

@@ -1,4 +1,4 @@
-"""Forces that are kept at a sample: of joints, of fixed blocks, of links and of what actuators drive.
+"""Forces that are kept at a sample: of joints, of fixed blocks and of what actuators drive.
 
 A row keeps the force along its normal and that of its friction in the last step. They are gathered when all forces of
 the step have acted, those of rigid friction and of touches too.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import inlined
-from ..geometry.vectors import Vector, components, increase, moment, plus, put, scaled, spin_components
+from ..geometry.vectors import Vector, increase, moment, plus, put, read, scaled
 from ..quantities import Array
 from .contact import meeting, where_friction_rubs
 from .friction import as_vector, last_friction
@@ -19,9 +19,9 @@ from .touches import was_open
 
 
 @inlined
-def whole_friction(system: System, line: Row, axes: tuple[int, ...]) -> Vector:
+def whole_friction(system: System, line: Row) -> Vector:
     """Friction of a line in the last step, along its face [N]. One that sticks rigidly is dragged as it leaves."""
-    dragged = spin_components(line.dragged, axes)
+    dragged: Vector = read(line.dragged)
     if line.k_s < math.inf:
         return dragged
     return plus(dragged, last_friction(system.bodies, line, dragged))
@@ -36,22 +36,21 @@ def add_moment(load: Array, factor: float, place: Vector, force: Vector) -> None
 
 
 @inlined
-def keep_burden(system: System, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+def keep_burden(system: System, samples: Samples, row: int) -> None:
     """Keep what weight, ground motion and links do to the blocks of actuators, before any contact acts on them."""
     guided = samples.guided[row]
     for i in range(len(guided)):
-        if system.actuators[i].body < 0:
+        if system.guided[i] < 0:
             continue
-        body = system.bodies[system.actuators[i].body]
-        put(guided[i], components(body.force, axes))
-        put(guided[i][len(axes) :], spin_components(body.moment, axes))
+        body = system.bodies[system.guided[i]]
+        put(guided[i], read(body.force))
+        put(guided[i][len(body.force) :], read(body.moment))
 
 
 @inlined
-def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+def keep_forces(system: System, samples: Samples, row: int) -> None:
     """Keep the forces of the last step at a sample, where there is room for them."""
-    loads, held, pulled, ties = samples.loads[row], samples.held[row], samples.pulled[row], len(system.ties)
-    guided = samples.guided[row]
+    loads, held, guided = samples.loads[row], samples.held[row], samples.guided[row]
     if len(held) == 0:
         return
     for p in range(len(system.lines)):
@@ -61,24 +60,22 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
             samples.damage[row, line.group] += system.bonds[p].share * (1 - system.bonds[p].left)
         if was_open(line) and not bonded:
             continue
-        meet = where_friction_rubs(meeting(system, line, axes))
-        push, drag = line.push, whole_friction(system, line, axes)
+        meet = where_friction_rubs(meeting(system, line))
+        push, drag = line.push, whole_friction(system, line)
         if bonded:
             push += system.bonds[p].push
-            drag = plus(drag, spin_components(system.bonds[p].dragged, axes))
+            drag = plus(drag, read(system.bonds[p].dragged))
         force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
         if line.group < len(loads):
             body = system.bodies[line.body]
-            place = plus(components(body.rest, axes), plus(components(body.place, axes), meet.arm))
+            place = plus(read(body.rest), plus(read(body.place), meet.arm))
             add_moment(loads[line.group], line.sense, place, force)
         if line.fixed >= 0:
             increase(held[line.fixed], force)
         for i in range(len(guided)):
-            if system.actuators[i].body < 0:
+            if system.guided[i] < 0:
                 continue
-            if system.actuators[i].body == line.body:
+            if system.guided[i] == line.body:
                 add_moment(guided[i], 1.0, meet.arm, force)
-            elif system.actuators[i].body == line.face:
+            elif system.guided[i] == line.face:
                 add_moment(guided[i], -1.0, meet.face_arm, force)
-    for i in range(len(pulled)):
-        pulled[i] = system.ties[i].pulled if i < ties else system.dampers[i - ties].pulled

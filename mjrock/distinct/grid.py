@@ -31,6 +31,7 @@ from .clipping import (
     turn_at,
     write_place,
 )
+from .rows import Row, Rows
 from .solids import Solids
 
 Quad = tuple[Vector, Vector, Vector, Vector]
@@ -182,8 +183,7 @@ def press_at(
     blocks: tuple[int, int],
     at: Vector,
     on_edge: bool,
-    table: Array,
-    number: int,
+    place: Row,
 ) -> None:
     """Write a place of the part of a face that lies over another, which is not a corner of it: a point of the face
     over, or, at an edge of the face below alone, a point of that edge on the face over."""
@@ -193,9 +193,9 @@ def press_at(
     if on_edge and not is_at_outline(solids, over, at):
         below, normal = minus(at, scaled(gap, normal)), normal_of(solids, over)
         gap = dot(normal, minus(below, corner_of(solids, solids.first[over])))
-        write_place(table, number, (blocks[1], blocks[0]), below, normal, gap)
+        write_place(place, (blocks[1], blocks[0]), below, normal, gap)
     else:
-        write_place(table, number, blocks, at, normal, gap)
+        write_place(place, blocks, at, normal, gap)
 
 
 @inlined
@@ -204,7 +204,7 @@ def lay_out(
     face: int,
     blocks: tuple[int, int],
     cells: tuple[int, int],
-    table: Array,
+    table: Rows,
     count: int,
     room: Array,
 ) -> int:
@@ -226,15 +226,15 @@ def lay_out(
         return count + nodes
     area, middle = area_of(room, corners), middle_of(room, corners)
     for node in range(count, count + nodes):
-        table[node, 9], table[node, 10] = 0.0, area
+        table[node].share, table[node].area = 0.0, area
     for q in range(grid.quads):
         quad = quad_of(room, grid, q, middle)
         for i in range(grid.along + 1):
             for j in range(grid.across + 1):
                 number, at = count + number_of(grid, q, i, j), place_in(quad, i / grid.along, j / grid.across)
-                table[number, 9] += stands_for(quad, grid, i, j) / area
+                table[number].share += stands_for(quad, grid, i, j) / area
                 if is_corner(grid, i, j):
-                    meet(solids, faces, blocks, at, table, number)
+                    meet(solids, faces, blocks, at, table[number])
                 else:
-                    press_at(solids, faces, blocks, at, is_on_edge(grid, i, j), table, number)
+                    press_at(solids, faces, blocks, at, is_on_edge(grid, i, j), table[number])
     return count + nodes

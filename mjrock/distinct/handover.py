@@ -25,7 +25,7 @@ from ..geometry.vectors import (
     tangent,
     vector,
 )
-from ..problem.masonry.joint_law import shear_limit
+from ..problem.masonry.joint_law import depth_of_energy, depth_of_force, normal_force, shear_limit, stored
 from ..quantities import Array, Integers
 from .finder import Found
 from .friction import shortened
@@ -38,7 +38,7 @@ block [-]. Along the normal it may be as far as the blocks overlap."""
 ALIKE = 0.7
 """Cosine of the angle between the normals of two places that are the same [-]."""
 REGAINED = 1.25
-"""Largest factor by which a find raises what presses of the overlap of a place [-]."""
+"""Largest factor by which a find raises the force of a place [-]."""
 HAIR = 1e-9
 """Opening at which a place begins that nothing presses at, over its overlap [-]. So it is not rounding that decides
 whether it has touched."""
@@ -206,14 +206,16 @@ def press(new: Lines, places: tuple[int, int], found: Found, gone: Lines, ends: 
     has lost force at a find gets it back at others, or blocks would sink into each other from find to find."""
     force = energy = had = held = 0.0
     for j in range(ends[0], ends[1]):
-        had += gone.rows[j].k * gone.depth[j]
-        held += gone.rows[j].k * gone.depth[j] ** 2
+        had += normal_force(gone.rows[j], -gone.depth[j], 0.0)
+        held += stored(gone.rows[j], -gone.depth[j])
     for i in range(places[0], places[1]):
-        force += new.rows[i].k * new.depth[i]
-        energy += new.rows[i].k * new.depth[i] ** 2
-    share = min(REGAINED, had / force, math.sqrt(held / energy)) if force > 0 else 0.0
+        force += normal_force(new.rows[i], -new.depth[i], 0.0)
+        energy += stored(new.rows[i], -new.depth[i])
+    of_force, of_energy = (min(REGAINED, had / force), held / energy) if force > 0 else (0.0, 0.0)
     for i in range(places[0], places[1]):
-        new.depth[i] = min(share * new.depth[i], max(-found.gap[i], 0.0))
+        row, depth = new.rows[i], new.depth[i]
+        pressed = min(depth_of_force(row, of_force, depth), depth_of_energy(row, of_energy, depth))
+        new.depth[i] = min(pressed, max(-found.gap[i], 0.0))
 
 
 @inlined
@@ -327,5 +329,5 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
         for i in range(begin, end):
             line = new.rows[i]
             if line.k_s < math.inf:
-                most = shear_limit(line, line.k * new.depth[i]) / line.k_s
+                most = shear_limit(line, normal_force(line, -new.depth[i], 0.0)) / line.k_s
                 put(line.grip, shortened(spin_components(line.grip, axes), most))

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..problem.masonry.joint_law import largest_stiffness
 from ..quantities import Array
 from .system import System
 
@@ -46,7 +47,8 @@ class Impacts(NamedTuple):
         moves = light > 0  # where guides hold both blocks along the normal there is no impact
         _, first, joint = np.unique(lines["group"][moves], return_index=True, return_inverse=True)
         light = light[moves][first]
-        stiffness, damping = (light * np.bincount(joint, lines[name][moves]) for name in ("k", "c"))
+        springs = largest_stiffness(lines), lines["c"]
+        stiffness, damping = (light * np.bincount(joint, each[moves]) for each in springs)
         frequency = np.sqrt(stiffness)
         return cls(frequency, damping / (2 * frequency))
 

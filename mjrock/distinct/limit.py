@@ -12,7 +12,8 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
-from ..linear import entries, rates_of
+from ..linear import rates_of
+from ..problem.masonry.joint_law import largest_stiffness
 from ..problem.masonry.joints_in_space import axes_across
 from ..quantities import Array
 from ..scene.explicit_step import stable_step
@@ -25,19 +26,19 @@ def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
     lines, bodies = system.lines, len(system.bodies)
     rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
-    linked = (system.ties, system.dampers, system.actuators)
-    rates += [link_rates(links, bodies) for links in linked[:2]] + [drive_rates(system)]
+    links = [table for table in system.links if any(of.any() for of in table.springs())]
+    rates += [table.rates(system.bodies) for table in links]
     lengths, root = (
         csr_array(vstack(rates)),
         csr_array(block_diag([coo_array(root) for root in roots_of_masses(system.bodies)])),
     )
 
-    def weights(along: str, across: str) -> Array:
-        shear = np.where(np.isfinite(lines["k_s"]), lines[across], 0.0)
-        ways = [shear] * (len(system.axes) - 1)
-        return np.concatenate([lines[along], *ways, *(links[along] for links in linked)])
+    def weights(i: int) -> Array:
+        along, across = ((largest_stiffness(lines), lines["k_s"]), (lines["c"], lines["c_s"]))[i]
+        ways = [np.where(np.isfinite(lines["k_s"]), across, 0.0)] * (len(system.axes) - 1)
+        return np.concatenate([along, *ways, *(table.springs()[i] for table in links)])
 
-    return stable_step(highest(lengths, weights("k", "k_s"), root), highest(lengths, weights("c", "c_s"), root))
+    return stable_step(*(highest(lengths, weights(i), root) for i in range(2)))
 
 
 def highest(rates: csr_array, weights: Array, root: Any) -> float:
@@ -71,20 +72,3 @@ def line_rates(lines: Rows, way: Array, bodies: int) -> csr_array:
     """Rates at which the points of lines move over their faces in directions, for unit velocities at rest."""
     arms = np.asarray(lines["at"]), np.asarray(lines["origin"])
     return rates_of(np.column_stack([lines["body"], lines["face"]]), arms, way, bodies)
-
-
-def link_rates(links: Rows, bodies: int) -> csr_array:
-    """Rates at which ties or dampers lengthen, for unit velocities at rest."""
-    between, arms = np.asarray(links["between"]), (np.asarray(links["at"]), np.asarray(links["origin"]))
-    ways = between / np.linalg.norm(between, axis=1)[:, None]
-    return rates_of(np.column_stack([links["body"], links["anchor"]]), arms, ways, bodies)
-
-
-def drive_rates(system: System) -> csr_array:
-    """Rates at which what actuators drive moves, for unit velocities at rest: a point, or the centroid of all."""
-    actuators, mass, bodies = system.actuators, np.asarray(system.bodies["mass"]), len(system.bodies)
-    ways = np.where((actuators["body"] < 0)[:, None], actuators["between"], 0.0)
-    turning = np.zeros((len(actuators), 2 * ways.shape[1] - 3))
-    shares = np.hstack([ways, turning])[:, None] * (mass / mass.sum())[:, None]
-    pairs = np.broadcast_to(np.arange(bodies), shares.shape[:2])
-    return csr_array(link_rates(actuators, bodies) + entries(shares, pairs, shares.shape[1] * shares.shape[2]))

@@ -20,6 +20,7 @@ from ..geometry.vectors import (
     no_spin,
     plus,
     put,
+    read,
     scaled,
     spin_components,
 )
@@ -30,9 +31,10 @@ from .bonds import bonded_energy, hold_bonds
 from .contact import press_lines, settle_touches
 from .friction import book_rubbing, stick
 from .gathering import keep_burden, keep_forces
-from .links import linked_energy, move_supports, pull_links
+from .links import act_all, hold_all
 from .rows import Rows
 from .slowing import oppose, slow_down
+from .supports import move_supports
 from .system import Books, Samples, System
 from .touches import in_transit, was_open
 from .turning import (
@@ -95,72 +97,73 @@ def accelerated(ground: Ground, t: float, h: float, axes: tuple[int, ...]) -> Ve
 
 
 @inlined
-def upwards(size: float, axes: tuple[int, ...]) -> Vector:
-    """A vertical vector."""
+def upwards(size: float, axes: Vector) -> Vector:
+    """A vertical vector of as many components as another one."""
     if len(axes) == 2:
         return 0.0, size
     return 0.0, 0.0, size
 
 
 @inlined
-def start_forces(system: System, books: Books, push: Vector, before: float, axes: tuple[int, ...]) -> None:
+def start_forces(system: System, books: Books, push: Vector, before: float) -> None:
     """Start the forces with weight and ground motion, and book the work of the ground in the last step.
 
     Args:
         system, books: the bodies and the accounts.
         push: mean acceleration of the ground while the forces act [m/s2].
         before: length of the last step [s].
-        axes: of the system.
     """
     totals, done = books.totals[0], 0.0
-    mean = scaled(0.5, plus(push, components(totals.push, axes)))
-    weight = plus(push, upwards(GRAVITY, axes))
+    mean = scaled(0.5, plus(push, read(totals.push)))
+    weight = plus(push, upwards(GRAVITY, push))
     for b in range(len(system.bodies)):
         body = system.bodies[b]
-        take_turn(body, axes)
+        take_turn(body)
         if len(system.ways) > 0:
-            take_inverse_inertia(body, axes)
-        done -= before * body.mass * dot(mean, components(body.velocity, axes))
+            take_inverse_inertia(body)
+        done -= before * body.mass * dot(mean, read(body.velocity))
         put(body.force, scaled(-body.mass, weight))
-        put(body.moment, no_spin(axes))
+        put(body.moment, no_spin(push))
     totals.ground += done
     put(totals.push, push)
 
 
 @inlined
-def kick_bodies(bodies: Rows, kick: float, axes: tuple[int, ...]) -> None:
+def kick_bodies(bodies: Rows, kick: float) -> None:
     """Let forces and moments act for a time [s]."""
     for b in range(len(bodies)):
         body = bodies[b]
-        kick_place(body, scaled(kick, components(body.force, axes)))
-        kick_spin(body, kick, axes)
+        kick_place(body, scaled(kick, read(body.force)))
+        kick_spin(body, scaled(kick, read(body.moment)))
 
 
 @inlined
-def move_bodies(bodies: Rows, h: float, axes: tuple[int, ...]) -> None:
+def move_bodies(bodies: Rows, h: float) -> None:
     """Move the bodies by a step."""
     for b in range(len(bodies)):
         body = bodies[b]
-        increase(body.place, scaled(h, components(body.velocity, axes)))
-        turn_body(body, h, axes)
+        increase(body.place, scaled(h, read(body.velocity)))
+        turn_body(body, h)
 
 
 @inlined
-def keep_pose(system: System, books: Books, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
+def keep_pose(system: System, books: Books, samples: Samples, row: int, before: float) -> None:
     """Keep pose and velocities before it, the potential and elastic energy, and the accounts of work.
 
     In place of the spins the angular momenta are kept for now, see `keep_velocity`. `before` is the length of the last
     step [s]."""
-    d = len(axes)
     for b in range(len(system.bodies)):
         body, pose, velocity = system.bodies[b], samples.pose[row, b], samples.velocity[row, b]
-        put(pose, components(body.place, axes))
-        write_turn(body, pose, axes)
-        put(velocity, components(body.velocity, axes))
-        put(velocity[d:], momentum_of(body, axes))
+        put(pose, read(body.place))
+        write_turn(body, pose)
+        put(velocity, read(body.velocity))
+        put(velocity[len(body.place) :], momentum_of(body))
     keep_account(books.dashpots, samples.dashpots[row])
-    potential, elastic = linked_energy(system, axes)
-    bonded, sheared = bonded_energy(system, axes)
+    energy, totals = samples.energy[row], books.totals[0]
+    energy.potential = energy.elastic = energy.driven = 0.0
+    hold_all(system.links, system, books, energy, samples.pulled[row])
+    elastic = energy.elastic
+    bonded, sheared = bonded_energy(system)
     for p in range(len(system.lines)):
         line = system.lines[p]
         if not was_open(line):
@@ -169,28 +172,13 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
             if samples.dashpots.shape[1] > 0:
                 samples.dashpots[row, line.group] += early
         if line.k_s < math.inf:
-            grip = spin_components(line.grip, axes)
+            grip = read(line.grip)
             sheared += stored_along(line, dot(grip, grip))
-    energy, totals = samples.energy[row], books.totals[0]
-    energy.potential, energy.elastic = potential, elastic + bonded + sheared
-    energy.friction, energy.ground, energy.driven = totals.friction - sheared, totals.ground, books.driven.sum()
-    keep_account(books.dampers, samples.dampers[row])
-    keep_account(books.driven, samples.driven[row])
-    keep_account(books.ties, samples.ties[row])
-    keep_account(books.broken, samples.broken[row])
-    keep_account(books.ends, energy.ends)
-    for i in range(len(system.actuators)):
-        samples.actuators[row, i] = system.actuators[i].pulled
-    keep_account(books.bonds, energy.bonds)
-
-
-@inlined
-def keep_energy(samples: Samples, row: int, look: int) -> None:
-    """Keep the energy of a sample as that of a look."""
-    of, energy = samples.energy[row], samples.looks[look]
-    energy.kinetic, energy.potential, energy.elastic = of.kinetic, of.potential, of.elastic
-    energy.friction, energy.ground, energy.driven = of.friction, of.ground, of.driven
-    keep_account(of.ends, energy.ends)
+    energy.elastic = elastic + bonded + sheared
+    energy.friction, energy.ground = totals.friction - sheared, totals.ground
+    energy.tension, energy.slip, energy.crushing = totals.tension, totals.slip, totals.crushing
+    energy.joint_ends, energy.encounter_ends = totals.joint_ends, totals.encounter_ends
+    keep_account(books.links, samples.links[row])
 
 
 @inlined
@@ -201,18 +189,19 @@ def keep_account(account: Array, kept: Array) -> None:
 
 
 @inlined
-def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
+def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float) -> None:
     """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy.
 
     Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]. The
     kinetic energy is that which the steps conserve: half the product of velocity and momentum before and after the
     pose, at a start after it and as far before it. It is less than that of the mean velocity, and below zero where a
     stiff contact turns a motion round."""
-    kinetic, potential, share, d = 0.0, 0.0, 0.5 if before > 0 else 0.0, len(axes)
+    kinetic, potential, share = 0.0, 0.0, 0.5 if before > 0 else 0.0
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
-        linear, momentum = components(velocity, axes), spin_components(velocity[d:], axes)
-        faster, turned = minus(components(body.velocity, axes), linear), minus(momentum_of(body, axes), momentum)
+        after, d = read(body.velocity), len(body.place)
+        linear, momentum = components(velocity, after), spin_components(velocity[d:], after)
+        faster, turned = minus(after, linear), minus(momentum_of(body), momentum)
         linear, faster = plus(linear, scaled(share, faster)), scaled(1 - share, faster)
         momentum, turned = (
             in_body(body, plus(momentum, scaled(share, turned))),
@@ -229,14 +218,14 @@ def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes:
 
 
 @inlined
-def is_astray(bodies: Rows, ends: float, axes: tuple[int, ...]) -> bool:
+def is_astray(bodies: Rows, ends: float) -> bool:
     """Whether a body has gone so far that the run has broken down, or has turned by more than a run follows."""
     for b in range(len(bodies)):
         body = bodies[b]
-        for i in range(len(axes)):
+        for i in range(len(body.place)):
             if not abs(body.place[i]) < GONE:
                 return True
-        if not turns_within(body, ends, axes):
+        if not turns_within(body, ends):
             return True
     return False
 
@@ -264,23 +253,22 @@ def make_steps(
         looked = n % clock.look == 0 or n == clock.last
         kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
         move_supports(system.supports, n * h, before)
-        move_supports(system.drives, n * h, before)
         push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
         if n == 0:
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
-        start_forces(system, books, push, before, axes)
-        pull_links(system, books, n * h, before, axes)
+        start_forces(system, books, push, before)
+        act_all(system.links, system, books, n * h, before)
         if sampled:
-            keep_burden(system, samples, row, axes)
-        hold_bonds(system, books, before, axes)
-        sticking, touched = press_lines(system, books, before, kick, clock.lead, axes)
+            keep_burden(system, samples, row)
+        hold_bonds(system, books, before)
+        sticking, touched = press_lines(system, books, before, kick, clock.lead)
         if sampled or looked:
-            keep_pose(system, books, samples, kept, before, axes)
+            keep_pose(system, books, samples, kept, before)
         if clock.local > 0:
-            oppose(system, books, clock.local, kick, axes)
-        kick_bodies(system.bodies, kick, axes)
+            oppose(system, books, clock.local, kick)
+        kick_bodies(system.bodies, kick)
         stick(system, books.active, sticking, kick, axes)
-        taken, put_in = settle_touches(system, books, touched, kick, axes)
+        taken, put_in = settle_touches(system, books, touched, kick)
         samples.energy[kept].elastic += taken
         samples.energy[kept].ground += put_in
         if accounted:
@@ -289,16 +277,16 @@ def make_steps(
                 samples.energy[kept].friction += rubbed
                 samples.energy[kept].ground += put_in
         if clock.drag > 0:
-            slow_down(system, books, clock.drag * kick, axes)
+            slow_down(system, books, clock.drag * kick)
         if sampled or looked:
-            keep_velocity(system.bodies, samples, kept, before, axes)
+            keep_velocity(system.bodies, samples, kept, before)
         if looked:
-            keep_energy(samples, kept, -(-n // clock.look))
+            samples.looks[-(-n // clock.look)] = samples.energy[kept]
         if sampled:
-            keep_forces(system, samples, row, axes)
+            keep_forces(system, samples, row)
             row += 1
-            if is_astray(system.bodies, clock.ends, axes):
+            if is_astray(system.bodies, clock.ends):
                 return n, row, True
-        move_bodies(system.bodies, h, axes)
+        move_bodies(system.bodies, h)
         n += 1
     return n, row, False

@@ -35,8 +35,7 @@ def longest_step_of_loose(masonry: Masonry, law: PairLaw, system: System) -> flo
             kept.append(int(body[i]))
     if not kept:
         return math.inf
-    alone = {name: getattr(system, name)[:0] for name in ("ties", "dampers", "actuators")}
-    return longest_step(system._replace(bodies=chosen(system.bodies, np.array(kept)), lines=joined(*tables), **alone))
+    return longest_step(system._replace(bodies=chosen(system.bodies, np.array(kept)), lines=joined(*tables), links=()))
 
 
 def _springs(block: AnyBlock, shared: Array) -> list[tuple[Array, Array, Array]]:

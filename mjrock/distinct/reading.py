@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -19,16 +19,16 @@ from ..result.forces import Forces, Gathered, JointFrames, forces_of
 from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
 from ..result.reading import BesidePoses, Reading, masonry_reading, wall_reading
-from ..result.response import Response
+from ..result.response import End, Response
 from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
-from ..scene.course import Course
 from ..scene.scene import Scene
-from .bonds import TAKEN, cracked
+from .bonds import cracked
 from .following import Followed
-from .memory import remembered
-from .rows import Rows
-from .system import Books, Samples
+from .kinds.ties import Ties
+from .rows import Row, Rows
+from .setup import Setup
+from .system import ENERGY, Books, Samples
 
 OPEN = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
@@ -45,12 +45,23 @@ class Run:
     case: Case | MasonryCase
     contacts: Contacts | None
     scene: Scene
-    course: Course
+    setup: Setup
     followed: Followed
     books: Books
     samples: Samples
     t: Array
     looked: Array
+
+    @property
+    def links(self) -> Iterator[tuple[Any, Row, str]]:
+        """The table, the row and the name of each link."""
+        for table, names in zip(self.followed.system.links, self.setup.names, strict=True):
+            for row, name in zip(table.rows, names, strict=True):
+                yield table, row, name
+
+    def forces_of(self, told: str, pulled: Array) -> dict[str, Array]:
+        """The force of each link that is told as a link or as an actuator, by name, among those of all."""
+        return {name: pulled[:, row.number] for table, row, name in self.links if table.told == told}
 
     @property
     def in_space(self) -> bool:
@@ -66,7 +77,7 @@ class Run:
         """The same of samples or looks, the first of which is the start."""
         at_rest = self.scene.rest_energies.sum()
         there = energy["kinetic"] + energy["potential"] + energy["elastic"]
-        preloaded = float(there[0] - at_rest - self.course.energy(self.scene))
+        preloaded = float(there[0] - at_rest - self.setup.course.energy(self.scene))
         return np.asarray(there - (float(at_rest) + preloaded))
 
     @property
@@ -97,10 +108,10 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         joints=reading.joints,
         plastic=yielded,
         ledger=ledger_of(run, kept) if ledger else None,
-        actuators=dict(zip(actuators_of(run.case), samples.actuators[kept].T, strict=True)),
+        actuators=run.forces_of("actuators", samples.pulled[kept]),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
-        end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
+        end=End(samples.pose[-1].copy(), samples.velocity[-1].copy(), run.followed.memory),
     )
     if response.ledger is not None:
         residual = float(np.abs(response.ledger.residual).max())
@@ -115,30 +126,27 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     return response
 
 
-def actuators_of(case: Case | MasonryCase) -> tuple[str, ...]:
-    """Names of the actuators of a case."""
-    return tuple(case.actuators) if isinstance(case, MasonryCase) else ()
-
-
 def kept_forces(run: Run, kept: Integers) -> Forces | None:
     """The forces of a run at some of its samples, if they were kept."""
-    samples, links = run.samples.taken(kept), run.scene.links
+    samples = run.samples.taken(kept)
     if not samples.held.shape[1]:
         return None
-    pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
+    pulled, driven = run.forces_of("links", -samples.pulled), run.forces_of("actuators", samples.pulled)
     damage = None
     if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
         dry = [bond is None for bond in run.case.masonry.bonds]
         damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
-    gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, samples.guided, damage)
+    jacks = np.array([*driven.values()]).T.copy() if driven else None
+    gathered = Gathered(run.t[kept], *loads, pulled, jacks, samples.guided, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
 def plastic(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, books = run.followed.system.ties, run.books
-    return plastic_of(run.scene, ties["drawn"], books.ties, ties["broken"], books.broken)
+    ties, work = next(table.rows for table in run.followed.system.links if isinstance(table, Ties)), run.books.links
+    first = ties["account"]
+    return plastic_of(run.scene, ties["drawn"], work[first], ties["broken"], work[first + 1])
 
 
 def reading_of(run: Run) -> Reading:
@@ -152,7 +160,7 @@ def reading_of(run: Run) -> Reading:
         gone = cracked(run.followed.system.bonds, run.scene.contacts.joint, case.masonry)
         return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left, gone))
     assert contacts is not None
-    return wall_reading(case, contacts, run.t, motion, released=run.course.released)
+    return wall_reading(case, contacts, run.t, motion, released=run.setup.course.released)
 
 
 def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
@@ -168,7 +176,8 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
     looks = run.samples.looks[: len(run.looked)]
-    work, left, there = looks["ground"] + looks["driven"], looks["ends"].sum(axis=1), run.above_rest(looks)
+    work, left = looks["ground"] + looks["driven"], looks["joint_ends"] + looks["encounter_ends"]
+    there = run.above_rest(looks)
     given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
     elastic = float(looks["elastic"].max())  # and masonry that is wedged, or pushed by supports
@@ -195,20 +204,22 @@ def advice(stats: Mapping[str, Any], share: float, wanted: float) -> str:
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
-    scene, samples, driving = run.scene, run.samples.taken(kept), actuators_of(run.case)
-    energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
-    dashpots = dict(zip((*scene.links.damped.names, *driving), samples.dampers.T, strict=True))
-    groups = (*scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
-    dashpots |= dict(zip(groups, samples.dashpots.T, strict=True))
-    broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
+    samples = run.samples.taken(kept)
+    energy: dict[str, Any] = {name: np.asarray(samples.energy[name]) for name in ENERGY.names or ()}
+    booked: dict[str, Any] = {"dashpots": {}, "actuators": {}, "ties": {}, "broken": {}}
+    for table, row, name in run.links:
+        for i, part in enumerate(table.booked):
+            booked[part][name] = samples.links[:, row.account + i]
+    may_break = dict(zip(run.scene.links.sprung.names, np.isfinite(run.scene.links.sprung.ultimate), strict=True))
+    booked["broken"] = {name: account for name, account in booked["broken"].items() if may_break[name]}
+    groups = (*run.scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
+    booked["dashpots"] |= dict(zip(groups, samples.dashpots.T, strict=True))
+    ends = {"joints": energy["joint_ends"], "encounters": energy["encounter_ends"]}
+    bonds = {name: energy[name] for name in ("tension", "slip", "crushing")}
     return Ledger(
         t=run.t[kept],
-        **{name: np.asarray(energy[name]) for name in ("kinetic", "potential", "elastic", "ground")},
-        dashpots=dashpots,
-        friction=np.asarray(energy["friction"]),
-        actuators=dict(zip(driving, samples.driven.T, strict=True)),
-        ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
-        broken={name: account for name, account, breaks in broken if breaks},
-        ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),
-        bonds=dict(zip(TAKEN, energy["bonds"].T, strict=True)) if len(run.followed.system.bonds) else {},
+        **{name: energy[name] for name in ("kinetic", "potential", "elastic", "friction", "ground")},
+        **booked,
+        ends={} if isinstance(run.case, Case) else ends,
+        bonds=bonds if len(run.followed.system.bonds) else {},
     )

@@ -1,4 +1,4 @@
-"""Rows: bodies, contact lines, edges of faces and links, each with its numbers by name, for compiled functions.
+"""Rows: bodies, contact lines and edges of faces, each with its numbers by name, for compiled functions.
 
 What belongs together stands together in memory, which is what a step of some thousand lines takes its time for.
 Vectors have d = 2 numbers in the plane and 3 in space. Spins, moments and vectors along a face have s = 1 and 3.
@@ -22,6 +22,8 @@ POINT = -2
 """Number of the face of a line where the point is on a fixed block and the face on the body."""
 Fields = list[Any]
 """Names of numbers, and of vectors with how many numbers they have."""
+TAKEN = ("tension", "slip", "crushing", "joint_ends", "encounter_ends")
+"""What bonds have taken in tension, slip and crushing, and lines of joints and of encounters at the ends of faces."""
 
 
 class Kinds(NamedTuple):
@@ -33,9 +35,9 @@ class Kinds(NamedTuple):
         edge: an edge of a face, of which one in the plane has two.
         way: a direction along its face of a line that sticks rigidly. A line has d - 1 of them.
         bond: what a mortared line has beside its row, a row for each line of the joints.
-        link: a tie, a damper, an actuator or a constant force on a point of a body, from the ground or from another
-            body.
-        total: what is booked for all lines together.
+        total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
+            the work of ground and supports, and `TAKEN`; and `push`, the acceleration of the ground in the last step
+            [m/s2].
     """
 
     body: np.dtype[np.void]
@@ -43,7 +45,6 @@ class Kinds(NamedTuple):
     edge: np.dtype[np.void]
     way: np.dtype[np.void]
     bond: np.dtype[np.void]
-    link: np.dtype[np.void]
     total: np.dtype[np.void]
 
 
@@ -57,119 +58,105 @@ def kinds(d: int) -> Kinds:
         _edge(d),
         _way(d, s),
         _bond(s),
-        _link(d),
-        [*_number("friction", "ground"), *_vector(d, "push")],
+        [*numbers("friction", "ground", *TAKEN), *vectors(d, "push")],
     )
     return Kinds(*(np.dtype(kind) for kind in fields))
 
 
-def _number(*names: str) -> Fields:
+def numbers(*names: str) -> Fields:
+    """Numbers of a row."""
     return [(name, float) for name in names]
 
 
-def _integer(*names: str) -> Fields:
+def integers(*names: str) -> Fields:
+    """Integers of a row."""
     return [(name, np.int64) for name in names]
 
 
-def _vector(size: int, *names: str) -> Fields:
+def vectors(size: int, *names: str) -> Fields:
+    """Vectors of a row, of some size."""
     return [(name, float, (size,)) for name in names]
 
 
 def _body(d: int, s: int) -> Fields:
-    flat = [*_number("angle"), *_vector(2, "turn")]
-    deep = [*_vector(4, "quaternion"), ("turn", float, (3, 3)), *_vector(3, "momentum")]
+    flat = [*numbers("angle"), *vectors(2, "turn")]
+    deep = [*vectors(4, "quaternion"), ("turn", float, (3, 3)), *vectors(3, "momentum")]
     deep += [("inverse_in_world", float, (3, 3))]  # inverse inertia in the axes of the world at the pose [1/(kg m2)]
     return [
-        *_number("mass"),  # [kg]
-        *_vector(d, "inverse_mass"),  # along the axes, zero where a guide holds the body [1/kg]
+        *numbers("mass"),  # [kg]
+        *vectors(d, "inverse_mass"),  # along the axes, zero where a guide holds the body [1/kg]
         ("inverse_inertia", float, (s, s)),  # in its axes [1/(kg m2)]
-        *_vector(d, "rest"),  # centroid at rest [m]
-        *_vector(d, "place"),  # displacement from there [m]
+        *vectors(d, "rest"),  # centroid at rest [m]
+        *vectors(d, "place"),  # displacement from there [m]
         *(flat if d == 2 else deep),  # rotation from rest, see `turning`
-        *_vector(d, "velocity"),  # half a step before the pose [m/s]
-        *_vector(s, "spin"),  # likewise, in the axes of the world at the pose [rad/s]
-        *_vector(d, "force"),  # at the pose [N]
-        *_vector(s, "moment"),  # likewise [N m]
+        *vectors(d, "velocity"),  # half a step before the pose [m/s]
+        *vectors(s, "spin"),  # likewise, in the axes of the world at the pose [rad/s]
+        *vectors(d, "force"),  # at the pose [N]
+        *vectors(s, "moment"),  # likewise [N m]
     ]
 
 
 def _line(d: int, s: int) -> Fields:
     return [
-        *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 or POINT where fixed
-        *_integer("support"),  # the support that moves a fixed block, -1 for none
-        *_integer("group"),  # number of the account
-        *_integer("fixed"),  # number of the fixed block of its face among these, -1 where that is a body
-        *_number("sense"),  # 1 where its body is above its joint, -1 where it is below
-        *_vector(d, "at"),  # the point from the centroid of its body [m]
-        *_vector(d, "origin"),  # a point of the face from the centroid of its body [m]
-        *_vector(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
-        *_vector(d, "normal"),  # unit vector out of the face, of a POINT into that of the body
-        *_number("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
-        *_number("friction"),  # coefficient [-]
-        *_number("margin"),  # square of the least way from the origin to the end of the face, or infinite [m2]
-        *_integer("first", "last"),  # the edges of the face
-        *_integer("own_first", "own_last"),  # the edges of the face of its own body
-        *_vector(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
-        *_number("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
-        *_number("depth", "rate"),  # overlap, and growth of the gap, in the last step [m, m/s]
-        *_number("due"),  # what its spring is still to do for a touch in this step, see `touches` [kg]
-        *_integer("past"),  # 1 for a line that was past the end of its face then
-        *_vector(s, "dragged"),  # friction of the shear spring in the last step [N]
-        *_number("widest"),  # largest gap so far [m]
+        *integers("body", "face"),  # the body that carries the point, and that of the face, -1 or POINT where fixed
+        *integers("support"),  # the support that moves a fixed block, -1 for none
+        *integers("group"),  # number of the account
+        *integers("fixed"),  # number of the fixed block of its face among these, -1 where that is a body
+        *numbers("sense"),  # 1 where its body is above its joint, -1 where it is below
+        *vectors(d, "at"),  # the point from the centroid of its body [m]
+        *vectors(d, "origin"),  # a point of the face from the centroid of its body [m]
+        *vectors(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
+        *vectors(d, "normal"),  # unit vector out of the face, of a POINT into that of the body
+        *numbers("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
+        *numbers("friction"),  # coefficient [-]
+        *numbers("margin"),  # square of the least way from the origin to the end of the face, or infinite [m2]
+        *integers("first", "last"),  # the edges of the face
+        *integers("own_first", "own_last"),  # the edges of the face of its own body
+        *vectors(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
+        *numbers("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
+        *numbers("depth", "rate"),  # overlap, and growth of the gap, in the last step [m, m/s]
+        *numbers("due"),  # what its spring is still to do for a touch in this step, see `touches` [kg]
+        *integers("past"),  # 1 for a line that was past the end of its face then
+        *vectors(s, "dragged"),  # friction of the shear spring in the last step [N]
+        *numbers("widest"),  # largest gap so far [m]
     ]
 
 
 def _edge(d: int) -> Fields:
     return [
-        *_vector(d, "way"),  # its normal in the plane of the face
-        *_number("reach"),  # how far the face reaches along it from the centroid of the body [m]
-        *_number("band"),  # way beyond over which the normal of a contact turns [m]
+        *vectors(d, "way"),  # its normal in the plane of the face
+        *numbers("reach"),  # how far the face reaches along it from the centroid of the body [m]
+        *numbers("band"),  # way beyond over which the normal of a contact turns [m]
     ]
 
 
 def _way(d: int, s: int) -> Fields:
     return [
-        *_integer("body", "face", "support"),  # those of its line, so that sweeps need no lines
-        *_number("limit"),  # the most that the face holds in this step [N s]
-        *_vector(d, "way"),  # a direction along the face
-        *_vector(s, "lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
-        *_vector(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
-        *_number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
-        *_number("stiffness", "shared"),  # impulse that stops a slip of 1 m/s along the way, and along the other [kg]
-        *_number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
-        *_number("drift"),  # slip that turning bodies gain from the pose to the middle of the step [m/s]
+        *integers("body", "face", "support"),  # those of its line, so that sweeps need no lines
+        *numbers("limit"),  # the most that the face holds in this step [N s]
+        *vectors(d, "way"),  # a direction along the face
+        *vectors(s, "lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
+        *vectors(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
+        *numbers("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
+        *numbers("stiffness", "shared"),  # impulse that stops a slip of 1 m/s along the way, and along the other [kg]
+        *numbers("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
+        *numbers("drift"),  # slip that turning bodies gain from the pose to the middle of the step [m/s]
     ]
 
 
 def _bond(s: int) -> Fields:
     return [
-        *_number("k", "c", "k_s", "c_s", "friction", "margin"),  # of the line without bond; k is 0 for no bond
-        *_number("residual", "falls"),  # friction without bond, and what a whole bond adds to it [-]
-        *_number("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
-        *_number("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
-        *_number("left", "share"),  # what is left of the bond, 1 - D, and the line's part of the area of the joint [-]
-        *_number("peak", "hardens"),  # what it bears at its peak [N], and the plastic closing there, zero for none [m]
-        *_number("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]
-        *_number("secant"),  # stiffness that holds both ways [N/m]
-        *_number("gap", "push", "pressed"),  # gap [m], force, and force of the dashpot, of the last step [N]
-        *_vector(s, "grip", "dragged"),  # stretch of the shear spring [m], and its force in the last step [N]
-        *_number("age"),  # time that it has held until it cracked [s]
-    ]
-
-
-def _link(d: int) -> Fields:
-    return [
-        *_integer("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
-        *_integer("support"),  # the support that moves the fixed block of the other end, -1 for none
-        *_vector(d, "at"),  # where, from its centroid [m]
-        *_vector(d, "origin"),  # the other end from the centroid of the anchor [m]
-        *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]; way of an actuator
-        *_number("k", "c"),  # spring and dashpot [N/m, N s/m]
-        *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]; of an
-        # actuator the displacement of its point at the start of its history [m]
-        *_number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
-        *_number("pulled"),  # force in the last step, negative where it pulls [N]
-        *_number("dragged"),  # of an actuator, the part of it that its dashpot has [N]
+        *numbers("k", "c", "k_s", "c_s", "friction", "margin"),  # of the line without bond; k is 0 for no bond
+        *numbers("residual", "falls"),  # friction without bond, and what a whole bond adds to it [-]
+        *numbers("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
+        *numbers("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
+        *numbers("left", "share"),  # what is left of the bond, 1 - D, and the line's part of the area of the joint [-]
+        *numbers("peak", "hardens"),  # what it bears at its peak [N], and the plastic closing there, zero for none [m]
+        *numbers("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]
+        *numbers("secant"),  # stiffness that holds both ways [N/m]
+        *numbers("gap", "push", "pressed"),  # gap [m], force, and force of the dashpot, of the last step [N]
+        *vectors(s, "grip", "dragged"),  # stretch of the shear spring [m], and its force in the last step [N]
+        *numbers("age"),  # time that it has held until it cracked [s]
     ]
 
 
@@ -192,25 +179,25 @@ def chosen(table: Rows, which: Integers | Flags) -> Rows:
     return as_bytes(table)[which].reshape(-1).view(table.dtype).view(np.recarray)
 
 
-ENDLESS = ("k_s", "margin", "reach", "strength", "ultimate", "broken", "bears")
+ENDLESS = ("k_s", "margin", "bears")
 """Numbers that may be infinite: of a line that sticks rigidly, a face without an end, what never gives way."""
 
 
-def unsound(table: Rows) -> Integers:
+def unsound(table: Rows, endless: tuple[str, ...] = ENDLESS) -> Integers:
     """Numbers of the rows with a number that is not finite, or is none where it may be infinite."""
-    finite, endless = _words(table.dtype)
+    finite, infinite = _words(table.dtype, endless)
     words = as_bytes(table).view(float)
-    sound = np.isfinite(words[:, finite]).all(axis=1) & ~np.isnan(words[:, endless]).any(axis=1)
+    sound = np.isfinite(words[:, finite]).all(axis=1) & ~np.isnan(words[:, infinite]).any(axis=1)
     return np.flatnonzero(~sound)
 
 
 @lru_cache
-def _words(kind: np.dtype[np.void]) -> tuple[Flags, Flags]:
+def _words(kind: np.dtype[np.void], names: tuple[str, ...]) -> tuple[Flags, Flags]:
     """Which words of a row are numbers that must be finite, and which may be infinite. The others are integers."""
     finite, endless = np.zeros((2, kind.itemsize // 8), dtype=bool)
     for name, (of, at, *_) in (kind.fields or {}).items():
         if of.base == np.float64:
-            (endless if name in ENDLESS else finite)[at // 8 : (at + of.itemsize) // 8] = True
+            (endless if name in names else finite)[at // 8 : (at + of.itemsize) // 8] = True
     return finite, endless
 
 

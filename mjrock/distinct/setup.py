@@ -21,11 +21,12 @@ from ..scene.explicit_step import SHARE
 from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
-from .assembly import copied, driven_by, moved_by, started, system_of, take_grips
+from .assembly import copied, guide, moved_by, started, system_of, take_grips
 from .bonds import bonded
 from .encounters import Encounters
 from .impacts import Impacts
 from .limit import longest_step
+from .links import links_of
 from .memory import Memory, memory_of, recalled
 from .system import System
 
@@ -52,6 +53,7 @@ class Setup:
         impacts: flat impacts at the joints of masonry. A wall has none: its steps are below `SHORT`.
         of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
         blocks: the fixed blocks that move, in the order of the supports.
+        names: of the links of each kind.
         drag, local: mass-proportional [1/s] and local damping [-] of the motion.
         memory: of the run that this one carries on, or None.
     """
@@ -68,6 +70,7 @@ class Setup:
     of: object = None
     blocks: tuple[str, ...] = ()
     memory: Memory | None = None
+    names: tuple[tuple[str, ...], ...] = ()
     drag: float = 0.0
     local: float = 0.0
 
@@ -116,10 +119,12 @@ def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) ->
     """A wall at the start of a case, or in a given state."""
     scene = scene_of(case, contacts)
     course = continued(course_of(case, scene), state)
-    system = started(system_of(scene), course.pose, course.velocity)._replace(ground=course.ground)
+    system = system_of(scene)
+    names, links = links_of(scene, case, system.bodies)
+    system = started(system, course.pose, course.velocity)._replace(ground=course.ground, links=links)
     # peaks and impacts are read off the samples
     followed = longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE
-    return Setup(scene, course, system, *followed, of=(scene.key, contacts))
+    return Setup(scene, course, system, *followed, of=(scene.key, contacts), names=names)
 
 
 def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
@@ -127,9 +132,13 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     masonry = case.masonry
     scene, at_rest, drawn = standing(masonry, case.passive, case.settled)
     course = continued(masonry_course(case, scene), state)
-    system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
-    unguided = longest_step(system)
-    system = driven_by(system, scene, masonry, tuple(case.actuators.values()))
+    names, links = links_of(scene, case, at_rest.bodies)
+    passive = tuple(table for table in links if table.told != "actuators")
+    guided = np.concatenate([table.rows["body"] for table in links if table.told == "actuators"])
+    system = copied(at_rest)._replace(ground=course.ground, links=links, guided=guided)
+    system = moved_by(system, scene, masonry, case.supports)
+    unguided = longest_step(system._replace(links=passive))
+    guide(system, case)
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
     step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
@@ -137,7 +146,8 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
-    return Setup(scene, course, system, limit, share, encounters=encounters, impacts=impacts, of=of, blocks=blocks)
+    apart = {"encounters": encounters, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
+    return Setup(scene, course, system, limit, share, **apart)  # type: ignore[arg-type]
 
 
 def continued(course: Course, state: State | None) -> Course:

@@ -11,25 +11,32 @@ from __future__ import annotations
 import math
 
 from ..compiled import inlined
-from ..geometry.vectors import components, dot, put, scaled, spin_components
+from ..geometry.vectors import Vector, dot, put, read, scaled
 from ..quantities import Array
+from .rows import Row
 from .system import Books, System
 from .turning import momentum_of
 
 
 @inlined
-def slow_down(system: System, books: Books, share: float, axes: tuple[int, ...]) -> None:
+def slow_down(system: System, books: Books, share: float) -> None:
     """Let all velocities decay by exp(-share)."""
     left, taken = math.exp(-share), 0.0
     for b in range(len(system.bodies)):
         body = system.bodies[b]
-        velocity, spin = components(body.velocity, axes), spin_components(body.spin, axes)
-        taken += body.mass * dot(velocity, velocity) + dot(momentum_of(body, axes), spin)
+        velocity, spin = read(body.velocity), read(body.spin)
+        taken += body.mass * dot(velocity, velocity) + dot(momentum_of(body), spin)
         put(body.velocity, scaled(left, velocity))
-        put(body.spin, scaled(left, spin))
-        if len(axes) == 3:
-            put(body.momentum, scaled(left, components(body.momentum, axes)))
+        slow_turn(body, scaled(left, spin), left)
     books.dashpots[len(books.dashpots) - 1] += 0.5 * (1 - left * left) * taken
+
+
+@inlined
+def slow_turn(body: Row, spin: Vector, left: float) -> None:
+    """Give a body a spin, and leave it a share of its angular momentum, which only those of space keep."""
+    put(body.spin, spin)
+    if len(spin) == 3:
+        put(body.momentum, scaled(left, read(body.momentum)))
 
 
 @inlined
@@ -44,7 +51,7 @@ def opposed(force: Array, velocity: Array, share: float) -> float:
 
 
 @inlined
-def oppose(system: System, books: Books, share: float, kick: float, axes: tuple[int, ...]) -> None:
+def oppose(system: System, books: Books, share: float, kick: float) -> None:
     """Take a share of the unbalanced force and moment on each body while they act for a time [s]."""
     taken = 0.0
     for b in range(len(system.bodies)):

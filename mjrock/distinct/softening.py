@@ -26,6 +26,7 @@ from ..geometry.vectors import (
     times,
     vector,
 )
+from ..problem.masonry.joint_law import Law, largest_stiffness
 from ..quantities import Array, Integers
 from .rows import Row, Rows
 from .turning import spin_from_many
@@ -191,7 +192,7 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
         bodies: whose inverse inertia is taken in the axes of the world, in space.
         step: that is to be stable [s].
     """
-    along = step**2 * law["k"] + 2 * step * law["c"]
+    along = step**2 * largest_stiffness(Law(k=law["k"])) + 2 * step * law["c"]
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
     d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
     stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((2, nv, nv))

@@ -7,13 +7,15 @@ at the pose before, and the pose after takes it back, with the friction that bel
 
 With m = k tau (h - tau) / 2 [kg], negative for a line that has met its face, the spring is corrected by the impulse
 -m rate. The rate changes in the step, so that the work m rate (change of the rate) / 2 is still missing, known when
-all forces have acted, and one more impulse does it. The springs then give back the energy that they took.
+all forces have acted, and one more impulse does it. The springs then give back the energy that they took. Of a spring
+that is not linear k is its secant stiffness, and m grows by half of what that is above its equivalent stiffness, times
+the square of tau.
 """
 
 from __future__ import annotations
 
 from ..compiled import inlined
-from ..problem.masonry.joint_law import normal_force
+from ..problem.masonry.joint_law import equivalent_stiffness, normal_force, secant_stiffness
 from .rows import Row
 
 
@@ -51,10 +53,18 @@ def touched_forces(line: Row, gap: float, rate: float, h: float) -> tuple[float,
         return forces_of_leaving(line, gap, rate, h)
     if h * rate < gap < 0:
         since = gap / rate
-        late = 0.5 * (h - since) / h
-        line.due = -line.k * since * h * late
-        return (1 - late) * sprung, (1 - late) * sprung - (since / h + 0.5) * line.c * rate
+        late, bent = 0.5 * (h - since) / h, mass_of_bending(line, -gap, since)
+        line.due = -secant_stiffness(line, -gap) * since * h * late - bent
+        sprung = (1 - late) * sprung + bent * rate / h
+        return sprung, sprung - (since / h + 0.5) * line.c * rate
     return sprung, push
+
+
+@inlined
+def mass_of_bending(line: Row, depth: float, since: float) -> float:
+    """What a spring that is not linear adds to m [kg], at a depth that it reached or left in a time [m, s]."""
+    bent: float = 0.5 * (secant_stiffness(line, depth) - equivalent_stiffness(line, depth)) * since * since
+    return bent
 
 
 @inlined
@@ -67,11 +77,12 @@ def forces_of_leaving(line: Row, gap: float, rate: float, h: float) -> tuple[flo
         if gap <= 0:  # it has come to an end of its face
             return sprung, push
         since = line.depth / rate
-        mass = 0.5 * line.k * since * (h - since)
+        stiffness = secant_stiffness(line, line.depth)
+        mass = 0.5 * stiffness * since * (h - since) + mass_of_bending(line, line.depth, since)
         if held == 0:  # the dashpot has held the spring back, and takes what it held
             return -2 * mass * rate / h, 0.0
         sprung, line.due = -mass * rate / h, mass
-    pull = line.k * gap + line.c * rate  # the law, if it could pull
+    pull = secant_stiffness(line, abs(gap)) * gap + line.c * rate  # the law, if it could pull
     if held > 0 and pull > 0:
         push = -0.5 * held * pull / (held + pull)
     return sprung, push
@@ -90,7 +101,7 @@ def due_impulse(line: Row, rate: float) -> float:
 def in_transit(line: Row, h: float) -> tuple[float, float]:
     """Work for a touch in the last step that a sample counts as held by the spring, and what it counts as taken by the
     dashpot, which the halves of the impulses after the pose will take [J]."""
-    by_spring = 0.5 * h * (line.push - line.pressed - line.k * line.depth) * line.rate
+    by_spring = 0.5 * h * (line.push - line.pressed - normal_force(line, -line.depth, 0.0)) * line.rate
     if line.push < 0:
         work = 0.5 * h * line.push * line.rate
         return work, by_spring - work

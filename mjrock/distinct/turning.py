@@ -10,23 +10,13 @@ R - 1 keeps the digits of small rotations. `turn` holds it in space, and sin and
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from ..compiled import inlined
-from ..geometry.vectors import (
-    Vector,
-    components,
-    dot,
-    increase,
-    moment,
-    plus,
-    put,
-    scaled,
-    spin_components,
-    spun,
-    times,
-)
+from ..compiled import by_type, inlined
+from ..geometry.vectors import Vector, dot, increase, moment, plus, put, read, scaled, spun, times
 from ..quantities import Array
 from .rows import Row, Rows
 
@@ -53,13 +43,23 @@ def rotation_change(body: Row, a: Vector) -> Vector:
     )
 
 
+def by_body(flat: Callable[..., Any], deep: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of a body with one text for those of the plane, and one for those of space."""
+    return by_type(lambda body: flat if "angle" in (getattr(body, "fields", None) or body.dtype.names) else deep)
+
+
 @inlined
-def may_face_away(body: Row, axes: Vector) -> bool:
-    """Whether a body has turned by more than an eighth of a turn. Two bodies that have not can not face away."""
-    turn = body.turn
-    if len(axes) == 2:
-        return bool(turn[1] > EIGHTH)
-    return bool(turn[0, 0] + turn[1, 1] + turn[2, 2] < -2 * EIGHTH)
+def _far_in_plane(body: Row) -> bool:
+    return bool(body.turn[1] > EIGHTH)
+
+
+@inlined
+def _far_in_space(body: Row) -> bool:
+    return bool(body.turn[0, 0] + body.turn[1, 1] + body.turn[2, 2] < -2 * EIGHTH)
+
+
+may_face_away = by_body(_far_in_plane, _far_in_space)
+"""Whether a body has turned by more than an eighth of a turn. Two bodies that have not can not face away."""
 
 
 @inlined
@@ -105,12 +105,19 @@ def spin_from_moment(body: Row, a: Vector) -> Vector:
 
 
 @inlined
-def take_inverse_inertia(body: Row, axes: tuple[int, ...]) -> None:
-    """Keep I^-1 in the axes of the world at the pose, where many moments are to turn a body of space."""
-    if len(axes) == 3:
-        for i in range(3):
-            axis = (1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0, 1.0 if i == 2 else 0.0)
-            put(body.inverse_in_world[i], spin_from_moment(body, axis))
+def _no_inverse(body: Row) -> None:
+    pass
+
+
+@inlined
+def _inverse_in_space(body: Row) -> None:
+    for i in range(3):
+        axis = (1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0, 1.0 if i == 2 else 0.0)
+        put(body.inverse_in_world[i], spin_from_moment(body, axis))
+
+
+take_inverse_inertia = by_body(_no_inverse, _inverse_in_space)
+"""Keep I^-1 in the axes of the world at the pose, where many moments are to turn a body of space."""
 
 
 @inlined
@@ -127,38 +134,49 @@ def spin_from_many(body: Row, a: Vector) -> Vector:
 
 
 @inlined
-def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
-    """Angular momentum in the axes of the world [N m s]."""
-    if len(axes) == 2:
-        inverse = body.inverse_inertia[0, 0]
-        return (body.spin[0] / inverse if inverse > 0 else 0.0,)
-    return components(body.momentum, axes)
+def _momentum_in_plane(body: Row) -> Vector:
+    inverse = body.inverse_inertia[0, 0]
+    return (body.spin[0] / inverse if inverse > 0 else 0.0,)
 
 
 @inlined
-def take_turn(body: Row, axes: tuple[int, ...]) -> None:
-    """Bring R - 1 and the angular velocity of a body up to date with its pose."""
+def _momentum_in_space(body: Row) -> Vector:
+    momentum: Vector = read(body.momentum)
+    return momentum
+
+
+momentum_of = by_body(_momentum_in_plane, _momentum_in_space)
+"""Angular momentum in the axes of the world [N m s]."""
+
+
+@inlined
+def _turn_in_plane(body: Row) -> None:
+    half = math.sin(0.5 * body.angle)
+    body.turn[0], body.turn[1] = 2 * half * math.cos(0.5 * body.angle), 2 * half * half
+
+
+@inlined
+def _turn_in_space(body: Row) -> None:
     turn = body.turn
-    if len(axes) == 2:
-        half = math.sin(0.5 * body.angle)
-        turn[0], turn[1] = 2 * half * math.cos(0.5 * body.angle), 2 * half * half
-    else:
-        w, x, y, z = body.quaternion[0], body.quaternion[1], body.quaternion[2], body.quaternion[3]
-        turn[0, 0], turn[0, 1], turn[0, 2] = -2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
-        turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)
-        turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)
-        put(body.spin, spin_from_moment(body, momentum_of(body, axes)))
+    w, x, y, z = body.quaternion[0], body.quaternion[1], body.quaternion[2], body.quaternion[3]
+    turn[0, 0], turn[0, 1], turn[0, 2] = -2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)
+    turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)
+    put(body.spin, spin_from_moment(body, read(body.momentum)))
+
+
+take_turn = by_body(_turn_in_plane, _turn_in_space)
+"""Bring R - 1 and the angular velocity of a body up to date with its pose."""
 
 
 @inlined
-def kick_spin(body: Row, kick: float, axes: tuple[int, ...]) -> None:
-    """Let the moment on a body act for a time [s]."""
-    change = scaled(kick, spin_components(body.moment, axes))
-    if len(axes) == 2:
+def kick_spin(body: Row, change: Vector) -> None:
+    """Let the impulse of a moment act on a body [N m s]."""
+    if len(change) == 1:
         increase(body.spin, apply_inverse_inertia(body, change))
     else:
         increase(body.momentum, change)
-        put(body.spin, spin_from_moment(body, momentum_of(body, axes)))
+        put(body.spin, spin_from_moment(body, read(body.momentum)))
 
 
 @inlined
@@ -171,7 +189,7 @@ def turn_momentum(body: Row, change: Vector) -> None:
 @inlined
 def kick_place(body: Row, impulse: Vector) -> None:
     """Let an impulse act on the centroid of a body [N s]."""
-    increase(body.velocity, times(components(body.inverse_mass, impulse), impulse))
+    increase(body.velocity, times(read(body.inverse_mass), impulse))
 
 
 @inlined
@@ -208,45 +226,61 @@ def middle_spin(body: Row, momentum: Vector, h: float) -> Vector:
 
 
 @inlined
-def turn_body(body: Row, h: float, axes: tuple[int, ...]) -> None:
-    """Turn a body by a step of length h."""
-    if len(axes) == 2:
-        body.angle += h * body.spin[0]
-    else:
-        spin = middle_spin(body, momentum_of(body, axes), h)
-        size = math.sqrt(dot(spin, spin))
-        half = 0.5 * h * size
-        if half < SMALL:
-            c, share = 1 - 0.5 * half * half, 0.5 * h * (1 - half * half / 6)
-        else:
-            c, share = math.cos(half), math.sin(half) / size
-        x, y, z = scaled(share, spin)
-        turned = body.quaternion
-        qw, qx, qy, qz = turned[0], turned[1], turned[2], turned[3]
-        w = qw * c - qx * x - qy * y - qz * z
-        i = qw * x + qx * c + qy * z - qz * y
-        j = qw * y - qx * z + qy * c + qz * x
-        k = qw * z + qx * y - qy * x + qz * c
-        size = 1 / math.sqrt(w * w + i * i + j * j + k * k)
-        turned[0], turned[1], turned[2], turned[3] = w * size, i * size, j * size, k * size
+def _step_in_plane(body: Row, h: float) -> None:
+    body.angle += h * body.spin[0]
 
 
 @inlined
-def write_turn(body: Row, pose: Array, axes: tuple[int, ...]) -> None:
-    """Write the rotation of a body into its pose, after the displacements."""
-    if len(axes) == 2:
-        pose[2] = body.angle
+def _step_in_space(body: Row, h: float) -> None:
+    spin = middle_spin(body, momentum_of(body), h)
+    size = math.sqrt(dot(spin, spin))
+    half = 0.5 * h * size
+    if half < SMALL:
+        c, share = 1 - 0.5 * half * half, 0.5 * h * (1 - half * half / 6)
     else:
-        for i in range(4):
-            pose[3 + i] = body.quaternion[i]
+        c, share = math.cos(half), math.sin(half) / size
+    x, y, z = scaled(share, spin)
+    turned = body.quaternion
+    qw, qx, qy, qz = turned[0], turned[1], turned[2], turned[3]
+    w = qw * c - qx * x - qy * y - qz * z
+    i = qw * x + qx * c + qy * z - qz * y
+    j = qw * y - qx * z + qy * c + qz * x
+    k = qw * z + qx * y - qy * x + qz * c
+    size = 1 / math.sqrt(w * w + i * i + j * j + k * k)
+    turned[0], turned[1], turned[2], turned[3] = w * size, i * size, j * size, k * size
+
+
+turn_body = by_body(_step_in_plane, _step_in_space)
+"""Turn a body by a step of some length."""
 
 
 @inlined
-def turns_within(body: Row, ends: float, axes: tuple[int, ...]) -> bool:
-    """Whether a body has turned by less than a run follows [rad], in the plane, or turns at a finite speed."""
-    if len(axes) == 2:
-        return bool(abs(body.angle) < ends)
+def _write_angle(body: Row, pose: Array) -> None:
+    pose[2] = body.angle
+
+
+@inlined
+def _write_quaternion(body: Row, pose: Array) -> None:
+    for i in range(4):
+        pose[3 + i] = body.quaternion[i]
+
+
+write_turn = by_body(_write_angle, _write_quaternion)
+"""Write the rotation of a body into its pose, after the displacements."""
+
+
+@inlined
+def _within_in_plane(body: Row, ends: float) -> bool:
+    return bool(abs(body.angle) < ends)
+
+
+@inlined
+def _within_in_space(body: Row, ends: float) -> bool:
     return bool(abs(body.spin[0]) < math.inf)
+
+
+turns_within = by_body(_within_in_plane, _within_in_space)
+"""Whether a body has turned by less than a run follows [rad], in the plane, or turns at a finite speed."""
 
 
 def start_turning(bodies: Rows, pose: Array, velocity: Array) -> None:

@@ -12,7 +12,7 @@ from ..geometry.frames import PLANE, Freedom
 from ..geometry.poses import coordinate_rates, from_rates, moved
 from ..method import METHOD, Method
 from ..quantities import Array, Flags, Integers
-from ..result.response import State
+from ..result.response import End
 from ..result.samples import interpolated, intervals, thinned
 
 
@@ -116,8 +116,8 @@ class Steps:
         velocity: Array = 0.5 * (self.record.before + self.record.after)
         return velocity
 
-    def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, State]:
-        """Samples: times [s], poses (n, bodies, nq), velocities (n, bodies, nv), and the state at the end.
+    def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, End]:
+        """Samples: times [s], poses (n, bodies, nq), velocities (n, bodies, nv), and the end.
 
         Args:
             duration: up to when samples that are interpolated reach [s].
@@ -134,7 +134,7 @@ class Steps:
             rates = coordinate_rates(pose, velocity, self.freedom)
             pose, velocity = from_rates(*interpolated(self.t, pose, rates, t), self.freedom)
             last = pose[-1], velocity[-1]
-        end = last[0].reshape(-1, nq), last[1].reshape(-1, nv)
+        end = End(last[0].reshape(-1, nq), last[1].reshape(-1, nv))
         return t, pose.reshape(len(t), -1, nq), velocity.reshape(len(t), -1, nv), end
 
     @cached_property

@@ -10,7 +10,6 @@ from ..method import METHOD
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..quantities import named
 from ..result.ledger import warn_if_open
 from ..result.response import Response
 from ..scene.scene import Scene
@@ -38,13 +37,15 @@ SLID = 0.01
 
 
 def require_still(case: MasonryCase) -> None:
-    """Raise a ValueError where joints have bonds, supports move or actuators drive.
+    """Raise a ValueError where joints have bonds, supports move, or effects are for explicit steps only.
 
     Contacts of MuJoCo push only, and its fixed blocks belong to the world.
     """
     case.masonry.require_dry("MuJoCo")
-    if case.actuators:
-        raise ValueError(f"{named(tuple(case.actuators))}: MuJoCo has no row for actuators; take solve_explicit")
+    for i, effect in enumerate(case.effects):
+        if effect.only:
+            name = f"effects[{i}], {type(effect).__name__}"
+            raise ValueError(f"{name}: MuJoCo has no row for it; take {effect.only}")
     if case.supports:
         names = ", ".join(support.block for support in case.supports)
         raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from ..files import quoted
 from ..geometry.frames import PLANE
 from ..quantities import Array
 from ..scene.checks import GROUND
@@ -75,7 +75,7 @@ def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) 
     """A body with its joints, its shape, its faces by their first points, and its contact points."""
     name, radius = scene.bodies.names[j], scene.radius
     prefix = "" if len(scene.bodies.names) == 1 else f"{name}_"
-    yield f"  <body name={quoteattr(name)} pos={value_text(in_space(scene.bodies.rest[j], radius))}>"
+    yield f"  <body name={quoted(name)} pos={value_text(in_space(scene.bodies.rest[j], radius))}>"
     yield "    " + tag("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **_inertia(scene, j))
     for joint, kind, axis in HINGE if scene.freedom == PLANE else BALL:
         yield "    " + tag("joint", name=prefix + joint, type=kind, axis=axis)

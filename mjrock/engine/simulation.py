@@ -16,7 +16,7 @@ from ..quantities import keep, require_flag, require_kind, require_size, require
 from ..result.ending import Outcome
 from ..result.forces import required_room
 from ..result.ledger import StepError
-from ..result.response import Response, State
+from ..result.response import End, Response, State
 from ..result.start import require_unbreakable, required_start
 from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
@@ -145,7 +145,7 @@ def simulate(
     output_step: float | None = None,
     ledger: bool = False,
     forces: bool = False,
-    start: State | None = None,
+    start: End | State | None = None,
     method: Method = METHOD,
 ) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, on compliant contacts in MuJoCo.

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
+
+from ..files import quoted
 
 
 def section(name: str, lines: Iterator[str]) -> list[str]:
@@ -17,7 +18,7 @@ def section(name: str, lines: Iterator[str]) -> list[str]:
 def value_text(value: object) -> str:
     """A quoted attribute: texts as they are, numbers with every digit that tells them from their neighbours."""
     if isinstance(value, str):
-        return quoteattr(value)
+        return quoted(value)
     return f'"{" ".join(repr(float(number)) for number in np.ravel(np.asarray(value)))}"'
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import inlined
+from ..compiled import by_type, inlined
 from ..quantities import Array
 
 Vector = tuple[float, ...]
@@ -21,6 +21,22 @@ def vector(values: Array, i: int, axes: Vector) -> Vector:
     if len(axes) == 2:
         return values[i, 0], values[i, 1]
     return values[i, 0], values[i, 1], values[i, 2]
+
+
+read = by_type(lambda values: (_one, _two, _three)[values.shape[0] - 1])
+"""The vector or the spin in a field of a row, whose type has its size."""
+
+
+def _one(values: Array) -> Vector:
+    return (values[0],)
+
+
+def _two(values: Array) -> Vector:
+    return values[0], values[1]
+
+
+def _three(values: Array) -> Vector:
+    return values[0], values[1], values[2]
 
 
 @inlined

@@ -111,7 +111,7 @@ def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
     return ax
 
 
-@picture()
+@picture(responses=listed(kind(Response)))
 def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
     """Force of the ties against time [kN], a cross where one broke, and how far each was drawn out.
 

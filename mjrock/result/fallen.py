@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components, dijkstra
 
+from ..geometry.graph import components, nearest_roots
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..quantities import Array, Flags, Integers
@@ -90,10 +89,8 @@ def in_order(when: Mapping[str, float]) -> dict[str, float]:
 def sunk_ground(masonry: Masonry, supports: tuple[Support, ...], t: Array) -> Array:
     """How far the ground of each free block has sunk [m], shape (n, bodies): the fixed block that the fewest joints
     part it from."""
-    pairs = _pairs(masonry)
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(masonry.blocks),) * 2)
     fixed = [i for i, block in enumerate(masonry.blocks) if block.fixed]
-    nearest = dijkstra(graph, directed=False, indices=fixed, min_only=True, return_predecessors=True)[2]
+    nearest = nearest_roots(_pairs(masonry), len(masonry.blocks), fixed)
     sunk = {masonry.names.index(support.block): -support.at(t)[:, -1] for support in supports}
     still = np.zeros(len(t))
     return np.stack([sunk.get(ground, still) for ground in nearest[list(masonry.free)].tolist()], axis=1)
@@ -106,8 +103,6 @@ def _pairs(masonry: Masonry) -> Integers:
 
 def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
     """Which free blocks no joint connects with a fixed block, shape (bodies,), from the pairs that a joint holds."""
-    count = len(masonry.blocks)
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    labels = connected_components(graph, directed=False)[1]
+    labels = components(pairs, len(masonry.blocks))
     standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
     return ~np.isin(labels[list(masonry.free)], list(standing))

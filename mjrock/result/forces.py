@@ -244,6 +244,8 @@ def guides_of(case: Case | MasonryCase, gathered: Gathered) -> dict[str, Array]:
 def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
     """Add what links do to the reactions of the blocks that they are anchored on, and to that of all anchors."""
     for name, pulled in gathered.pulled.items():
+        if name not in case.links:
+            continue  # of a device that only explicit steps know
         link = case.links[name]
         way, anchor = across(case, link, gathered.t, gathered.pose), ANCHORS
         if isinstance(case, MasonryCase) and link.anchor_block is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -33,6 +33,27 @@ from .vtk import texts_of_bodies, texts_of_joints, write_series
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
 space as the `pose` and `velocity` of a `Response`, shapes (bodies, 7) and (bodies, 6)."""
+
+
+@dataclass(frozen=True, eq=False)
+class End:
+    """The end of a run, from which another one starts. It unpacks into pose and velocity.
+
+    Args:
+        pose, velocity: of each body, see `State`.
+        memory: what explicit steps know beside them, so that a run carries on to rounding, or None.
+    """
+
+    pose: Array
+    velocity: Array
+    memory: object = None
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter((self.pose, self.velocity))
+
+    def __getitem__(self, part: int) -> Array:
+        both = self.pose, self.velocity
+        return both[part]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +97,7 @@ class Response:
     ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
     actuators: Mapping[str, Array] = field(default_factory=dict)
-    end: State | None = None
+    end: End | None = None
     kept_forces: Forces | None = None
 
     @property

@@ -10,7 +10,7 @@ from ..geometry.frames import PLANE, SPACE
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import GRAVITY, ON_ITS_FACE, require_array, require_within, shown
-from .response import State
+from .response import End, State
 
 PARTS = ("pose", "velocity")
 UNIT = 1e-6
@@ -29,6 +29,8 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
     """
     if any(link.law.yields for link in case.links.values()):
         raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
+    if isinstance(start, End):
+        start = tuple(start)
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
     bodies = 1 if isinstance(case, Case) else len(case.masonry.free)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from ..files import write_text
+from ..files import quoted, write_text
 from ..quantities import Array, require_path
 from .bodies import Body
 
@@ -27,7 +26,7 @@ def write_series(folder: str | Path, name: str, t: Array, texts: Sequence[str]) 
     rows = []
     for i, (time, text) in enumerate(zip(t.tolist(), texts, strict=True)):
         file = write_text(folder / f"{name}_{i:05d}.vtu", text)
-        rows.append(f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file.name)}/>')
+        rows.append(f'<DataSet timestep="{time!r}" part="0" file={quoted(file.name)}/>')
     return write_text(folder / f"{name}.pvd", _file("Collection", "\n".join(rows)))
 
 
@@ -85,7 +84,7 @@ def _array(name: str, values: Array) -> str:
     kind = {"f": "Float64", "i": "Int64", "u": "UInt8"}[values.dtype.kind]
     wide = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
     text = " ".join(f"{value:.12g}" for value in values.ravel().tolist())
-    return f'<DataArray type="{kind}" Name={quoteattr(name)}{wide} format="ascii">\n{text}\n</DataArray>'
+    return f'<DataArray type="{kind}" Name={quoted(name)}{wide} format="ascii">\n{text}\n</DataArray>'
 
 
 def _file(kind: str, text: str) -> str:

@@ -3,7 +3,7 @@
 A damper resists the rate of its length in both directions. In MuJoCo's steps that fit the motion its force is that at
 the velocity of the pose, which the leapfrog keeps half a step earlier and carries forward by the last acceleration
 (`engine.setting`); in fixed steps it is the tendon of the text (`engine.mjcf`). SciPy has it in `reference.equations`,
-and the explicit steps in `distinct.links`.
+and the explicit steps in `distinct.kinds.dampers`.
 """
 
 from __future__ import annotations

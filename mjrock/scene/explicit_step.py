@@ -1,6 +1,6 @@
 """The formula of the longest stable step of the explicit scheme, the share of it that is taken, and what steps take.
 
-They stand here since the engine estimates the time of explicit steps with them. The eigenvalues of a system are in
+Both solvers use them: the engine estimates the time of explicit steps. The eigenvalues of a system are in
 `distinct.limit`.
 
 A mode of the frequency omega and the damping ratio xi is stable up to h = (2 / omega) (sqrt(1 + xi^2) - xi), since the

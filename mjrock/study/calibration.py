@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
 from ..problem.damping.law import HIGHEST, LEAST, DampingLaw
 from ..problem.damping.restitution import Restitution
-from ..quantities import keep, require_array, require_kind, require_whole, require_within
+from ..quantities import Within, keep, keep_declared, require_array, require_kind, require_whole, require_within
 from .campaign import completed
 from .campaign_task import VERSION, Row
 from .match import AMPLITUDE_RANGE, K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, Match, combinations
@@ -28,31 +28,26 @@ class Plan:
     """What a calibration matches.
 
     Args:
-        base_count, side_count: combinations for the base and for the side.
+        base_count, side_count: combinations for the base and for the side, 1 to 100000.
         losses: base losses -ln e_2s in multiples of Eq. 2's; e is varied independently of the slenderness.
         side_losses: the same, for which the side is matched.
         sides: restitutions |e_side| asked of the side.
-        seed: of the combinations.
+        seed: of the combinations, 0 to 2147483648.
         k_n: interface stiffnesses that are covered [N/m3].
         amplitude: releases theta_0/alpha that are covered [-]. Low ones stand for later rebounds.
     """
 
-    base_count: int = 160
-    side_count: int = 240
+    base_count: Annotated[int, Within(1, 100_000, whole=True)] = 160
+    side_count: Annotated[int, Within(1, 100_000, whole=True)] = 240
     losses: tuple[float, ...] = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0)
     side_losses: tuple[float, ...] = (0.8, 1.0, 1.25)
     sides: tuple[float, ...] = (0.2, 0.3, 0.4, 0.5, 0.6)
-    seed: int = 1
+    seed: Annotated[int, Within(0, 2**31, whole=True)] = 1
     k_n: tuple[float, float] = K_N_RANGE
     amplitude: tuple[float, float] = (0.08, 0.8)
 
     def __post_init__(self) -> None:
-        keep(
-            self,
-            base_count=require_whole("base_count", self.base_count, 1, 100_000),
-            side_count=require_whole("side_count", self.side_count, 1, 100_000),
-            seed=require_whole("seed", self.seed, 0, 2**31),
-        )
+        keep_declared(self)
         for name, low, high in (("losses", 0.0, 10.0), ("side_losses", 0.0, 10.0), ("sides", 1e-3, 1.0)):
             values = getattr(self, name)
             require_kind(name, values, tuple)

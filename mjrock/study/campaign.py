@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from itertools import chain
-from multiprocessing import current_process
 from pathlib import Path
 from typing import Any, cast
 
@@ -14,9 +13,9 @@ from ..quantities import is_iterable, require_flag, require_path, require_real, 
 from .campaign_pool import Workers
 from .campaign_run import Runner
 from .campaign_task import Row, Task, carry_out_all, column_names, keyed
-from .overheard import listening
 from .progress import CampaignProgress
 from .store import Store
+from .warning_counter import collect_warnings
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
@@ -52,9 +51,8 @@ def campaign(
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
             None stands for processes of this machine, which are replaced if they die.
         workers: how many processes, 1 to 10000, one for each processor by default. They import the script that calls
-            the campaign, which needs `if __name__ == "__main__":`. The one process of workers=1 does not, unless there
-            is a time limit; tasks of types that the script or a notebook defines then run in this process, and a line
-            says so.
+            the campaign, which needs `if __name__ == "__main__":`. With workers=1 and no time limit tasks run in this
+            process, which a task that ends its process then ends.
         histories: a folder, made where there is none, for the time history of each case, `<key>.npz`.
         retry: whether tasks that have failed before are run again.
         time_limit: how long a case may take [s]; one that takes longer is ended and becomes a failed row that says so.
@@ -89,7 +87,7 @@ def campaign(
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry=retry, limit=limit)
         try:
-            with listening(run.warned.add):
+            with collect_warnings(run.warned.add):
                 _carry_out(run, tasks, executor, count)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
@@ -122,18 +120,17 @@ def required_tasks(tasks: object) -> Iterable[Task]:
 def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, count: int) -> None:
     """Run the tasks where they are to run."""
     pending = run.pending(tasks)
-    if executor is None and run.limit is None and count == 1 and current_process().daemon:
+    if executor is None and run.limit is None and count == 1:
         for job in pending:
-            run.here(job, "this process may not start others")
+            run.here(job)
         return
     try:
         if executor is not None:
             width = getattr(executor, "_max_workers", count)
             run.across(pending, width, lambda tasks: executor.submit(carry_out_all, tasks))
         elif (first := next(pending, None)) is not None:
-            script = count > 1 or run.limit is not None
-            with Workers(count, run.limit, script=script) as workers:
-                run.across(chain([first], pending), count, workers.submit, None if script else run.here)
+            with Workers(count, run.limit) as workers:
+                run.across(chain([first], pending), count, workers.submit)
     except BrokenExecutor as error:
         if executor is None and not run.finished:
             raise RuntimeError(GUARD) from None

@@ -16,14 +16,13 @@ from concurrent.futures import Future
 from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from pebble import ProcessPool
 from tqdm import tqdm
 
 from .campaign_task import Row, Task, carry_out
-from .overheard import listening
+from .warning_counter import collect_warnings
 
 CHUNK_SECONDS = 0.5
 """Work that a worker does before it hands over its rows [s]: long compared with the 1 ms of handing over, and short
@@ -38,13 +37,11 @@ class Workers:
     Args:
         count: how many.
         limit: how long one list may take [s], or None.
-        script: whether the processes import the script that calls the campaign. They have to if the tasks are made of
-            what the script defines. The script then needs `if __name__ == "__main__":`.
     """
 
-    def __init__(self, count: int, limit: float | None, *, script: bool) -> None:
+    def __init__(self, count: int, limit: float | None) -> None:
         self.limit = limit
-        self.pool = ProcessPool(count, initializer=start_worker, context=_Context(script))
+        self.pool = ProcessPool(count, initializer=start_worker, context=_Context())
 
     def submit(self, tasks: Sequence[tuple[Task, Path | None]]) -> Future[list[Row]]:
         """The rows of the first tasks; raises whatever pickle does for a task that it cannot take."""
@@ -62,12 +59,11 @@ class Workers:
 class _Worker(SpawnProcess):
     """A worker process, which Ctrl-C does not reach: the campaign ends it."""
 
-    script = True
     dead = False
 
     def start(self) -> None:
         """Start it."""
-        with _uninterrupted(), contextlib.nullcontext() if self.script else _unscripted():
+        with _uninterrupted():
             super().start()
 
     def is_alive(self) -> bool:
@@ -82,18 +78,10 @@ class _Worker(SpawnProcess):
         return QUIT if code == 0 else code
 
 
-class _UnscriptedWorker(_Worker):
-    """A worker process that does not import the script."""
-
-    script = False
-
-
 class _Context(SpawnContext):
     """Starts `_Worker` processes."""
 
-    def __init__(self, script: bool) -> None:
-        super().__init__()
-        self.Process = _Worker if script else _UnscriptedWorker  # type: ignore[misc]
+    Process = _Worker
 
 
 @contextlib.contextmanager
@@ -108,17 +96,6 @@ def _uninterrupted() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextlib.contextmanager
-def _unscripted() -> Iterator[None]:
-    """Start processes that do not import the script: a module without a file stands for it meanwhile."""
-    before = sys.modules["__main__"]
-    sys.modules["__main__"] = ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = before
 
 
 def start_worker() -> None:
@@ -151,7 +128,7 @@ def serve(content: bytes) -> list[Row]:
     end = time.monotonic() + CHUNK_SECONDS
     for task, history in tasks:
         warned: list[str] = []
-        with listening(warned.append):
+        with collect_warnings(warned.append):
             row = carry_out(task, history)
         row["warned"] = warned
         rows.append(row)

@@ -19,9 +19,9 @@ from pebble import ProcessExpired
 
 from .campaign_pool import CHUNK_SECONDS, QUIT
 from .campaign_task import VERSION, Refused, Row, Task, carry_out, column_names, failed_row, keyed
-from .overheard import Overheard
 from .progress import CampaignProgress
 from .store import Store
+from .warning_counter import WarningCounter
 
 DEATHS = 2
 """A task during which this many worker processes have died is run alone."""
@@ -43,10 +43,6 @@ class Job:
     deaths: int = 0
 
 
-Refusal = Callable[[Job, Exception], None]
-"""What is done with a job that cannot be handed over, because of an error."""
-
-
 class Runner:
     """A running campaign: its store, its counts, and where its tasks are."""
 
@@ -56,7 +52,7 @@ class Runner:
         self.file, self.progress, self.folder, self.retry, self.limit = file, progress, folder, retry, limit
         self.statuses: Counter[str] = Counter()
         self.outcomes: Counter[str] = Counter()
-        self.warned = Overheard()
+        self.warned = WarningCounter()
         self.seconds = 0.0
         self.finished = 0
         self.skipped = 0
@@ -120,19 +116,18 @@ class Runner:
         """Say what was warned of, and how the campaign ended."""
         self.progress.close(self.skipped, self.statuses, self.outcomes, self.warned.lines())
 
-    def here(self, job: Job, reason: object) -> None:
-        """Run a job that can go to no other process, for a reason that the user is told, in a thread of this one.
+    def here(self, job: Job) -> None:
+        """Run a job in a thread of this process.
 
         The main thread waits for the row, so that Ctrl-C reaches it also while compiled code runs.
         """
-        self.progress.note(f"tasks that no other process can take run in this one, which may die of them: {reason}")
         rows: SimpleQueue[Row] = SimpleQueue()
         Thread(target=lambda: rows.put(carry_out(job.task, job.history)), daemon=True).start()
         while True:
             with contextlib.suppress(Empty):
                 return self.write([job], [rows.get(timeout=LOOK)])
 
-    def across(self, pending: Iterator[Job], width: int, submit: Submit, refused: Refusal | None = None) -> None:
+    def across(self, pending: Iterator[Job], width: int, submit: Submit) -> None:
         """Run jobs in other processes, with twice as many chunks in flight as there are processes.
 
         What a chunk leaves undone runs again, task by task. So does a task whose process was killed: after DEATHS
@@ -141,8 +136,7 @@ class Runner:
         Args:
             pending: the jobs.
             width: how many processes there are.
-            submit: hands a chunk over.
-            refused: what is done with a job that cannot be handed over; by default it gets a row with the error.
+            submit: hands a chunk over. A job that cannot be handed over gets a row with the error.
 
         Raises:
             BrokenExecutor: if no process can take a job any more.
@@ -155,7 +149,7 @@ class Runner:
                     try:
                         flying[submit([(job.task, job.history) for job in jobs])] = jobs
                     except (PickleError, AttributeError, TypeError) as error:  # what pickle raises
-                        again.extend(self.left(jobs, error, refused))
+                        again.extend(self.left(jobs, error))
                 if not flying:
                     return
                 done = wait(flying, return_when=FIRST_COMPLETED).done
@@ -166,7 +160,7 @@ class Runner:
                     except BrokenExecutor:
                         raise
                     except Exception as error:
-                        again.extend(self.left(jobs, error, refused))
+                        again.extend(self.left(jobs, error))
                     else:
                         self.write(jobs[: len(rows)], rows)
                         again.extend(jobs[len(rows) :])
@@ -188,7 +182,7 @@ class Runner:
             return 1
         return int(np.clip(CHUNK_SECONDS * self.finished / max(self.seconds, 1e-9), 1, 64))
 
-    def left(self, jobs: Sequence[Job], error: Exception, refused: Refusal | None) -> Sequence[Job]:
+    def left(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
         """The jobs of a chunk without rows that are to be tried again, each alone. Others get their rows."""
         for job in jobs:
             for path in job.history.parent.glob(f"{job.history.name}.*.partial*") if job.history is not None else ():
@@ -203,8 +197,6 @@ class Runner:
             self.write(jobs, [row | {"seconds": self.limit}])
         elif isinstance(error, OSError):
             raise error
-        elif refused is not None:
-            refused(job, error)
         else:
             self.write(jobs, [failed_row(error)])
         return ()

@@ -7,11 +7,11 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, keep, require_kind, require_whole, require_within, shown
+from ..quantities import GRAVITY, Within, keep_declared, require_kind, shown
 from .analysis import Analysis
 from .campaign_task import Row
 
@@ -115,20 +115,14 @@ class Capacity:
     """The column that a study of sensitivity looks at."""
 
     analysis: Analysis
-    tolerance: float = 0.01
-    start: float = 1.0
-    below: int = 12
-    spacing: float = 0.02
+    tolerance: Annotated[float, Within(1e-6, 0.5)] = 0.01
+    start: Annotated[float, Within(1e-6, 1e6)] = 1.0
+    below: Annotated[int, Within(0, 1000, whole=True)] = 12
+    spacing: Annotated[float, Within(1e-4, GROWTH - 1)] = 0.02
 
     def __post_init__(self) -> None:
         require_kind("analysis", self.analysis, Analysis)
-        keep(
-            self,
-            tolerance=require_within("tolerance", self.tolerance, 1e-6, 0.5),
-            start=require_within("start", self.start, 1e-6, 1e6),
-            below=require_whole("below", self.below, 0, 1000),
-            spacing=require_within("spacing", self.spacing, 1e-4, GROWTH - 1),
-        )
+        keep_declared(self)
         if not self.peak > 0:
             raise ValueError(f"analysis = {shown(self.analysis)} has no horizontal motion to scale")
 

@@ -14,8 +14,7 @@ from ..quantities import spelt
 def fingerprint(*contents: object) -> str:
     """A hash of the content of dataclasses, arrays, mappings and plain values, the same on every machine.
 
-    A field of a dataclass that does not take part in comparison does not count: a label, the name of a record. One that
-    came later, see `problem.wall.in_space`, counts where it is set.
+    A field of a dataclass that does not take part in comparison does not count: a label, the name of a record.
 
     Raises:
         TypeError: for a value whose content is not known, such as a function.
@@ -31,8 +30,7 @@ def _pieces(value: object) -> Iterator[bytes]:
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         yield type(value).__name__.encode()
         for field in dataclasses.fields(value):
-            unset = field.metadata.get("later") and getattr(value, field.name) is field.default
-            if field.compare and not unset:
+            if field.compare:
                 yield field.name.encode()
                 yield from _pieces(getattr(value, field.name))
     elif isinstance(value, np.ndarray):

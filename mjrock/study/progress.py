@@ -29,7 +29,6 @@ class CampaignProgress:
         self.first: tuple[int, float] | None = None
         if kept:
             self._say(f"{kept} rows in {store} are kept")
-        self.noted = False
         self.bar = tqdm(total=total, unit="case", desc="campaign", delay=1, disable=None, smoothing=0.05)
 
     def show(self, skipped: int, finished: int, failed: int) -> None:
@@ -56,13 +55,6 @@ class CampaignProgress:
         if finished < FEWEST or self.first is None or finished == self.first[0] or self.spoken <= self.first[1]:
             return 0.0
         return (finished - self.first[0]) / (self.spoken - self.first[1])
-
-    def note(self, text: str) -> None:
-        """Tell the user something about the campaign, once."""
-        if not self.noted:
-            self.noted = True
-            self.bar.clear()
-            self._say(text)
 
     def close(
         self, skipped: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], warned: Sequence[str]

@@ -181,6 +181,7 @@ def sensitivity(
     with TemporaryDirectory() as folder:
         path = Path(folder) / "sensitivity.sqlite" if store is None else require_path("store", store)
         rows = completed(tasks, path, **options)
+    rows = [row | dict(task.labels) for row, task in zip(rows, tasks, strict=True)]  # an older row has other labels
     for row in rows:
         if isinstance(row[column], str) or row[column] is None:
             raise ValueError(f"measure = {column!r} is {row[column]!r} in a row; it has to be a number")

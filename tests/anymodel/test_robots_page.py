@@ -63,7 +63,3 @@ def _bounced(found):
         touching += bool(data.ncon and data.efc_force[0] > 0)
         steps += 1
     return float(data.qpos[2]) - 0.03, 1e-4 * touching
-
-
-def test_it_is_short():
-    assert len(PAGE.splitlines()) <= 185

@@ -43,7 +43,7 @@ class Led:
         self.system, self.h, self.at, self.step = setup.system, h, np.zeros(len(setup.system.axes)), 0
         self.system.bodies["inverse_mass"], self.system.bodies["inverse_inertia"] = 0.0, 0.0
         self.books = Books.empty(self.system, 2)
-        self.samples = Samples.room(2, 1, self.books, setup.scene.freedom, ledger=True)
+        self.samples = Samples.room(2, self.system, self.books, ledger=True)
         d = len(self.at)
         along, normal = ((np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle)))
         self.ways = np.array([along, normal] if d == 2 else np.eye(3))
@@ -83,4 +83,5 @@ class Led:
     @property
     def taken(self):
         """What bonds have taken in tension, slip and crushing, and friction [J/m2]."""
-        return *(self.books.bonds / AREA), float(self.samples.energy["friction"][0]) / AREA
+        taken = (float(self.books.totals[0][name]) / AREA for name in ("tension", "slip", "crushing"))
+        return *taken, float(self.samples.energy["friction"][0]) / AREA

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from mjrock.distinct.assembly import moving
 from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
 from mjrock.distinct.turning import take_inverse_inertia, take_turn
 from mjrock.geometry.frames import PLANE, SPACE
@@ -40,14 +40,13 @@ def system(d, lines=1, edges=0, still=False):
         bodies["angle" if d == 2 else "quaternion"] = 0.0 if d == 2 else [1.0, 0.0, 0.0, 0.0]
     axes = PLANE.axes if d == 2 else SPACE.axes
     for body in bodies:
-        take_turn(body, axes)
-        take_inverse_inertia(body, axes)
+        take_turn(body)
+        take_inverse_inertia(body)
     if not still:
         bodies["velocity"], bodies["spin"] = VELOCITY[:, which], SPIN[:, 1:2] if d == 2 else SPIN
     if d == 3:
         bodies["momentum"] = np.linalg.solve(bodies["inverse_in_world"], bodies["spin"][:, :, None])[:, :, 0]
     supports = moving((), d)._replace(moved=MOVED[:, which], moving=MOVING[:, which])
-    none = {name: rows(kind.link, 0) for name in ("ties", "dampers", "forces", "actuators")}
     return System(
         axes=axes,
         bodies=bodies,
@@ -55,15 +54,20 @@ def system(d, lines=1, edges=0, still=False):
         edges=rows(kind.edge, edges),
         ways=rows(kind.way, (d - 1) * lines),
         bonds=rows(kind.bond, lines),
+        links=(),
+        guided=np.zeros(0, dtype=np.int64),
         ground=Ground.of(None),
         supports=supports,
-        drives=moving((), 1),
-        **none,
     )
 
 
 def books(system):
     return Books.empty(system, 2)
+
+
+def columns(places):
+    """Places as columns of numbers, shape (n, 11): the two blocks, where, the normal, gap, share and area."""
+    return np.column_stack([places[name] for name in places.dtype.names])
 
 
 def matrix(d, i):

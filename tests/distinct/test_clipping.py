@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from by_hand import columns
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.distinct import clipping
+from mjrock.distinct.rows import rows
 from mjrock.distinct.solids import Solids
 
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
@@ -160,8 +162,9 @@ def test_the_distance_of_a_place_from_a_line():
 
 
 def test_a_place_is_halfway_between_the_two_surfaces():
-    table = np.zeros((3, 11))
-    clipping.write_place(table, 1, (4, 2), (1.0, 2.0, 3.0), (0.6, 0.0, 0.8), -0.02)
+    table = rows(clipping.PLACE, 3)
+    clipping.write_place(table[1], (4, 2), (1.0, 2.0, 3.0), (0.6, 0.0, 0.8), -0.02)
+    table = columns(table)
     np.testing.assert_allclose(table[1], [4, 2, 1.006, 2.0, 3.008, 0.6, 0.0, 0.8, -0.02, 0, 0])
     assert not table[[0, 2]].any()
 
@@ -169,10 +172,10 @@ def test_a_place_is_halfway_between_the_two_surfaces():
 def clipped(*blocks, first=0, size=16, face=0):
     """Places of a block that lies over the upper face of another one."""
     solids = solids_about(*blocks)
-    table, room = np.zeros((size, 11)), polygon_in([], 24)
+    table, room = rows(clipping.PLACE, size), polygon_in([], 24)
     upper = face_of(solids, face, UP)[0]
     count = clipping.clip(solids, upper, (face, 1 - face), table, first, room)
-    return table, count
+    return columns(table), count
 
 
 def sorted_by_place(table):
@@ -262,10 +265,10 @@ def test_places_of_a_block_that_is_tilted():
 
 def met(block, at, over=DOWN):
     """What a place of the face of a block over the lower one is."""
-    solids, table = solids_about(LOWER, block), np.zeros((1, 11))
+    solids, table = solids_about(LOWER, block), rows(clipping.PLACE, 1)
     faces = face_of(solids, 0, UP)[0], face_of(solids, 1, over)[0]
-    clipping.meet(solids, faces, (0, 1), tuple(at), table, 0)
-    return table[0]
+    clipping.meet(solids, faces, (0, 1), tuple(at), table[0])
+    return columns(table)[0]
 
 
 def crossing(turn):

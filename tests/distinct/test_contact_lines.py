@@ -37,7 +37,7 @@ def put_line(whole, face, gap, aside=0.0, number=0, **law):
 
 
 def met(whole, number=0):
-    return contact.meeting(whole, whole.lines[number], whole.axes)
+    return contact.meeting(whole, whole.lines[number])
 
 
 @BOTH
@@ -62,7 +62,7 @@ def test_a_line_is_where_its_bodies_have_it(d, face, gap):
         over = velocity_at(bodies[0], np.array(meet.face_arm))
     elif face != -1:
         over = whole.supports.moving[0]
-    slides = contact.relative(bodies, whole.lines[0], whole.supports, meet, whole.axes)
+    slides = contact.relative(bodies, whole.lines[0], whole.supports, meet)
     np.testing.assert_allclose(slides, velocity_at(bodies[1], np.array(meet.arm)) - over, rtol=1e-12)
 
 
@@ -181,7 +181,7 @@ def test_what_a_line_has_lost_at_an_end(depth, gap, opened, lost):
 
 def pressed(whole, lead=0.0, h=H):
     kept = books(whole)
-    counts = contact.press_lines(whole, kept, h, KICK, lead, whole.axes)
+    counts = contact.press_lines(whole, kept, h, KICK, lead)
     return kept, counts
 
 
@@ -191,7 +191,7 @@ def moving_line(d, face, gap, *, was=0.002, push=150.0, number=0, whole=None, **
     law = {"k": K, "c": C, "depth": was, "push": push, "pressed": 7.0, "rate": -0.1, "group": 1} | law
     normal = put_line(whole, face, gap, number=number, **law)
     meet = contact.where_friction_rubs(met(whole, number))
-    over = contact.relative(whole.bodies, whole.lines[number], whole.supports, meet, whole.axes)
+    over = contact.relative(whole.bodies, whole.lines[number], whole.supports, meet)
     rate = normal @ over
     return whole, meet, rate, over - rate * normal
 
@@ -216,7 +216,7 @@ def test_a_line_presses_both_bodies_by_the_law(d, face):
     np.testing.assert_allclose(kept.dashpots, [0.0, -0.5 * H * (7.0 + push - 300.0) * rate], rtol=1e-9)
     carried = 0.0 if face in (-1, 0) else whole.supports.moving[0] @ meet.normal
     assert kept.totals[0].ground == pytest.approx(0.5 * H * (150.0 + push) * carried, rel=1e-9)
-    assert (kept.totals[0].friction, kept.ends[0]) == (0.0, 0.0)
+    assert (kept.totals[0].friction, kept.totals[0].joint_ends) == (0.0, 0.0)
 
 
 @BOTH
@@ -363,13 +363,13 @@ def test_what_a_line_loses_past_its_end_is_booked(d):
         line.k, line.c, line.depth, line.push, line.past = K, C, 0.004, 400.0, before
         meet = met(whole)
         rub = contact.where_friction_rubs(meet)
-        rate = np.dot(meet.normal, contact.relative(whole.bodies, line, whole.supports, rub, whole.axes))
+        rate = np.dot(meet.normal, contact.relative(whole.bodies, line, whole.supports, rub))
         lost = contact.lost_at_the_end(line, meet, H * rate)
         kept, _ = pressed(whole)
         assert lost != 0
-        assert kept.ends[0] == pytest.approx(lost, rel=1e-9)
+        assert kept.totals[0].joint_ends == pytest.approx(lost, rel=1e-9)
         assert whole.lines[0].past == (1 if over > 0 else 0)
-        kept.ends[0] = 0.0
+        kept.totals[0].joint_ends = 0.0
 
 
 def test_a_line_whose_faces_are_turned_away_has_gone():
@@ -401,12 +401,9 @@ def test_springs_do_the_work_of_their_touch(d, face):
     kept.touched[:2], kept.struck[:] = [1, 2], 5.0
     rates, before, place = whole.lines["rate"].copy(), energy(whole.bodies), whole.bodies["velocity"].copy()
     normal = np.array(met(whole, 1).normal)
-    taken, put_in = contact.settle_touches(whole, kept, 2, KICK, whole.axes)
+    taken, put_in = contact.settle_touches(whole, kept, 2, KICK)
     struck = kept.struck[:2]
-    left = [
-        normal @ contact.relative(whole.bodies, whole.lines[i], whole.supports, met(whole, i), whole.axes)
-        for i in (1, 2)
-    ]
+    left = [normal @ contact.relative(whole.bodies, whole.lines[i], whole.supports, met(whole, i)) for i in (1, 2)]
     for i in (1, 2):
         whole.lines[i].due = (0.0, 0.02, -0.03)[i]
         assert struck[i - 1] == pytest.approx(touches.due_impulse(whole.lines[i], left[i - 1]), rel=1e-3)
@@ -421,9 +418,9 @@ def test_springs_do_the_work_of_their_touch(d, face):
     assert kept.totals[0].ground == pytest.approx(0.5 * carried, rel=1e-12)
     assert energy(whole.bodies) != before
     whole.lines["due"] = 0.0
-    contact.settle_touches(whole, kept, 2, KICK, whole.axes)
+    contact.settle_touches(whole, kept, 2, KICK)
     assert not kept.struck[:2].any()
-    contact.settle_touches(whole, kept, 2, KICK, whole.axes)
+    contact.settle_touches(whole, kept, 2, KICK)
     assert kept.totals[0].ground == pytest.approx(0.5 * carried, rel=1e-12)
     assert not whole.lines["due"].any()
 
@@ -431,5 +428,5 @@ def test_springs_do_the_work_of_their_touch(d, face):
 def test_touches_leave_nothing_due():
     whole, _, rate, _ = moving_line(2, 0, -0.002, due=0.02)
     whole.lines[0].rate = 1.5 * rate
-    contact.settle_touches(whole, books(whole), 1, KICK, whole.axes)
+    contact.settle_touches(whole, books(whole), 1, KICK)
     assert whole.lines[0].due == 0.0

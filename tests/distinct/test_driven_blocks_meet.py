@@ -8,7 +8,7 @@ from everyday import among
 from masonry_blocks import box
 
 import mjrock as mr
-from mjrock.distinct.looking import surges
+from mjrock.distinct.supports import surges
 from mjrock.distinct.system import Supports
 
 K_N, SPEED, SIDE = 1e10, 3.0, 0.05

@@ -4,13 +4,37 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from by_hand import system
 from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.encounters import Encounters
+from mjrock.distinct.encounters import Encounters, in_shear
 
 TABLE = box(-1, 0, 0, 1, name="table")
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_shear_springs_of_lines_and_bonds_hold_half_of_k_s_times_the_square_of_their_way(d):
+    """Those of rigid friction hold nothing."""
+    whole, ways = system(d, 3), np.array([[0.2], [-0.3], [0.5]]) if d == 2 else np.array([[0.2, 0.1, -0.4]] * 3)
+    for table, k_s in ((whole.lines, [2e3, np.inf, 5e3]), (whole.bonds, [7e3, 3e3, np.inf])):
+        table["k_s"], table["grip"] = k_s, ways
+    squares = (ways**2).sum(axis=1)
+    expected = 0.5 * (2e3 * squares[0] + 5e3 * squares[2] + 7e3 * squares[0] + 3e3 * squares[1])
+    assert in_shear(whole) == pytest.approx(expected, rel=1e-12)
+
+
+def test_what_lies_on_fixed_blocks_without_a_joint_presses_on_these():
+    """Two boxes on one another on the ground, and one on a table: each has been dropped by 1 mm but for the lowest."""
+    table = box(2, 3, 0, 1, fixed=True, name="table")
+    low, high = box(0, 0.3, 0, 0.2, name="low"), box(0, 0.3, 0.201, 0.401, name="high")
+    masonry = mr.Masonry([GROUND, low, high, table, box(2.2, 2.5, 1.001, 1.301)], k_n=1e7, friction=0.5, xi=1.0)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.4, settled=False), output_step=2e-3, forces=True)
+    weight = [masonry.blocks[i].mass * mr.GRAVITY for i in (1, 2, 4)]
+    assert np.argmax(run.reactions["table"][:, 1] > 0) == np.argmax(run.pose[:, 2, 1] < -1e-3)
+    assert run.reactions["ground"][-1] == pytest.approx([0.0, weight[0] + weight[1]], abs=1e-3 * weight[0])
+    assert run.reactions["table"][-1] == pytest.approx([0.0, weight[2]], abs=1e-3 * weight[0])
 
 
 def test_a_block_that_is_thrown_off_its_table_comes_to_rest_on_the_ground():
@@ -28,6 +52,17 @@ def test_a_block_that_is_thrown_off_its_table_comes_to_rest_on_the_ground():
     assert np.abs(run.velocity[-1, 1]).max() < 0.02
     assert np.abs(run.energy_residual).max() < 0.01 * run.ledger.kinetic.max()
     assert "not in the model" not in run.message
+
+
+def test_a_pebble_that_falls_by_a_fifth_of_its_size_is_met_where_the_ground_is():
+    """It is looked at by its own size, and sinks by m v / sqrt(k m) at most, with the weight."""
+    pebble = box(0, 0.02, 0.004, 0.024, name="pebble")
+    masonry = mr.Masonry([GROUND, box(1, 1.4, 0, 0.4), pebble], k_n=1e8, friction=0.5, xi=0.0)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.05, settled=False), output_step=5e-4)
+    mass, k = masonry.blocks[2].mass, 1e8 * 0.02
+    sunk = mass * mr.GRAVITY / k
+    most = sunk + np.sqrt(sunk**2 + 2 * mr.GRAVITY * 0.004 * mass / k)
+    assert 0.5 * most < -run.pose[:, 1, 1].min() - 0.004 < 1.05 * most
 
 
 @pytest.mark.parametrize("speed", among(np.arange(2.0, 4.05, 0.1).round(1).tolist(), 2.2, 3.1))

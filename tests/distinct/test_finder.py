@@ -5,12 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import columns
 from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.distinct import finder
+from mjrock.distinct.clipping import PLACE
 from mjrock.distinct.finder import Finder, Found, Near
+from mjrock.distinct.rows import rows
 from mjrock.distinct.solids import Poses, Solids
 
 BOX = mr.Polyhedron.box
@@ -123,14 +126,15 @@ def test_edges_that_cross_are_apart_along_the_direction_across_both(gap):
             == pytest.approx(2.0 if up > 0 else 1.6)
         )
         assert end[2] == pytest.approx(0.0 if up > 0 else gap)
-        table = np.zeros((3, 11))
+        table = rows(PLACE, 3)
         assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
+        table = columns(table)
         y, x = 0.0, 0.2 + 0.1 * math.tan(0.3)  # where the keel passes over the ridge
         np.testing.assert_allclose(table[1], [0, 1, x, y, 0.5 * gap, *way, gap, 0.25, 0.0], atol=1e-12)
         assert not table[[0, 2]].any()
-        table = np.zeros((1, 11))
+        table = rows(PLACE, 1)
         assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
-        assert not table.any()
+        assert not columns(table).any()
 
 
 @pytest.mark.parametrize(("sine", "across"), [(0.9e-3, False), (1.5e-3, True)])
@@ -153,8 +157,8 @@ def test_the_first_of_edges_that_reach_as_far_is_taken():
 
 
 def test_the_deepest_of_places_counts():
-    table = np.zeros((6, 11))
-    table[:, 8] = [-9.0, -0.1, -0.3, -0.3, -8.0, 7.0]
+    table = rows(PLACE, 6)
+    table["gap"] = [-9.0, -0.1, -0.3, -0.3, -8.0, 7.0]
     assert [finder.deepest(table, *ends) for ends in ((1, 4), (1, 6), (5, 6), (2, 2))] == [2, 4, 5, -1]
 
 
@@ -170,15 +174,14 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
         asked.append((face, blocks))
         if depth[face] is None:
             return count
-        table[count] = 0.0
-        table[count, 8] = depth[face]
+        table[count].at, table[count].gap = 0.0, depth[face]
         return count + 1
 
     monkeypatch.setattr(finder, "clip", clip)
     monkeypatch.setattr(finder, "outside", lambda _, face, other: out.get(face, -2.0))
     monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: True)
     monkeypatch.setattr(finder, "height", lambda _, face, at: heights.get(face, 0.0))
-    table, heights = np.zeros((3, 11)), {}
+    table, heights = rows(PLACE, 3), {}
     for least, expected, more in (
         (-0.3, (0, (0, 1), -0.5), []),
         (-0.45, (2, (0, 1), -0.1), [(2, (0, 1))]),
@@ -405,7 +408,7 @@ def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(),
     drawn, poses = poses_of(blocks, by, change)
     whole = Finder(blocks, drawn)
     if room:
-        whole._table = np.empty((room, 11))
+        whole._table = rows(PLACE, room)
     which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
     a, b = np.reshape(np.array(skipped, dtype=np.int64), (-1, 2)).T
     places = whole.found(poses, np.broadcast_to(reach, len(blocks)).astype(float), which, np.sort(whole.between(a, b)))

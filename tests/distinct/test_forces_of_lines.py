@@ -7,9 +7,7 @@ import pytest
 from by_hand import about, books, matrix, system
 
 from mjrock.distinct import contact, gathering
-from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.system import Samples
-from mjrock.geometry.frames import PLANE, SPACE
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
@@ -27,11 +25,10 @@ def along(d, size):
 def held(d, bonds=0):
     """Lines of body 1, closed by 2 mm but the last one: on body 0, on the ground, in no joint, and open.
 
-    Actuators drive both bodies. One tie and one damper pull.
+    Actuators drive both bodies.
     """
-    whole, link = system(d, 4), kinds(d).link
-    link = {name: rows(link, 1, pulled=pull) for name, pull in (("ties", -3.0), ("dampers", 4.0))}
-    whole = whole._replace(**link, actuators=rows(kinds(d).link, 2, body=[1, 0]), bonds=whole.bonds[:bonds])
+    whole = system(d, 4)
+    whole = whole._replace(guided=np.array([1, 0]), bonds=whole.bonds[:bonds])
     for i, line in enumerate(whole.lines):
         line.body, line.face, line.fixed = 1, 0 if i == 0 else -1, [-1, 1, 0, 1][i]
         line.at, line.origin, line.normal = AT[d] + 0.1 * i, ORIGIN[d], NORMAL[d]
@@ -44,7 +41,7 @@ def held(d, bonds=0):
         if i < 3:
             line.push, line.depth, line.k_s = 10.0 + i, 0.002, 1e6
             line.dragged = along(d, 2.0 + i)
-    samples = Samples.room(1, 2, books(whole), PLANE if d == 2 else SPACE).with_forces(JOINTS, 2, 2, 2)
+    samples = Samples.room(1, whole, books(whole)).with_forces(JOINTS, 2, 2)
     return whole, samples
 
 
@@ -53,14 +50,14 @@ def acting(whole, p, push, friction):
     line, d = whole.lines[p], len(whole.axes)
     turn = matrix(d, 0) if line.face == 0 else np.eye(d)
     drag = friction * (turn @ ALONG[2] if d == 2 else ALONG[3])  # springs of space are kept in the axes of the world
-    meet = contact.where_friction_rubs(contact.meeting(whole, line, whole.axes))
+    meet = contact.where_friction_rubs(contact.meeting(whole, line))
     return push * np.array(meet.normal) + drag, np.array(meet.arm), np.array(meet.face_arm)
 
 
 @BOTH
 def test_forces_of_lines_are_summed_by_joint_block_and_actuator(d):
     whole, samples = held(d)
-    gathering.keep_forces(whole, samples, 0, whole.axes)
+    gathering.keep_forces(whole, samples, 0)
     loads, blocks = np.zeros((JOINTS, len(samples.loads[0, 0]))), np.zeros((2, d))
     guided, body = np.zeros((2, loads.shape[1])), whole.bodies[1]
     for p in range(3):
@@ -76,7 +73,6 @@ def test_forces_of_lines_are_summed_by_joint_block_and_actuator(d):
     np.testing.assert_allclose(samples.loads[0], loads, rtol=1e-10)
     np.testing.assert_allclose(samples.held[0], blocks, rtol=1e-10)
     np.testing.assert_allclose(samples.guided[0], guided, rtol=1e-10)
-    np.testing.assert_array_equal(samples.pulled[0], [-3.0, 4.0])
     np.testing.assert_array_equal(samples.damage[0], 0.0)
 
 
@@ -90,7 +86,7 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
     line = whole.lines[1]
     line.push = line.depth = 0.0
     whole.lines["group"][2] = 0
-    gathering.keep_forces(whole, samples, 0, whole.axes)
+    gathering.keep_forces(whole, samples, 0)
     one, other, dry = acting(whole, 0, -20.0, 2.5)[0], acting(whole, 1, -31.0, 3.5)[0], acting(whole, 2, 12.0, 4.0)[0]
     np.testing.assert_allclose(samples.loads[0, 1, :d], one, rtol=1e-10)
     np.testing.assert_allclose(samples.loads[0, 0, :d], dry - other, rtol=1e-10)
@@ -101,10 +97,10 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
 @BOTH
 def test_without_room_nothing_is_kept(d):
     whole, samples = held(d)
-    samples = samples.with_forces(JOINTS, 0, 2, 2)
-    gathering.keep_forces(whole, samples, 0, whole.axes)
+    samples = samples.with_forces(JOINTS, 0, 2)
+    gathering.keep_forces(whole, samples, 0)
     assert not samples.loads.any()
-    assert not samples.pulled.any()
+    assert not samples.guided.any()
 
 
 @BOTH
@@ -114,11 +110,11 @@ def test_friction_of_a_line_that_sticks_is_that_of_its_impulse_and_of_what_dragg
     line = whole.lines[0]
     line.face, line.dragged = face, along(d, 2.0)
     line.grip = along(d, 0.5)
-    assert gathering.whole_friction(whole, line, whole.axes) == pytest.approx(tuple(along(d, 2.0)))
+    assert gathering.whole_friction(whole, line) == pytest.approx(tuple(along(d, 2.0)))
     line.k_s = math.inf
     turned = matrix(3, 0) @ ALONG[3] if d == 3 and face == 0 else ALONG[d]
     expected = [2.5] if d == 2 else 2.0 * ALONG[3] + 0.5 * turned
-    np.testing.assert_allclose(gathering.whole_friction(whole, line, whole.axes), expected, rtol=1e-12)
+    np.testing.assert_allclose(gathering.whole_friction(whole, line), expected, rtol=1e-12)
 
 
 @BOTH
@@ -127,6 +123,6 @@ def test_what_acts_on_the_blocks_of_actuators_before_any_contact_is_kept(d):
     random = np.random.default_rng(d)
     for name in ("force", "moment"):
         whole.bodies[name] = random.normal(size=whole.bodies[name].shape)
-    gathering.keep_burden(whole, samples, 0, whole.axes)
+    gathering.keep_burden(whole, samples, 0)
     bodies = whole.bodies[[1, 0]]
     np.testing.assert_array_equal(samples.guided[0], np.hstack([bodies["force"], bodies["moment"]]))

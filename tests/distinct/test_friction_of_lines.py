@@ -168,16 +168,16 @@ def test_the_ways_of_a_rigid_line_know_what_an_impulse_does(d, on_face):
     stops = np.linalg.inv(found)
     np.testing.assert_allclose(ways["stiffness"], np.diag(stops), rtol=1e-13)
     slip = slip_of(whole, on_face)
-    slips = [friction.slip_along(whole, row, whole.axes) for row in ways]
+    slips = [friction.slip_along(whole, row) for row in ways]
     np.testing.assert_allclose(slips, ways["way"] @ slip, rtol=1e-13)
     if d == 3:
         assert ways["coupling"][0] == pytest.approx(found[0, 1])
         assert ways["shared"][0] == pytest.approx(-stops[0, 1])
     np.testing.assert_allclose(ways["slip"], slips, rtol=1e-13)
     for impulses in (0.3 * np.eye(d - 1)).tolist():
-        before = [friction.slip_along(whole, each, whole.axes) for each in ways]
-        friction.strike(whole, 0, tuple(impulses), whole.axes)
-        after = [friction.slip_along(whole, each, whole.axes) for each in ways]
+        before = [friction.slip_along(whole, each) for each in ways]
+        friction.strike(whole, 0, tuple(impulses))
+        after = [friction.slip_along(whole, each) for each in ways]
         np.testing.assert_allclose(np.subtract(after, before), impulses @ found, rtol=1e-12)
 
 
@@ -294,10 +294,10 @@ def many(d, held, count=7):
 def test_lines_stick_together_and_keep_their_friction(d, held):
     """Where the face holds all of it, the friction stops every slip; it takes energy where it does not."""
     whole, active = many(d, held, 2 if held > 100 else 7)
-    before, slips = energy(whole.bodies), [friction.slip_along(whole, row, whole.axes) for row in whole.ways]
+    before, slips = energy(whole.bodies), [friction.slip_along(whole, row) for row in whole.ways]
     momentum = whole.bodies["momentum"].copy() if d == 3 else None
     friction.stick(whole, active, len(active), KICK, whole.axes)
-    after = [friction.slip_along(whole, row, whole.axes) for row in whole.ways]
+    after = [friction.slip_along(whole, row) for row in whole.ways]
     impulses = whole.ways["impulse"].reshape(-1, d - 1)
     np.testing.assert_array_less(np.linalg.norm(impulses, axis=1), KICK * held * (1 + 1e-12))
     grips = whole.lines["grip"]
@@ -362,7 +362,7 @@ def test_the_work_of_rigid_friction_is_booked(d, on_face):
     """With impulses along the mean of the slips, the work is what the bodies lose and the support puts in."""
     whole = rigid(d, on_face, held=20.0)
     books, before = Books.empty(whole, 1), energy(whole.bodies)
-    first = np.array([friction.slip_along(whole, row, whole.axes) for row in whole.ways])
+    first = np.array([friction.slip_along(whole, row) for row in whole.ways])
     friction.stop(whole, 0, whole.axes)
     rubbed, put_in = friction.book_rubbing(whole, books, 1, whole.axes)
     total, impulses = books.totals[0], whole.ways["impulse"]

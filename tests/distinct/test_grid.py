@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from by_hand import columns
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.distinct import clipping, grid
 from mjrock.distinct.finder import Finder
+from mjrock.distinct.rows import rows
 from mjrock.distinct.solids import Poses, Solids
 from mjrock.geometry import convex
 
@@ -96,9 +98,9 @@ LOWER = BOX((2.0, 2.0, 1.0), (0.0, 0.0, -0.5))
 
 def laid(upper, cells, size=99):
     """Places of a block that lies over the upper face of another one."""
-    solids, table = solids_about(LOWER, upper), np.zeros((size, 11))
+    solids, table = solids_about(LOWER, upper), rows(clipping.PLACE, size)
     count = grid.lay_out(solids, clipping.face_towards(solids, 0, UP), (0, 1), cells, table, 1, polygon_in([], 32))
-    return table, count
+    return columns(table), count
 
 
 def test_places_of_a_block_that_lies_over_a_corner_of_another():

@@ -80,7 +80,7 @@ def test_a_line_is_where_its_place_was_found(d, face, other, slack):
     """Its gap is that of the place less what presses nothing, and its points are half a gap to either side."""
     whole = written(d, face, other, slack=slack)
     line, numbers = whole.lines[0], blocks(d)
-    meet = contact.meeting(whole, line, whole.axes)
+    meet = contact.meeting(whole, line)
     assert meet.gap == pytest.approx(-0.004 + slack, rel=1e-10)
     point = other == 0  # the corner of a fixed block meets the face of a body
     carries, faced = (face, other) if point else (other, face)
@@ -329,6 +329,7 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
     handover.hand_over(new, places, gone, pairs, numbers, axes)
     np.testing.assert_allclose(new.depth, [0.0025, 0.0025, 0.0], rtol=1e-9)  # the sum of what pressed before
     np.testing.assert_allclose(new.slack, [0.0015, 0.0015, 0.004], rtol=1e-9)
+    assert new.slack[2] > 0.004  # what follows nothing begins open, though its blocks overlap
     np.testing.assert_allclose(new.rows["push"], [30.0, 0.0, 0.0])
     np.testing.assert_allclose(new.rows["dragged"][:, 0], [1.0, 2.0, 0.0], rtol=1e-12)  # what was open gives nothing
     ends = zip(new.rows, (3, 3, 1), strict=True)

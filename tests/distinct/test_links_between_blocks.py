@@ -8,6 +8,7 @@ from scenes import changed
 import mjrock as mr
 from mjrock.distinct.assembly import started, system_of
 from mjrock.distinct.limit import longest_step
+from mjrock.distinct.links import links_of
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.system import Books, Samples
 from mjrock.scene.masonry import standing_masonry
@@ -21,18 +22,20 @@ def tied():
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.0, frequency=100.0)
     tie, damper = mr.Tie(0.15, K, length=GAP, block=2), mr.Damper(0.15, c=C, length=GAP, block=2)
     scene = standing_masonry(masonry, (tie, damper))
-    return changed(scene, links={"anchor_body": [0, 0], "anchor_at": [(0.25, 0.0)] * 2}), masonry
+    case = mr.MasonryCase(masonry, 1.0, effects=(tie, damper))
+    return changed(scene, links={"anchor_body": [0, 0], "anchor_at": [(0.25, 0.0)] * 2}), case
 
 
 def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
-    scene, masonry = tied()
-    system = system_of(scene, masonry)
-    assert system.ties["between"][0] == pytest.approx([GAP, 0.0])
+    scene, case = tied()
+    system = system_of(scene, case.masonry)
+    system = system._replace(links=links_of(scene, case, system.bodies)[1])
+    assert system.links[0].rows["between"][0] == pytest.approx([GAP, 0.0])
     velocity = np.array([[0.0, 0.0, 0.0], [SPEED, 0.0, 0.0]])
     started(system, scene.at_rest, velocity)
     h = 0.2 * longest_step(system)
     books, count = Books.empty(system, 3), 600
-    samples = Samples.room(count + 1, 2, books, ledger=True)
+    samples = Samples.room(count + 1, system, books, ledger=True)
     advance(system, books, samples, Clock(0, h, 5, 0, 5 * count + 1, 5 * count, np.inf, 0.0, (0.0,) * len(system.axes)))
     mass = scene.bodies.mass[0]
     samples = samples.taken(slice(-1))
@@ -47,6 +50,6 @@ def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     np.testing.assert_allclose(apart[taut], exact[taut], atol=2e-3 * exact.max())
     assert relative.min() < -0.1
     energy = samples.energy
-    taken = samples.dampers[:, 0] + samples.dashpots.sum(axis=1)
+    taken = samples.links[:, system.links[1].rows[0].account] + samples.dashpots.sum(axis=1)
     whole = energy["kinetic"] + energy["potential"] + energy["elastic"] + taken
     assert np.ptp(whole) < 1e-3 * energy["kinetic"][0]

@@ -8,10 +8,13 @@ from by_hand import INERTIAS, MASSES, SPIN, VELOCITY, matrix, system
 
 import mjrock as mr
 from mjrock.distinct import loop
+from mjrock.distinct.kinds.actuators import Actuators
+from mjrock.distinct.kinds.ties import Ties
+from mjrock.distinct.links import numbered
 from mjrock.distinct.loop import Clock
-from mjrock.distinct.rows import kinds, rows
-from mjrock.distinct.system import Books, Samples, Supports
-from mjrock.geometry.frames import PLANE, SPACE
+from mjrock.distinct.rows import TAKEN
+from mjrock.distinct.supports import Supports
+from mjrock.distinct.system import Books, Samples
 from mjrock.scene.ground import Ground, ground_velocity
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
@@ -45,9 +48,7 @@ def flying(d, lines=0):
 
 def room(whole, count, ledger=True, looks=2, groups=3):
     account = Books.empty(whole, groups)
-    freedom = PLANE if len(whole.axes) == 2 else SPACE
-    driven = len(whole.actuators)
-    return account, Samples.room(count, 2, account, freedom, ledger=ledger, looks=looks, actuators=driven)
+    return account, Samples.room(count, whole, account, ledger=ledger, looks=looks)
 
 
 def clock(d, stop, **more):
@@ -66,12 +67,11 @@ def clock(d, stop, **more):
 
 
 def total(samples, count):
-    """Energy of a ledger, which stays [J], shape (count,)."""
+    """Energy of a ledger, which stays [J], shape (count,). Among the accounts of links is what is driven."""
     each = samples.energy[:count]
-    put_in = each["ground"] + each["driven"]
     held = each["kinetic"] + each["potential"] + each["elastic"] + each["friction"]
-    accounts = sum(part[:count].sum(axis=1) for part in (samples.dashpots, samples.dampers, samples.ties))
-    return held + accounts + samples.broken[:count].sum(axis=1) - put_in
+    accounts = sum(part[:count].sum(axis=1) for part in (samples.dashpots, samples.links))
+    return held + accounts - each["ground"] - 2 * each["driven"]
 
 
 @BOTH
@@ -172,9 +172,9 @@ def test_a_body_is_astray_beyond_a_million_metres_or_where_a_run_follows_no_rota
         for axis in range(d):
             bodies = system(d).bodies
             bodies["place"][1, axis] = lost
-            assert loop.is_astray(bodies, math.inf, tuple(range(d))) is astray
+            assert loop.is_astray(bodies, math.inf) is astray
     bodies = system(2).bodies
-    assert [loop.is_astray(bodies, ends, (0, 2)) for ends in (0.71, 0.69)] == [False, True]
+    assert [loop.is_astray(bodies, ends) for ends in (0.71, 0.69)] == [False, True]
 
 
 def test_unless_it_is_asked_to_a_run_damps_nothing_and_looks_not_ahead():
@@ -269,22 +269,22 @@ def test_what_friction_takes_is_kept_where_there_is_a_ledger_or_a_support(d, led
 @BOTH
 def test_links_act_and_are_booked_at_the_time_of_the_pose(d):
     """An actuator drives one of the bodies along a history."""
-    whole, link, count = flying(d), kinds(d).link, 31
+    whole, count = flying(d), 31
     whole = whole._replace(ground=Ground.of(None))
     whole.bodies["inverse_inertia"] = 0.0
     whole.bodies["spin"] = 0.0
     if d == 3:
         whole.bodies["momentum"] = 0.0
     along = np.eye(d)[0]
-    drive = rows(link, 1, body=0, k=300.0, c=2.0, between=along, anchor=-1, support=-1)
+    drive = Actuators.table(d, 1, body=0, k=300.0, c=2.0, between=along)
     history = np.array([[0.0], [0.1], [0.02]])
     drives = Supports(np.array([0.0, 0.1, 0.3]), history, np.array([0, 3]), np.zeros((1, 1)), np.zeros((1, 1)))
-    whole = whole._replace(actuators=drive, drives=drives)
+    whole = whole._replace(links=numbered((Actuators(drive, drives),)))
     whole.bodies["place"] = 0.0
     account, samples = room(whole, count)
     loop.make_steps(whole, account, samples, clock(d, count, last=count - 1), whole.axes)
     pose = samples.pose[:count, 0, 0]
-    pulled = samples.actuators[:count, 0]
+    pulled = samples.pulled[:count, 0]
     target = np.interp(H * np.arange(count), [0.0, 0.1, 0.3], history[:, 0])
     moving = np.diff(target, prepend=0.0) / H
     after = np.diff(pose) / H
@@ -292,7 +292,7 @@ def test_links_act_and_are_booked_at_the_time_of_the_pose(d):
     np.testing.assert_allclose(pulled, 300.0 * (target - pose) + 2.0 * rates, rtol=1e-9)
     np.testing.assert_allclose(np.diff(after), H * pulled[1:-1] / MASSES[0], rtol=1e-9)
     np.testing.assert_allclose(total(samples, count), total(samples, 1)[0], rtol=1e-10)
-    assert samples.energy["driven"][count - 1] == samples.driven[count - 1].sum() != 0.0
+    assert samples.energy["driven"][count - 1] == samples.links[count - 1, 0] != 0.0
 
 
 @BOTH
@@ -300,8 +300,8 @@ def test_a_tie_breaks_when_a_body_has_fallen_so_far(d):
     """On a straight line, by what its spring and its yielding let it."""
     whole, count, up = flying(d), 31, np.eye(d)[-1]
     law = {"k": 300.0, "strength": 1.0, "ultimate": 0.05, "reach": 1.0, "broken": math.inf}
-    tie = rows(kinds(d).link, 1, body=1, between=-up, anchor=-1, support=-1, **law)
-    whole = whole._replace(ground=Ground.of(None), ties=tie)
+    tie = Ties.table(d, 1, body=1, between=-up, **law)
+    whole = whole._replace(ground=Ground.of(None), links=numbered((Ties(tie),)))
     for name in ("place", "velocity", "spin", "inverse_inertia"):
         whole.bodies[name][1] = 0.0
     if d == 3:
@@ -310,8 +310,8 @@ def test_a_tie_breaks_when_a_body_has_fallen_so_far(d):
     loop.make_steps(whole, account, samples, clock(d, count, last=count - 1), whole.axes)
     fallen = -samples.pose[:count, 1, d - 1]
     broken = np.interp(1.0 / 300.0 + 0.05, fallen, H * np.arange(count))
-    np.testing.assert_allclose(whole.ties[0].broken, broken, atol=1e-4)
-    assert account.ties[0] == pytest.approx(0.05)
+    np.testing.assert_allclose(tie[0].broken, broken, atol=1e-4)
+    assert account.links[0] == pytest.approx(0.05)
     np.testing.assert_allclose(total(samples, count), total(samples, 1)[0], atol=1e-3)
 
 
@@ -324,7 +324,7 @@ def test_forces_start_with_weight_and_the_ground(d):
     if d == 3:
         inverse, whole.bodies["inverse_in_world"] = whole.bodies["inverse_in_world"].copy(), 9.0
     account.totals[0].push, account.totals[0].ground = last, 0.5
-    loop.start_forces(whole, account, tuple(push), before, whole.axes)
+    loop.start_forces(whole, account, tuple(push), before)
     np.testing.assert_allclose(whole.bodies["force"], -np.outer(MASSES, push + G * np.eye(d)[-1]), rtol=1e-13)
     assert not whole.bodies["moment"].any()
     np.testing.assert_allclose(whole.bodies["turn"], turns, rtol=1e-13)
@@ -342,7 +342,7 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     """Along the normal with what a touch still does, along the face, where it is no friction yet, and of bonds."""
     whole, before = system(d, 3), 0.02
     account = Books.empty(whole, 1)
-    samples = Samples.room(2, 2, account, PLANE if d == 2 else SPACE, ledger=ledger)
+    samples = Samples.room(2, whole, account, ledger=ledger)
     lines, grip = whole.lines, np.arange(9.0).reshape(3, 3)[:, : 2 * d - 3] * 1e-3
     lines["k"], lines["depth"], lines["push"], lines["pressed"] = (
         2e3,
@@ -354,8 +354,10 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     bond = whole.bonds[0]
     bond.k, bond.secant, bond.gap, bond.k_s, bond.grip[:] = 1.0, 900.0, -0.02, 300.0, 2e-3
     account.totals[0].friction, account.totals[0].ground = 7.0, 5.0
-    account.dashpots[:], account.ends[:], account.bonds[:] = 11.0, [1.0, 2.0], [3.0, 4.0, 5.0]
-    loop.keep_pose(whole, account, samples, 1, before, whole.axes)
+    account.dashpots[:] = 11.0
+    for name, taken in zip(TAKEN, range(1, 6), strict=True):
+        account.totals[0][name] = taken
+    loop.keep_pose(whole, account, samples, 1, before)
     squares = (grip**2).sum(axis=1)
     sheared = 0.5 * (400.0 * squares[1] + 500.0 * squares[2] + 300.0 * 4e-6 * (2 * d - 3))
     late = 0.5 * before * 0.5 * np.array([27.0 - 3.0 - 20.0, -6.0])
@@ -363,9 +365,9 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     assert sample.elastic == pytest.approx(0.1 + late.sum() + 0.5 * 900.0 * 4e-4 + sheared, rel=1e-12)
     assert sample.friction == pytest.approx(7.0 - sheared, rel=1e-12)
     assert (sample.ground, sample.driven, sample.potential) == (5.0, 0.0, 0.0)
-    assert (*sample.ends, *sample.bonds) == (1.0, 2.0, 3.0, 4.0, 5.0)
+    assert [sample[name] for name in TAKEN] == [1.0, 2.0, 3.0, 4.0, 5.0]
     lines["push"][1], lines["pressed"][1] = -6.0, -2.0  # the dashpot pulls
-    loop.keep_pose(whole, account, samples, 0, before, whole.axes)
+    loop.keep_pose(whole, account, samples, 0, before)
     by_spring = 0.5 * before * (-6.0 + 2.0) * 0.5
     assert samples.energy[0].elastic == pytest.approx(sample.elastic, rel=1e-12)
     assert samples.dashpots[:2].tolist() == (
@@ -386,13 +388,13 @@ def test_kept_velocities_are_those_of_the_pose_and_the_energy_is_that_of_the_ste
     momentum = np.linalg.solve(inverse, bodies["spin"][:, :, None])[:, :, 0]
     turned = random.normal(size=momentum.shape)
     samples.energy[0].potential = 3.0
-    loop.keep_pose(whole, account, samples, 0, before, whole.axes)
+    loop.keep_pose(whole, account, samples, 0, before)
     bodies["velocity"] = then
     if d == 2:
         bodies["spin"] = turned * inverse[:, 0]
     else:
         bodies["momentum"] = turned
-    loop.keep_velocity(bodies, samples, 0, before, whole.axes)
+    loop.keep_velocity(bodies, samples, 0, before)
     mean, mean_momentum = (0.5 * (first + then), 0.5 * (momentum + turned)) if before else (first, momentum)
     np.testing.assert_allclose(samples.velocity[0, :, :d], mean, rtol=1e-12)
     spin = np.einsum("nij,nj->ni", inverse, mean_momentum)

@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 from by_hand import MOVED, MOVING, about, books, matrix, system, velocity_at
 
-from mjrock.distinct import links
-from mjrock.distinct.rows import kinds, rows
-from mjrock.distinct.system import Supports
+from mjrock.distinct import supports
+from mjrock.distinct.kinds import link, ties
+from mjrock.distinct.kinds.actuators import Actuators
+from mjrock.distinct.kinds.constant_forces import ConstantForces
+from mjrock.distinct.kinds.dampers import Dampers
+from mjrock.distinct.kinds.ties import Ties
+from mjrock.distinct.links import act_all, hold_all, numbered
+from mjrock.distinct.rows import rows
+from mjrock.distinct.supports import Supports, moving
+from mjrock.distinct.system import ENERGY
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 ENDS = pytest.mark.parametrize("end", ["ground", "support", "body"])
@@ -18,13 +25,27 @@ BETWEEN = {2: np.array([1.5, 0.8]), 3: np.array([1.5, -0.6, 0.8])}
 H = 0.02
 
 
-def linked(d, end="body", kind="ties", **numbers):
+def act(whole, account, t=5.0):
+    """Let the links of a system act in a step to a time."""
+    act_all(whole.links, whole, account, t, H)
+
+
+def held(whole, account):
+    """Potential energy, energy in springs and what is put in of the links of a system [J]."""
+    energy = rows(ENERGY, 1)[0]
+    hold_all(whole.links, whole, account, energy, np.zeros(9))
+    return energy.potential, energy.elastic, energy.driven
+
+
+def linked(d, end="body", kind=Ties, **numbers):
     """Two bodies in motion with one link on body 1, from the ground, a support or body 0."""
     whole = system(d)
     ends = {"body": 1, "anchor": 0 if end == "body" else -1, "support": 0 if end == "support" else -1}
     places = {"at": AT[d], "origin": ORIGIN[d], "between": BETWEEN[d]}
-    whole = whole._replace(**{kind: rows(kinds(d).link, 1, **ends | places | {"broken": math.inf} | numbers)})
-    return whole, getattr(whole, kind)[0], end
+    state = {"broken": math.inf} if kind is Ties else {}
+    table = kind.table(d, 1, **ends | places | state | numbers)
+    links = (kind(table, moving((), 1)) if kind is Actuators else kind(table),)
+    return whole._replace(links=numbered(links)), table[0], end
 
 
 def geometry(whole, end):
@@ -61,13 +82,13 @@ def carried(whole, end):
 def test_a_link_is_where_its_ends_are(d, end):
     whole, row, _ = linked(d, end)
     length, way, arm, anchor_arm, rate = geometry(whole, end)
-    now = links.pull(row, whole, whole.axes)
+    now = link.pull(row, whole)
     assert now.length == pytest.approx(length, rel=1e-12)
     np.testing.assert_allclose(now.way, way, rtol=1e-11)
     np.testing.assert_allclose(now.arm, arm, rtol=1e-12)
     np.testing.assert_allclose(now.anchor_arm, anchor_arm, rtol=1e-12)
-    assert links.lengthening(row, whole, now, whole.axes) == pytest.approx(rate, rel=1e-11)
-    links.act(row, whole.bodies, now, 3.0)
+    assert link.lengthening(row, whole, now) == pytest.approx(rate, rel=1e-11)
+    link.push_apart(row, whole, now, 3.0)
     assert_pulled(whole, end, 3.0)
     assert min(np.abs(MOVED).min(), np.abs(MOVING).min()) > 0
 
@@ -80,14 +101,14 @@ def test_a_tie_pulls_where_it_is_longer_than_its_slack_and_a_spring_pushes_too(d
     whole, tie, _ = linked(d, end, k=2e3, strength=1e9, ultimate=1.0, pulled=-3.0)
     tie.reach, tie.push = geometry(whole, end)[0] - longer, push
     account, stretch = books(whole), longer if push else max(longer, 0.0)
-    links.pull_links(whole, account, 5.0, H, whole.axes)
+    act(whole, account)
     assert_pulled(whole, end, -2e3 * stretch)
     assert tie.pulled == pytest.approx(-2e3 * stretch, rel=1e-10)
     work = 0.5 * H * (-3.0 - 2e3 * stretch) * carried(whole, end)
     assert account.totals[0].ground == pytest.approx(work, rel=1e-10)
-    assert links.linked_energy(whole, whole.axes) == pytest.approx((0.0, 0.5 * 2e3 * stretch**2), rel=1e-9)
-    assert (tie.drawn, account.ties[0], tie.broken) == (0.0, 0.0, math.inf)
-    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert held(whole, account) == pytest.approx((0.0, 0.5 * 2e3 * stretch**2, 0.0), rel=1e-9)
+    assert (tie.drawn, account.links[0], tie.broken) == (0.0, 0.0, math.inf)
+    act(whole, account)
     assert account.totals[0].ground == pytest.approx(work - H * 2e3 * stretch * carried(whole, end), rel=1e-10)
 
 
@@ -101,17 +122,17 @@ def test_a_tie_yields_at_its_strength_and_slips_at_its_push(d, longer, push, way
     tie.reach = reach = geometry(whole, end)[0] - longer
     account, held = books(whole), 20.0 if way > 0 else push
     beyond = 0.03 - held / 2e3
-    links.pull_links(whole, account, 5.0, H, whole.axes)
+    act(whole, account)
     assert_pulled(whole, end, -way * held)
     assert tie.pulled == pytest.approx(-way * held, rel=1e-9)
     assert tie.reach == pytest.approx(reach + way * beyond, rel=1e-12)
     assert tie.drawn == pytest.approx(0.1 + beyond, rel=1e-10)
-    assert account.ties[0] == pytest.approx(held * beyond, rel=1e-9)
+    assert account.links[0] == pytest.approx(held * beyond, rel=1e-9)
     tie.reach = reach
-    links.pull_links(whole, account, 5.0, H, whole.axes)
-    assert account.ties[0] == pytest.approx(2 * held * beyond, rel=1e-9)
+    act(whole, account)
+    assert account.links[0] == pytest.approx(2 * held * beyond, rel=1e-9)
     assert tie.drawn == pytest.approx(0.1 + 2 * beyond, rel=1e-10)
-    assert account.broken[0] == 0.0
+    assert account.links[1] == 0.0
 
 
 @BOTH
@@ -127,17 +148,17 @@ def test_a_tie_breaks_where_it_has_been_drawn_out_as_far_as_it_can_be(d, end, le
     whole.supports.moving[:] *= turned
     beyond = left + 0.1 * H * abs(rate)
     tie.reach, account = length - beyond - 20.0 / 2e3, books(whole)
-    links.pull_links(whole, account, 5.0, H, whole.axes)
-    assert account.ties[0] == pytest.approx(20.0 * left, rel=1e-9, abs=1e-15)
+    act(whole, account)
+    assert account.links[0] == pytest.approx(20.0 * left, rel=1e-9, abs=1e-15)
     assert tie.drawn == pytest.approx(0.5, rel=1e-12)
     assert tie.broken == pytest.approx(5.0 - 0.1 * H, rel=1e-9)
-    assert account.broken[0] == pytest.approx(0.5 * 20.0**2 / 2e3)
+    assert account.links[1] == pytest.approx(0.5 * 20.0**2 / 2e3)
     assert account.totals[0].ground == pytest.approx(-0.9 * H * 20.0 * carried(whole, end), rel=1e-9)
     assert_pulled(whole, end, -20.0 * 0.4)
     assert tie.pulled == pytest.approx(-20.0 * 0.4, rel=1e-9)
-    assert links.linked_energy(whole, whole.axes) == (0.0, 0.0)
+    assert held(whole, account) == (0.0, 0.0, 0.0)
     whole.bodies["force"] = whole.bodies["moment"] = 0.0
-    links.pull_links(whole, account, tie.broken, H, whole.axes)
+    act(whole, account, tie.broken)
     assert_pulled(whole, end, 0.0)
     assert tie.pulled == 0.0
 
@@ -147,55 +168,54 @@ def test_a_tie_that_is_drawn_out_just_to_its_limit_breaks(ultimate, broken):
     """It is 1 m longer than its slack, of which its spring holds half a metre."""
     tie = {"k": 2.0, "strength": 1.0, "reach": 1.0, "ultimate": ultimate, "broken": math.inf}
     whole = system(2, still=True)
-    whole = whole._replace(ties=rows(kinds(2).link, 1, anchor=-1, support=-1, between=[2.0, 0.0], **tie))
-    links.pull_links(whole, books(whole), 5.0, H, whole.axes)
-    assert (whole.ties[0].broken == 5.0) == broken
+    table = Ties.table(2, 1, between=[2.0, 0.0], **tie)
+    whole = whole._replace(links=(Ties(table),))
+    act(whole, books(whole))
+    assert (table[0].broken == 5.0) == broken
 
 
 def test_a_link_that_only_pulls_is_slack_where_one_that_pushes_too_is_shorter():
     for push, elongation in ((0.0, 0.0), (0.5, -0.1)):
-        tie = rows(kinds(2).link, 1, reach=1.0, push=push)[0]
-        assert links.elongation(tie, 0.9) == pytest.approx(elongation)
-        assert links.elongation(tie, 1.2) == pytest.approx(0.2)
+        tie = Ties.table(2, 1, reach=1.0, push=push)[0]
+        assert ties.elongation(tie, 0.9) == pytest.approx(elongation)
+        assert ties.elongation(tie, 1.2) == pytest.approx(0.2)
 
 
 def test_when_a_tie_broke():
-    assert links.since_broken(0.01, 2.0, H) == pytest.approx(0.005)
-    assert links.since_broken(0.1, 2.0, H) == H
-    assert links.since_broken(0.01, 0.5, H) == H
-    assert links.since_broken(0.01, 0.0, H) == links.since_broken(0.01, -1.0, H) == 0.0
-    tie = rows(kinds(2).link, 1, strength=20.0)[0]
+    assert ties.since_broken(0.01, 2.0, H) == pytest.approx(0.005)
+    assert ties.since_broken(0.1, 2.0, H) == H
+    assert ties.since_broken(0.01, 0.5, H) == H
+    assert ties.since_broken(0.01, 0.0, H) == ties.since_broken(0.01, -1.0, H) == 0.0
+    tie = Ties.table(2, 1, strength=20.0)[0]
     for since, share in ((0.0, 0.5), (0.5 * H, 0.0), (H, -0.5)):
-        assert links.pulled_until_broken(tie, since, H) == pytest.approx(20.0 * share)
-    assert links.pulled_until_broken(tie, 0.0, 0.0) == 0.0
+        assert ties.pulled_until_broken(tie, since, H) == pytest.approx(20.0 * share)
+    assert ties.pulled_until_broken(tie, 0.0, 0.0) == 0.0
 
 
 @BOTH
 @ENDS
 def test_a_damper_is_against_its_rate(d, end):
-    whole, damper, _ = linked(d, end, "dampers", c=50.0, pulled=7.0)
+    whole, damper, _ = linked(d, end, Dampers, c=50.0, pulled=7.0)
     account, rate = books(whole), geometry(whole, end)[-1]
-    links.pull_links(whole, account, 5.0, H, whole.axes)
+    act(whole, account)
     assert_pulled(whole, end, -50.0 * rate)
     assert damper.pulled == pytest.approx(-50.0 * rate, rel=1e-11)
     taken, work = 0.5 * H * (50.0 * rate - 7.0) * rate, 0.5 * H * (7.0 - 50.0 * rate) * carried(whole, end)
-    assert account.dampers[0] == pytest.approx(taken, rel=1e-10)
+    assert account.links[0] == pytest.approx(taken, rel=1e-10)
     assert account.totals[0].ground == pytest.approx(work, rel=1e-10)
-    links.pull_links(whole, account, 5.0, H, whole.axes)
-    assert account.dampers[0] == pytest.approx(taken + H * 50.0 * rate**2, rel=1e-10)
+    act(whole, account)
+    assert account.links[0] == pytest.approx(taken + H * 50.0 * rate**2, rel=1e-10)
 
 
 def driving(d):
     """An actuator of body 1, and a damper on it, whose account stands before that of the actuator."""
     way = np.eye(d)[0] * 0.6 + np.eye(d)[-1] * 0.8
-    whole, row, _ = linked(d, "ground", "actuators", k=300.0, c=2.0, push=0.0, reach=0.02, pulled=5.0, dragged=1.0)
+    whole, row, _ = linked(d, "ground", Actuators, k=300.0, c=2.0, reach=0.02, pulled=5.0, dragged=1.0)
     row.between = way
-    drives = Supports(np.zeros(1), np.zeros((1, 1)), np.zeros(2, dtype=int), np.array([[0.05]]), np.array([[0.4]]))
-    return (
-        whole._replace(drives=drives, dampers=rows(kinds(d).link, 1, body=1, anchor=-1, support=-1, between=1.0)),
-        row,
-        way,
-    )
+    history, before = np.full((1, 1), 0.05), np.full((1, 1), 0.05 - 0.4 * H)
+    drives = Supports(np.zeros(1), history, np.array([0, 1]), before, np.zeros((1, 1)))
+    damper = Dampers(Dampers.table(d, 1, body=1, between=1.0))
+    return whole._replace(links=numbered((damper, Actuators(whole.links[0].rows, drives)))), row, way
 
 
 @BOTH
@@ -205,17 +225,18 @@ def test_an_actuator_pushes_a_point_along_its_way_to_its_history(d):
     rate = 0.4 - way @ velocity_at(body, arm)
     force = 300.0 * (0.05 - (way @ (body.place + arm - AT[d]) - 0.02)) + 2.0 * rate
     driven, taken = 0.5 * H * (5.0 + force) * 0.4, 0.5 * H * (1.0 + 2.0 * rate) * rate
-    links.pull_links(whole, account, 5.0, H, whole.axes)
+    act(whole, account)
     np.testing.assert_allclose(body.force, force * way, rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(body.moment, about(arm, force * way), rtol=1e-11, atol=1e-12)
     assert (row.pulled, row.dragged) == pytest.approx((force, 2.0 * rate), rel=1e-11)
-    assert account.driven[0] == pytest.approx(driven, rel=1e-11)
-    np.testing.assert_allclose(account.dampers, [0.0, taken], rtol=1e-10)
-    held = force - 2.0 * rate
-    assert links.linked_energy(whole, whole.axes) == pytest.approx((0.0, 0.5 * held**2 / 300.0), rel=1e-10)
-    links.pull_links(whole, account, 5.0, H, whole.axes)
-    assert account.driven[0] == pytest.approx(driven + H * force * 0.4, rel=1e-11)
-    assert account.dampers[1] == pytest.approx(taken + H * 2.0 * rate**2, rel=1e-10)
+    assert account.links[1] == pytest.approx(driven, rel=1e-11)
+    np.testing.assert_allclose(account.links[::2], [0.0, taken], rtol=1e-10)
+    in_spring = force - 2.0 * rate
+    assert held(whole, account) == pytest.approx((0.0, 0.5 * in_spring**2 / 300.0, driven), rel=1e-10)
+    whole.links[1].drives.moved[:] -= 0.4 * H
+    act(whole, account)
+    assert account.links[1] == pytest.approx(driven + H * force * 0.4, rel=1e-11)
+    assert account.links[2] == pytest.approx(taken + H * 2.0 * rate**2, rel=1e-10)
 
 
 @BOTH
@@ -226,24 +247,24 @@ def test_an_actuator_without_a_body_pushes_all_in_proportion_to_their_mass(d):
     account, shares = books(whole), np.array([3.0, 5.0]) / 8.0
     rate = 0.4 - shares @ whole.bodies["velocity"] @ way
     force = 300.0 * (0.05 - (shares @ whole.bodies["place"] @ way - 0.02)) + 2.0 * rate
-    links.pull_links(whole, account, 5.0, H, whole.axes)
+    act(whole, account)
     np.testing.assert_allclose(whole.bodies["force"], np.outer(shares, force * way), rtol=1e-11)
     np.testing.assert_array_equal(whole.bodies["moment"], 0.0)
     assert (row.pulled, row.dragged) == pytest.approx((force, 2.0 * rate), rel=1e-11)
-    assert account.driven[0] == pytest.approx(0.5 * H * (5.0 + force) * 0.4, rel=1e-11)
-    assert account.dampers[1] == pytest.approx(0.5 * H * (1.0 + 2.0 * rate) * rate, rel=1e-10)
+    assert account.links[1] == pytest.approx(0.5 * H * (5.0 + force) * 0.4, rel=1e-11)
+    assert account.links[2] == pytest.approx(0.5 * H * (1.0 + 2.0 * rate) * rate, rel=1e-10)
 
 
 @BOTH
 def test_a_constant_force_acts_at_a_point_and_has_a_potential(d):
     force = np.array([3.0, -2.0, 5.0])[:d]
-    whole, _, _ = linked(d, "ground", "forces", between=force)
+    whole, _, _ = linked(d, "ground", ConstantForces, between=force)
     arm = matrix(d, 1) @ AT[d]
-    links.pull_links(whole, books(whole), 5.0, H, whole.axes)
+    act(whole, books(whole))
     np.testing.assert_allclose(whole.bodies[1].force, force)
     np.testing.assert_allclose(whole.bodies[1].moment, about(arm, force), rtol=1e-12)
     falls = -force @ (whole.bodies[1].place + arm - AT[d])
-    assert links.linked_energy(whole, whole.axes) == pytest.approx((falls, 0.0), rel=1e-11)
+    assert held(whole, books(whole)) == pytest.approx((falls, 0.0, 0.0), rel=1e-11)
 
 
 TIMES = [np.array([0.5, 1.0, 1.5, 3.0, 4.0]), np.array([2.0]), np.array([0.0, 1.0])]
@@ -254,7 +275,7 @@ PLACES = [
 ]
 
 
-def supports():
+def histories():
     first = np.cumsum([0, *map(len, TIMES)])
     return Supports(np.concatenate(TIMES), np.concatenate(PLACES), first, np.ones((3, 2)), np.full((3, 2), 9.0))
 
@@ -262,14 +283,14 @@ def supports():
 @pytest.mark.parametrize("t", [-1.0, 0.0, 0.5, 0.7, 1.0, 1.3, 1.5, 2.0, 2.9, 3.0, 3.5, 4.0, 9.0])
 def test_a_support_is_where_its_history_has_it(t):
     """Linear between its samples and constant beyond them; its velocity is the mean of the step."""
-    whole = supports()
+    whole = histories()
     for h in (0.0, 0.25):
         before = whole.moved.copy()
-        links.move_supports(whole, t, h)
+        supports.move_supports(whole, t, h)
         for i in range(3):
             for axis in range(2):
                 place = np.interp(t, TIMES[i], PLACES[i][:, axis])
-                assert links.support_place(whole, i, axis, t) == pytest.approx(place)
+                assert supports.support_place(whole, i, axis, t) == pytest.approx(place)
                 assert whole.moved[i, axis] == pytest.approx(place)
                 moving = (place - before[i, axis]) / h if h else 0.0
                 assert whole.moving[i, axis] == pytest.approx(moving)

@@ -48,7 +48,7 @@ def assert_settles(masonry, ways):
     assert np.abs(mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).velocity).max() < 1e-8
 
 
-@pytest.mark.parametrize("seed", among([2, 3, 8, 11], 2, 8))
+@pytest.mark.parametrize("seed", among([2, 3, 8, 11], 2))
 def test_random_facades_that_limit_analysis_says_stand_settle(seed):
     assert_settles(random_facade(seed), [0.0])
 

@@ -108,7 +108,7 @@ def test_the_end_holds_every_block(timestep):
     run = mr.simulate(mr.MasonryCase(columns(2, xi=0.05), 0.02, velocity=released), timestep=timestep)
     for end, samples in zip(run.end, (run.pose, run.velocity), strict=True):
         np.testing.assert_array_equal(end, samples[-1])
-    assert np.abs(run.end[1][1] - run.end[1][0])[[0, 2]].min() > 1e-3
+    assert np.abs(run.end.velocity[1] - run.end.velocity[0])[[0, 2]].min() > 1e-3
 
 
 def test_one_block_is_the_single_wall():

@@ -269,7 +269,11 @@ class TestFrames:
                 np.testing.assert_allclose(total, found, atol=1e-13)
 
 
-@pytest.mark.parametrize("scene", [held_blocks(), arch()], ids=["stack", "arch"])
+@pytest.fixture(scope="module", params=[held_blocks, arch], ids=["stack", "arch"])
+def scene(request):
+    return request.param()
+
+
 class TestThePlaneInSpace:
     def test_gaps_and_their_rates(self, scene):
         flat, places = scene.places, in_space(scene).places

@@ -10,10 +10,16 @@ from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import along, depth, gap, meeting, over_face, push_apart, where_friction_acts
 from mjrock.geometry.vectors import dot, scaled, tangent
 
-ARCH = mr.masonry_scene(mr.MasonryCase(mr.Masonry.arch(5.0, 0.75, voussoirs=5), 1.0))
+
+def arch():
+    return mr.masonry_scene(mr.MasonryCase(mr.Masonry.arch(5.0, 0.75, voussoirs=5), 1.0))
 
 
-@pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
+@pytest.fixture(scope="module", params=[two_blocks, arch], ids=["stack", "arch"])
+def scene(request):
+    return request.param()
+
+
 def test_rates_are_those_of_the_kinematics(scene):
     """Of the gap at the arms to the place of friction too: along the normal a body moves there as at the point."""
     rng, places = np.random.default_rng(1), scene.places
@@ -31,7 +37,6 @@ def test_rates_are_those_of_the_kinematics(scene):
             assert slipping(places, i, meets, frames, velocity).speed == pytest.approx(slip, abs=1e-13)
 
 
-@pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
 def test_the_power_of_a_force_along_a_face_is_force_times_slip(scene):
     rng, places = np.random.default_rng(2), scene.places
     pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.bodies.masses.shape)
@@ -44,7 +49,6 @@ def test_the_power_of_a_force_along_a_face_is_force_times_slip(scene):
         assert power == pytest.approx(-3.0 * along(places, i, frames, velocity).bodies, rel=1e-12)
 
 
-@pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
 def test_the_power_of_a_force_out_of_a_face_is_force_times_rate(scene):
     rng, places = np.random.default_rng(3), scene.places
     pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.bodies.masses.shape)

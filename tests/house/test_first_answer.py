@@ -9,11 +9,12 @@ import sys
 import time
 from pathlib import Path
 
+import filelock
 import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import compiled, patience, stored
+from mjrock import compiled, patience
 
 PACKAGE = Path(mr.__file__).parent
 THIRTY = Path(__file__).with_name("thirty_scenes.py")
@@ -217,11 +218,11 @@ def test_a_disk_that_refuses(patient, monkeypatch, written):
 
 
 def test_the_disk_is_full_where_a_lock_should_be(patient, monkeypatch):
-    class Full(stored.FileLock):
+    class Full(filelock.FileLock):
         def acquire(self, *arguments, **named):
             raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(stored, "FileLock", Full)
+    monkeypatch.setattr(filelock, "FileLock", Full)
     room = np.array([1.0])
     compiled.compiled(double)(room)
     assert list(room) == [2.0]

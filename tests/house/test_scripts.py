@@ -4,6 +4,7 @@ import ast
 import csv
 import importlib
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -126,30 +127,30 @@ def patches(text):
     return sorted(found)
 
 
-@pytest.mark.parametrize("path", sorted(Path(__file__).parents[2].glob("scripts/**/*.py")), ids=lambda path: path.stem)
-def test_no_script_patches_the_package(path):
-    assert patches(path.read_text()) == []
+def test_no_script_patches_the_package():
+    paths = sorted(Path(__file__).parents[2].glob("scripts/**/*.py"))
+    assert len(paths) > 70
+    assert {path.stem: found for path in paths if (found := patches(path.read_text()))} == {}
 
 
-@pytest.mark.parametrize(
-    "patch",
-    [
-        "mr.GRAVITY = 1.6",
-        "explicit.time = None",
-        "mr.plotting.style.COLOURS['wall'] = 'red'",
-        "del explicit.time",
-        "setattr(explicit, 'time', None)",
-        "vars(scene)['found'] = None",
-        "scene.__dict__['found'] = None",
-        "object.__setattr__(scene, 'title', '')",
-        "with mock.patch.object(explicit, 'time', None): pass",
-        "from unittest import mock",
-        "standing.cache_clear()",
-    ],
-)
-def test_a_patch_is_found(patch):
+PATCHES = [
+    "mr.GRAVITY = 1.6",
+    "explicit.time = None",
+    "mr.plotting.style.COLOURS['wall'] = 'red'",
+    "del explicit.time",
+    "setattr(explicit, 'time', None)",
+    "vars(scene)['found'] = None",
+    "scene.__dict__['found'] = None",
+    "object.__setattr__(scene, 'title', '')",
+    "with mock.patch.object(explicit, 'time', None): pass",
+    "from unittest import mock",
+    "standing.cache_clear()",
+]
+
+
+def test_a_patch_is_found():
     start = "import mjrock as mr\nfrom mjrock.distinct import explicit\n"
-    assert patches(start + patch) == [3]
+    assert [patch for patch in PATCHES if patches(start + patch) != [3]] == []
     assert patches(start + "model.opt.gravity[2] = 0.0\nspec.time = 1.0") == []
 
 
@@ -216,6 +217,15 @@ LONG = {
     "vaults",
     "bonded_facade",
     "first_pictures",
+    "stack_before_and_after",
+    "heap",
+    "mortar",
+    "tilting_table",
+    "table2",
+    "thrust_lines",
+    "facade",
+    "shear_wall",
+    "first_minute",
     "collapse",
 }
 """Scripts that take a while even with --quick."""
@@ -234,16 +244,16 @@ def test_quick(name, tmp_path, capsys):
         assert capsys.readouterr().out.strip()
 
 
-@pytest.mark.parametrize("name", WRITES)
-def test_help(name, capsys):
-    with pytest.raises(SystemExit) as stop:
-        main_of(name)(["--help"])
-    assert stop.value.code == 0
-    printed = capsys.readouterr().out
-    assert "--out" in printed
-    assert "(default:" in printed
-    assert "None" not in printed
-    assert "False" not in printed
+def test_help(capsys):
+    offenders = []
+    for name in WRITES:
+        with pytest.raises(SystemExit) as stop:
+            main_of(name)(["--help"])
+        printed = capsys.readouterr().out
+        said = all(part in printed for part in ("--out", "(default:")) and not re.search("None|False", printed)
+        if stop.value.code != 0 or not said:
+            offenders.append(name)
+    assert offenders == []
 
 
 def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):

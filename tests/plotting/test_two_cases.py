@@ -38,6 +38,19 @@ def test_a_wall_with_and_without_a_tie():
     assert unnamed == ["analytical 1", "analytical 2"]
 
 
+def test_masonry_has_a_panel_with_the_force_of_its_ties():
+    ground = mr.Polygon([(-1.0, -0.2), (1.0, -0.2), (1.0, 0.0), (-1.0, 0.0)], fixed=True)
+    block = mr.Polygon([(-0.2, 0.0), (0.2, 0.0), (0.2, 1.0), (-0.2, 1.0)])
+    masonry = mr.Masonry([ground, block], k_n=1e9)
+    effects = mr.Tie(height=0.8, stiffness=1e6, slack=0.0, strength=3e3, block=1)
+    answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.05, velocity=[(0.3, 0.0, 0.0)], effects=effects))
+    ties = plotting.history(answer).axes[-1]
+    np.testing.assert_allclose(ties.get_lines()[0].get_ydata(), answer.ties["tie_0"].force / 1e3)
+    assert ties.get_legend_handles_labels()[1] == [
+        f"tie_0: drawn out by {1e3 * answer.ties['tie_0'].plastic[-1]:.3g} mm"
+    ]
+
+
 @pytest.mark.parametrize(
     ("labels", "complaint"),
     [(["one"], "labels has 1 texts for 2 responses"), ("ab", "labels = 'ab'"), ([1, 2], r"labels\[0\] = 1")],

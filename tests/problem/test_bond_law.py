@@ -1,9 +1,11 @@
 """The law of a bond on a row of numbers, against its equations."""
 
 import math
+import warnings
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import mjrock as mr
@@ -157,3 +159,32 @@ def test_crushing_that_a_spring_would_outdo_is_refused_with_the_valid_ranges(har
     assert len(mr.Masonry.column(0.5, 2.0, 2, k_n=1.001 * steepest, bond=bond, **column).bonds) == 2
     enough = replace(bond, crushing_energy=1.001 * bond.crushing_energy_on(2.5e9))
     assert mr.Masonry.column(0.5, 2.0, 2, k_n=2.5e9, bond=enough, **column).bonds[0] == enough
+
+
+@pytest.mark.parametrize("hardening", [None, 1e-4])
+def test_the_least_energy_of_crushing_is_that_of_the_spring_and_of_hardening(hardening):
+    """At f_c it holds f_c^2 / k_n on its way down, and before that the area under f_c (1 + 2 sqrt(2 x - x^2)) / 3."""
+    bond = replace(mr.BONDS["clay brick, SAFEGO"], hardening=hardening)
+    x = (np.arange(100_000) + 0.5) / 100_000
+    before = (
+        0.0 if hardening is None else float((bond.crushing * (1 + 2 * np.sqrt(2 * x - x**2)) / 3).mean() * hardening)
+    )
+    assert bond.energy_of_hardening == pytest.approx(before, rel=1e-6)
+    assert bond.crushing_energy_on(5e10) == pytest.approx(bond.crushing**2 / 5e10 + before, rel=1e-6)
+
+
+def test_a_joint_that_is_not_crushed_takes_no_energy_of_crushing():
+    bond = mr.Bond(2e5, 3e5, 18.0, 125.0)
+    assert (bond.steepest, bond.crushing_energy_on(1e9), bond.energy_of_hardening) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("tension", "energy", "doubted"),
+    [(1e4, 0.0599, True), (9.99e3, 0.0599, False), (1.9e4, 0.0599, True), (1e4, 0.06, False)],
+)
+@pytest.mark.parametrize("name", ["opening_energy", "slip_energy"])
+def test_energies_below_those_of_mortar_are_doubted_where_the_tension_is_that_of_mortar(tension, energy, doubted, name):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        mr.Bond(tension, 0.0, **{"opening_energy": 1.0, "slip_energy": 1.0, name: energy})
+    assert [f"{name} = {energy:g} J/m2" in str(each.message) for each in caught] == [True] * doubted

@@ -151,14 +151,14 @@ def walls(*numbers):
     return [number if number in numbers else pytest.param(number, marks=pytest.mark.slow) for number in study.WALLS]
 
 
-@pytest.mark.parametrize("number", study.WALLS)
+@pytest.mark.parametrize("number", walls(3, 4, 5))
 def test_walls_of_ferris_and_tin_loi_with_associated_friction(number):
     collapse = mr.collapse_multiplier(study.wall(number))
     assert collapse.multiplier == pytest.approx(study.PUBLISHED[number][0], rel=0.005)
     assert state_error(collapse, study.FRICTION)[0] < STANDS
 
 
-@pytest.mark.parametrize("number", walls(1, 4))
+@pytest.mark.parametrize("number", walls(1))
 def test_walls_of_ferris_and_tin_loi_without_dilatancy(number):
     """On wall 5 the search finds a state below the published one, which is among the others within 1 %."""
     collapse = mr.collapse_multiplier(study.wall(number), associated=False)
@@ -243,10 +243,10 @@ def least_state(courses, friction, force=3.0, rate=30.0):
     ("courses", "friction"),
     [
         ([[0.5, 0.5], [1], [0.5, 0.5]], 0.9),
-        ([[0.5, 0.5], [1], [0.5, 0.5], [1]], 0.6),
         *(
             pytest.param(courses, friction, marks=pytest.mark.slow)
             for courses, friction in [
+                ([[0.5, 0.5], [1], [0.5, 0.5], [1]], 0.6),
                 ([[0.5, 0.5], [1], [0.5, 0.5], [1]], 0.9),
                 ([[1, 0.5], [0.5, 1], [1, 0.5]], 0.75),
                 ([[1, 0.5], [0.5, 1], [1, 0.5]], 0.9),

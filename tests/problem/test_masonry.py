@@ -154,6 +154,17 @@ def test_a_corner_carries_its_point():
     assert set(narrow.lines.body.tolist()) == {1}
 
 
+@pytest.mark.parametrize("points", [2, 3, 5])
+@pytest.mark.parametrize("ends", [(-0.3, 0.3), (-0.6, 0.3), (-0.3, 0.6), (-0.6, 0.6)])
+def test_either_end_of_a_joint_is_carried_by_the_block_that_has_a_corner_there(points, ends):
+    below = box(-0.5, 0.5, 0, 1, name="below")
+    masonry = mr.Masonry([GROUND, below, box(*ends, 1, 2, name="above")], points=points)
+    own = masonry.lines.joint == [joint.name for joint in masonry.joints].index("below|above")
+    carried = [masonry.names[i] for i in masonry.lines.body[own]]
+    outer = ["below" if abs(end) > 0.5 else "above" for end in ends]
+    assert carried == [outer[0], *["above"] * (points - 2), outer[1]]
+
+
 def test_rates_of_lines_are_those_of_the_engine():
     masonry = mr.Masonry([GROUND, LEFT, RIGHT, TOP], points=3)
     scene = standing_masonry(masonry)

@@ -221,3 +221,13 @@ def test_a_low_stop_gives_no_rebound():
 def test_parts_that_cannot_be(make, complaint):
     with pytest.raises((ValueError, TypeError), match=complaint):
         make()
+
+
+@pytest.mark.parametrize(("thickness", "taken"), [(9e-4, False), (1e-3, True), (20.0, True), (20.1, False)])
+def test_a_profile_has_a_thickness_of_a_millimetre_to_twenty_metres(thickness, taken):
+    parts = {"thickness": 20.0, "height": 40.0, "profile": [(0, 20.0), (40.0, thickness)]}
+    if taken:
+        assert mr.Block.from_size(**parts).profile[1] == (40.0, thickness)
+        return
+    with pytest.raises(ValueError, match=r"profile\[1\], thickness = .* is outside the valid range 0.001 to 20 m"):
+        mr.Block.from_size(**parts)

@@ -92,3 +92,17 @@ def test_near_plates_punch_as_one_plate(spacing, strength):
 def test_what_cannot_be(other, complaint):
     with pytest.raises(ValueError, match=complaint):
         mr.Tie.of_bar(**BAR | other)
+
+
+def test_a_tie_says_at_which_force_it_yields_in_kilonewtons():
+    assert "yields at 64.8 kN" in mr.Tie.of_bar(**BAR).said
+    assert "yields" not in mr.Tie(6.0, 1e6).said
+
+
+@pytest.mark.parametrize(("thickness", "taken"), [(0.049, False), (0.05, True), (10.0, True), (10.1, False)])
+def test_walls_of_some_thickness_hold_a_plate(thickness, taken):
+    if taken:
+        assert mr.Tie.of_bar(**BAR | {"thickness": thickness}).strength > 0
+        return
+    with pytest.raises(ValueError, match=r"thickness of the wall = .* is outside the valid range 0.05 to 10 m"):
+        mr.Tie.of_bar(**BAR | {"thickness": thickness})

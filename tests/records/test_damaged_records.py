@@ -1,59 +1,69 @@
 """Records from files that are damaged, of another kind or of another unit."""
 
+import itertools
+import re
+
 import numpy as np
 import pytest
 from everyday import slow
+from offenders import not_refused
 from record_files import AT2, FORMATS, HEADS, NUMBERS, READ, SAMPLES, body, written
 
-
-@pytest.mark.parametrize(
-    "value",
-    [
+NO_NUMBERS = (
         "0.02-05", "0.02E-02-3", "2-5", ".123E-020.456E-02", ".5E", ".5E+", "1.2.3", "0x1p3", "1_5", "1e999",
         "\u0661\u0662", "\uff11", "0.1\u2212", "--.5", "+-.5", "1,5x", "nan", "1.5F-2", "infinity", "0.1.-.2", '"1"',
         "1\x1a", "1\x0b2", "1\x0c2", "1\x852", "1\u20282", "1\xa02", "1\x1c2", "1\ufeff",
-    ],
 )  # fmt: skip
+
+
+def not_named(folder, ending, texts, complaint):
+    """Texts of files that are not refused with a complaint, or one for each."""
+    complaints = [complaint] * len(texts) if isinstance(complaint, str) else complaint
+
+    def read(text):
+        return READ[ending](written(folder / f"a.{ending}", text))
+
+    pairs = zip(texts, complaints, strict=True)
+    calls = ((ascii(text), lambda text=text: read(text), complaint) for text, complaint in pairs)
+    return not_refused(calls, (ValueError,))
+
+
 @FORMATS
-def test_what_is_no_number(tmp_path, ending, value):
-    """In the first, a middle and the last row."""
-    if ending == "txt" and "," in value:
-        pytest.skip("a comma sets columns apart, and there is one")
-    rows = body(ending).splitlines()
-    start = HEADS[ending].count("\n") + 1
-    for i in (0, 2, 5):
-        damaged = [*rows]
-        damaged[i] = f"{i / 100:.2f};{value}" if ending == "csv" else value
-        path = written(tmp_path / f"a.{ending}", HEADS[ending] + "\n".join(damaged) + "\n")
+def test_what_is_no_number(tmp_path, ending):
+    """In the first, a middle and the last row. In a file of one column a comma sets two columns apart."""
+    rows, head = body(ending).splitlines(), HEADS[ending]
+    texts, complaints = [], []
+    for value in (one for one in NO_NUMBERS if ending != "txt" or "," not in one):
         shown = ascii(value.replace(",", ".") if ending == "csv" else value)
-        with pytest.raises(ValueError, match="is not a finite number such as") as caught:
-            READ[ending](path)
-        assert f"a.{ending}: line {start + i}: {shown}" in str(caught.value)
+        for i in (0, 2, 5):
+            damaged = [*rows]
+            damaged[i] = f"{i / 100:.2f};{value}" if ending == "csv" else value
+            texts.append(head + "\n".join(damaged) + "\n")
+            line = re.escape(f"a.{ending}: line {head.count(chr(10)) + 1 + i}: {shown}")
+            complaints.append(f"{line}.* is not a finite number such as")
+    assert not_named(tmp_path, ending, texts, complaints) == []
 
 
-@pytest.mark.parametrize(
-    "damage", ["\u0660\u0661,1", "\x1a0.00,1", "\u200b0.00,1", '"0.00",1', "\x850.00,1", "****,0.1"]
-)
-def test_a_damaged_first_row_is_no_header(tmp_path, damage):
-    with pytest.raises(ValueError, match=r"a\.csv: line 2: .* is not a finite number"):
-        READ["csv"](written(tmp_path / "a.csv", f"time,accel\n{damage}\n0.01,2\n0.02,3\n"))
+def test_a_damaged_first_row_is_no_header(tmp_path):
+    damages = ["\u0660\u0661,1", "\x1a0.00,1", "\u200b0.00,1", '"0.00",1', "\x850.00,1", "****,0.1"]
+    texts = [f"time,accel\n{damage}\n0.01,2\n0.02,3\n" for damage in damages]
+    assert not_named(tmp_path, "csv", texts, r"a\.csv: line 2: .* is not a finite number") == []
 
 
-@pytest.mark.parametrize("character", ["\x0b", "\x0c", "\x1a", "\x1e", "\x85", "\u2028", "\u2029"])
-@pytest.mark.parametrize("text", ["time,accel", "# filtered"])
-def test_a_row_does_not_hide_behind_a_control_character(tmp_path, text, character):
-    path = written(tmp_path / "a.csv", f"{text}{character}0.00,1\n0.01,2\n0.02,3\n")
-    with pytest.raises(ValueError, match=r"a\.csv: line 1 has a '.*'; only CR, LF and CR LF end a line"):
-        READ["csv"](path)
+def test_a_row_does_not_hide_behind_a_control_character(tmp_path):
+    characters = ["\x0b", "\x0c", "\x1a", "\x1e", "\x85", "\u2028", "\u2029"]
+    heads = [f"{text}{character}" for text in ("time,accel", "# filtered") for character in characters]
+    complaint = r"a\.csv: line 1 has a '.*'; only CR, LF and CR LF end a line"
+    assert not_named(tmp_path, "csv", [f"{head}0.00,1\n0.01,2\n0.02,3\n" for head in heads], complaint) == []
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-@pytest.mark.parametrize("last", ["", "\x1a"])
 @FORMATS
-def test_ends_of_lines_and_of_a_dos_file(tmp_path, ending, end, last):
-    text = (HEADS[ending] + body(ending)).replace("\n", end)
-    motion = READ[ending](written(tmp_path / f"a.{ending}", text + last))
-    np.testing.assert_allclose(motion.accel, (9.81 if ending == "at2" else 1) * np.array(SAMPLES), rtol=1e-14)
+def test_ends_of_lines_and_of_a_dos_file(tmp_path, ending):
+    for end, last in itertools.product(["\n", "\r\n", "\r"], ["", "\x1a"]):
+        text = (HEADS[ending] + body(ending)).replace("\n", end)
+        motion = READ[ending](written(tmp_path / f"a.{ending}", text + last))
+        expected = (9.81 if ending == "at2" else 1) * np.array(SAMPLES)
+        np.testing.assert_allclose(motion.accel, expected, rtol=1e-14, err_msg=repr((end, last)))
 
 
 @FORMATS
@@ -63,23 +73,21 @@ def test_only_the_very_end_may_be_one_of_dos(tmp_path, ending):
             READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + body(ending) + end))
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
+NO_UNITS = (
         "ACCELERATION TIME SERIES IN UNITS OF G/1000", "ACCELERATION TIME SERIES IN UNITS OF G*10",
         "ACCELERATION TIME SERIES IN UNITS OF G, TIMES 10", "VELOCITY TIME SERIES IN UNITS OF CM/S",
         "VELOCITY TIME SERIES IN UNITS OF G", "DISPLACEMENT TIME SERIES IN UNITS OF CM",
         "DISPLACEMENT TIME SERIES IN UNITS OF G", "ACCELERATION TIME SERIES IN UNITS OF M/S/S",
         "ACCELERATION TIME SERIES IN UNITS OF MG", "ACCELERATION TIME SERIES IN UNITS OF 1/G", "UNITS OF G", "",
-    ],
 )  # fmt: skip
-def test_a_unit_that_is_not_g(tmp_path, line):
-    text = AT2.replace("ACCELERATION TIME SERIES IN UNITS OF G", line) + "NPTS= 6, DT= .01 SEC\n" + NUMBERS
-    with pytest.raises(
-        ValueError, match="not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS"
-    ) as caught:
-        READ["at2"](written(tmp_path / "a.at2", text))
-    assert f"a.at2: line 3 is {line!r}" in str(caught.value)
+
+
+def test_a_unit_that_is_not_g(tmp_path):
+    end = "NPTS= 6, DT= .01 SEC\n" + NUMBERS
+    texts = [AT2.replace("ACCELERATION TIME SERIES IN UNITS OF G", line) + end for line in NO_UNITS]
+    said = [re.escape(f"a.at2: line 3 is {line!r}") for line in NO_UNITS]
+    kind = "not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS"
+    assert not_named(tmp_path, "at2", texts, said) == not_named(tmp_path, "at2", texts, kind) == []
 
 
 @pytest.mark.parametrize(
@@ -91,45 +99,41 @@ def test_a_unit_that_is_g(tmp_path, line):
     assert READ["at2"](written(tmp_path / "a.at2", text)).peak == pytest.approx(9.81 * 0.05)
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
+NO_HEADERS = (
         "NPTS= 6, DT= .5E -02 SEC", "NPTS= 6, DT= .01 MSEC", "NPTS= 6, DT= .01 SEC, SCALE= 100",
         "NPTS= 6.5, DT= .01 SEC", "NPTS= -6, DT= .01 SEC", "NPTS= \u0666, DT= .01 SEC", "X NPTS= 6, DT= .01 SEC",
         "6 .01 NPTS, DT, SCALE 100", "NPTS= 6, DT= 1_0E-3 SEC", "NPTS= 6, DT= 0.01.0 SEC", "NPTS= 6, DT= nan SEC",
         "NPTS= 99999999999, DT= .01 SEC",
-    ],
 )  # fmt: skip
-def test_a_header_with_something_left_over(tmp_path, line):
-    with pytest.raises(ValueError, match="line 4 states no NPTS and DT as in NPTS= 4000") as caught:
-        READ["at2"](written(tmp_path / "a.at2", f"{AT2}{line}\n{NUMBERS}"))
-    assert ascii(line) in str(caught.value)
 
 
-@pytest.mark.parametrize("line", ["6 .01 0 zero", "6 .01 0 \u0660", "6 .01, 0"])
-def test_a_sac_header_with_something_left_over(tmp_path, line):
-    with pytest.raises(ValueError, match=r"a\.sac: line 2"):
-        READ["sac"](written(tmp_path / "a.sac", f"STA\n{line}\n{NUMBERS}"))
+def test_a_header_with_something_left_over(tmp_path):
+    texts = [f"{AT2}{line}\n{NUMBERS}" for line in NO_HEADERS]
+    said, kind = [re.escape(ascii(line)) for line in NO_HEADERS], "line 4 states no NPTS and DT as in NPTS= 4000"
+    assert not_named(tmp_path, "at2", texts, said) == not_named(tmp_path, "at2", texts, kind) == []
 
 
-@pytest.mark.parametrize("content", [b"", b"\n \t\r\n", b"\xef\xbb\xbf", b"\x1a", b"\x0b\x0c"])
+def test_a_sac_header_with_something_left_over(tmp_path):
+    texts = [f"STA\n{line}\n{NUMBERS}" for line in ("6 .01 0 zero", "6 .01 0 \u0660", "6 .01, 0")]
+    assert not_named(tmp_path, "sac", texts, r"a\.sac: line 2") == []
+
+
 @FORMATS
-def test_an_empty_file(tmp_path, ending, content):
-    with pytest.raises(ValueError, match=rf"a\.{ending}: an empty file"):
-        READ[ending](written(tmp_path / f"a.{ending}", content))
+def test_an_empty_file(tmp_path, ending):
+    contents = [b"", b"\n \t\r\n", b"\xef\xbb\xbf", b"\x1a", b"\x0b\x0c"]
+    assert not_named(tmp_path, ending, contents, rf"a\.{ending}: an empty file") == []
 
 
-@pytest.mark.parametrize("content", [
+OTHERS = (
     '<?xml version="1.0"?>\n<record>\n<unit>UNITS OF G</unit>\n<head>NPTS= 2, DT= .01</head>\n<a>0.1</a>\n</record>\n',
     '{"dt": 0.01,\n"accel": [0.1, 0.2]}\n', "one line", "PK\x03\x04zip", "\x89PNG\r\n\x1a\n",
-])  # fmt: skip
+)  # fmt: skip
+
+
 @FORMATS
-def test_a_file_of_another_format(tmp_path, ending, content):
-    with pytest.raises(
-        ValueError,
-        match=rf"a\.{ending}: .*(not an? [\w ,-]+ file|not the plain text of a SAC|needed|only CR)",
-    ):
-        READ[ending](written(tmp_path / f"a.{ending}", content))
+def test_a_file_of_another_format(tmp_path, ending):
+    complaint = rf"a\.{ending}: .*(not an? [\w ,-]+ file|not the plain text of a SAC|needed|only CR)"
+    assert not_named(tmp_path, ending, OTHERS, complaint) == []
 
 
 @FORMATS

@@ -1,5 +1,7 @@
 """The last sample is the end of the run in every solver, and the next run starts from it."""
 
+import pickle
+
 import numpy as np
 import pytest
 from masonry_blocks import GROUND, box
@@ -151,3 +153,12 @@ def test_two_pieces_of_a_record_with_friction_that_slips_are_one_run(in_space, k
         one, two = getattr(whole.ledger, account)[-1], [getattr(run.ledger, account)[-1] for run in (first, second)]
         assert sum(two) == pytest.approx(one, rel=1e-3), account
     assert np.abs(second.ledger.residual).max() < 0.01 * second.ledger.largest
+
+
+def test_an_end_unpacks_into_pose_and_velocity_and_can_be_written_and_read():
+    """Without its memory a run goes on from pose and velocity alone."""
+    end = mr.solve_explicit(mr.MasonryCase(mr.Masonry.column(width=0.5, height=1.0, drums=2), 0.01)).end
+    pose, velocity = pickle.loads(pickle.dumps(end))
+    np.testing.assert_array_equal(pose, end.pose)
+    np.testing.assert_array_equal(velocity, end[1])
+    assert end.memory is not None

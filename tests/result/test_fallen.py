@@ -5,6 +5,8 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
+from mjrock.result.joint_motion import joint_motion
+from mjrock.scene.masonry import standing_masonry
 
 SOLVERS = [mr.simulate, mr.solve_explicit]
 TABLE = box(-1, 0, 0, 1, fixed=True, name="table")
@@ -28,6 +30,17 @@ def test_a_drum_that_hops_has_not_fallen(duration, in_space, solver):
     assert run.opening[1] == pytest.approx(0.184, abs=1e-3)
     assert dict(run.fallen) == {}
     assert run.outcome is (mr.Outcome.TIME_ENDED if duration < 0.5 else mr.Outcome.AT_REST)
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.5])
+def test_a_joint_has_parted_where_its_faces_are_apart_by_a_tenth_of_its_width(turned):
+    """At their nearest point: a block that rocks about its corner has not parted from the ground."""
+    masonry = mr.Masonry([GROUND, box(-0.2, 0.2, 0, 0.6)], k_n=1e8, friction=0.6, xi=0.3)
+    case = mr.MasonryCase(masonry, 1.0)
+    down = 0.3 - 0.3 * np.cos(turned) - 0.2 * np.sin(turned)  # its lower corner comes up by so much as it turns
+    pose = np.array([(0.0, lift - down, turned) for lift in (0.0, 0.039, 0.041, 0.079)])
+    record = joint_motion(case, standing_masonry(masonry), np.arange(4.0), pose)
+    np.testing.assert_array_equal(record.parted[:, 0], [False, False, True, True])
 
 
 def test_an_arch_that_stands_on_spread_supports_has_not_fallen():

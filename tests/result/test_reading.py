@@ -1,5 +1,7 @@
 """What is read from a motion, whichever solver found it."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from masonry_blocks import GROUND, box
@@ -11,13 +13,17 @@ from mjrock.scene.masonry import masonry_scene
 
 BOX = mr.Masonry([GROUND, box(-0.3, 0.3, 0, 0.5, name="left"), box(1.0, 1.6, 0, 0.5, name="right")], k_n=1e8)
 CASE = mr.MasonryCase(BOX, 2.0)
-SCENE = masonry_scene(CASE)
+
+
+@cache
+def scene():
+    return masonry_scene(CASE)
 
 
 def read(t, displaced):
     """The reading of two blocks at rest that are displaced by as much at the times [m, m, rad], shape (n, 2, 3)."""
-    motion = SampledMotion(SCENE.at_rest + displaced, np.zeros((len(t), 2, 3)), np.zeros(len(t)))
-    return masonry_reading(CASE, SCENE, t, motion)
+    motion = SampledMotion(scene().at_rest + displaced, np.zeros((len(t), 2, 3)), np.zeros(len(t)))
+    return masonry_reading(CASE, scene(), t, motion)
 
 
 def test_the_base_is_displaced_from_where_the_run_began_until_the_duration_is_over(two_sided, contacts):
@@ -51,27 +57,27 @@ def test_a_run_that_ends_early_names_the_blocks_that_went_far():
 def test_blocks_that_left_joints_and_lie_still_have_come_to_rest(left, outcome):
     """Their energy is below that at rest, so that it says nothing."""
     t = np.linspace(0.0, 2.0, 201)
-    pose = np.tile(SCENE.at_rest, (len(t), 1, 1))
+    pose = np.tile(scene().at_rest, (len(t), 1, 1))
     velocity = np.zeros_like(pose)
     velocity[t < 2.0 - 1.5 * STILL] = 1.0
-    beside = BesidePoses(np.full(len(SCENE.contacts.joint), 0.3), left, {})
+    beside = BesidePoses(np.full(len(scene().contacts.joint), 0.3), left, {})
     motion = SampledMotion(pose, velocity, np.full(len(t), -1e6))
-    reading = masonry_reading(CASE, SCENE, t, motion, beside)
+    reading = masonry_reading(CASE, scene(), t, motion, beside)
     assert reading.outcome is mr.Outcome[outcome]
     np.testing.assert_array_equal(reading.joints.opening, 0.3)
     velocity[t > 2.0 - 0.5 * STILL] = 1.0
-    assert masonry_reading(CASE, SCENE, t, motion, beside).outcome is mr.Outcome.TIME_ENDED
+    assert masonry_reading(CASE, scene(), t, motion, beside).outcome is mr.Outcome.TIME_ENDED
 
 
 def test_a_block_beside_ground_that_has_sunk_as_far_has_not_fallen():
     """It has left its joint, and is as high above the ground as at rest."""
     t, sunk = np.linspace(0.0, 2.0, 5), np.array([0.0, 1.0, 2.0, 3.0, 4.0])
     case = mr.MasonryCase(BOX, 2.0, supports={"ground": (t, 0 * t, -sunk)})
-    pose = np.tile(SCENE.at_rest, (len(t), 1, 1))
+    pose = np.tile(scene().at_rest, (len(t), 1, 1))
     pose[:, :, 1] -= sunk[:, None]
     pose[:, 1, 0] += 2.0
     for below, fallen in ((0.2, {}), (0.3, {"right": 2.0})):  # half its height is 0.25 m
-        pose[-1, 1, 1] = SCENE.at_rest[1, 1] - sunk[-1] - below
-        beside = BesidePoses(np.zeros(len(SCENE.contacts.joint)), True, {})
-        reading = masonry_reading(case, SCENE, t, SampledMotion(pose, 0 * pose, np.zeros(len(t))), beside)
+        pose[-1, 1, 1] = scene().at_rest[1, 1] - sunk[-1] - below
+        beside = BesidePoses(np.zeros(len(scene().contacts.joint)), True, {})
+        reading = masonry_reading(case, scene(), t, SampledMotion(pose, 0 * pose, np.zeros(len(t))), beside)
         assert dict(reading.joints.fallen) == fallen

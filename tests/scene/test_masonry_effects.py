@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry.effects import applied, laden
+from mjrock.problem.masonry.effects import applied, laden, pulls_of
 
 WALL = mr.Block.from_size(0.6, 4.2)
 HALF = mr.Block.from_size(0.6, 2.1)
@@ -84,6 +84,29 @@ def test_an_added_mass_weighs_on_its_block(in_space):
         expected = [0, -800 * mr.GRAVITY, 800 * mr.GRAVITY * 0.15]
     (block,) = masonry.free
     np.testing.assert_allclose(applied(masonry, (mr.AddedMass(800.0, block=block, **place),)), [expected], atol=1e-9)
+
+
+def test_ties_pull_their_blocks_towards_their_anchors():
+    """By 1 N each, with moments about the centroids; in space towards x, in the plane about y."""
+    plane = mr.Masonry.stack([HALF, HALF], k_n=5e8)
+    found = pulls_of(plane, [mr.Tie(3.0, 1e6, block=2), mr.Tie(3.0, 1e6, block=2, anchor_block=1)])
+    np.testing.assert_allclose(found[0], [[0, 0, 0], [-1, 0, 3.15 - 3.0]], atol=1e-12)
+    np.testing.assert_allclose(found[1, 0] + found[1, 1], [0, 0, 3.15 - 1.05], atol=1e-12)
+    space = mr.Masonry.box((0.6, 0.4, 2.0), k_n=1e9)
+    (block,) = space.free
+    tie = mr.Tie(stiffness=1e6, at=(0.3, 0.1, 1.8), anchor=(0.3, 4.1, 1.8), block=block)
+    np.testing.assert_allclose(pulls_of(space, [tie]), [[[0, 1, 0, -0.8, 0, 0.3]]], atol=1e-12)
+
+
+@pytest.mark.parametrize(("apart", "taken"), [(0.009, False), (0.01, True), (0.015, True)])
+def test_an_anchor_in_space_is_a_centimetre_off_at_least(apart, taken):
+    masonry = mr.Masonry.box((0.6, 0.4, 2.0), k_n=1e9)
+    tie = mr.Tie(stiffness=1e6, at=(0.0, 0.0, 1.8), anchor=(apart, 0.0, 1.8), block=masonry.free[0])
+    if taken:
+        assert len(mr.MasonryCase(masonry, 1.0, effects=tie).effects) == 1
+        return
+    with pytest.raises(ValueError, match=r"lies at the point that is held; the least is 0.01 m"):
+        mr.MasonryCase(masonry, 1.0, effects=tie)
 
 
 MASONRY = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05)

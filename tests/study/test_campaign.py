@@ -355,16 +355,13 @@ def test_one_worker_needs_no_guard(tmp_path):
         [sys.executable, "unguarded.py"], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=False
     )
     assert run.stdout == f"{[2, None, *(i**2 for i in range(1, 20)), 4]}\n"
-    line, _ = run.stderr.splitlines()
-    assert line.startswith("campaign: tasks that no other process can take run in this one, which may die of them: ")
-    assert "Double" in line
+    assert len(run.stderr.splitlines()) == 1
 
 
-def test_in_a_process_that_may_start_no_other(tmp_path, monkeypatch, capsys):
+def test_in_a_process_that_may_start_no_other(tmp_path, monkeypatch):
     """A worker of multiprocessing's Pool, or of Dask."""
     monkeypatch.setitem(current_process()._config, "daemon", True)
     assert len(table(mr.campaign(squares(tmp_path, 5), tmp_path / "c.sqlite", workers=1)).splitlines()) == 6
-    assert "this process may not start others" in capsys.readouterr().err
 
 
 @pytest.mark.slow

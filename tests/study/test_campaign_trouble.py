@@ -53,17 +53,16 @@ DEATHS = {
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals, and the library of C, are those of POSIX")
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
+def test_a_task_that_ends_its_process_is_a_row(tmp_path):
     """Each of three, among others that run on. The next call leaves them alone."""
     tasks = [Misbehave(kind) for kind in ("first", "_exit", "second", "_exit 0", "libc", "kill", "last")]
-    path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=workers)
+    path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=2)
     rows = mr.results(tasks, path)
     errors = [DEATHS.get(task.kind) for task in tasks]
     expected = [how and f"RuntimeError: its worker process {how}" for how in errors]
     assert [row["error"] for row in rows] == expected
     assert [row["answer"] for row in rows] == [None if how else 42 for how in errors]
-    mr.campaign(tasks, path, workers=workers)
+    mr.campaign(tasks, path, workers=2)
     assert mr.results(tasks, path) == rows
 
 

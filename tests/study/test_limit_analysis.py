@@ -4,11 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from everyday import among, slow
 
 import mjrock as mr
 
 THICK, HIGH = 0.5, 2.0
 BOTH = pytest.mark.parametrize("in_space", [False, True], ids=["plane", "space"])
+IN_EACH = pytest.mark.parametrize(
+    ("in_space", "associated"),
+    [(False, True), (False, False), (True, True), slow((True, False))],
+    ids=["plane", "plane without dilatancy", "space", "space without dilatancy"],
+)
 
 
 def wall(in_space, friction=2.0, **more):
@@ -34,8 +40,7 @@ def offset(in_space, x):
     return {} if in_space else {"offset": x - 0.5 * THICK}
 
 
-@BOTH
-@pytest.mark.parametrize("associated", [True, False])
+@IN_EACH
 def test_constant_loads_thrusts_and_masses_stand_beside_the_force_that_grows(in_space, associated):
     """Moments about the toe at x = THICK, with the weight W: a load P turns back, a thrust T on, a mass both ways."""
     masonry = wall(in_space)
@@ -76,8 +81,7 @@ def tie_of(in_space, z, strength, **more):
     return mr.Tie(stiffness=1e7, strength=strength, ultimate=0.1, block="wall", **place | more)
 
 
-@BOTH
-@pytest.mark.parametrize("associated", [True, False])
+@IN_EACH
 def test_ties_hold_up_to_their_strength_and_what_they_pull_is_said(in_space, associated):
     """Outwards they yield at (W b / 2 + sum T z) / (W h / 2); inwards they are slack; a third of a thrust is held."""
     masonry = wall(in_space)
@@ -132,8 +136,7 @@ def test_effects_that_are_no_constant_forces_and_what_falls_under_them_are_refus
         mr.collapse_multiplier(masonry, effects=mr.Load(1.0, HIGH, block="roof"))
 
 
-@BOTH
-@pytest.mark.parametrize("associated", [True, False])
+@IN_EACH
 def test_a_block_that_only_wedging_holds_is_named(in_space, associated):
     """Between two upright cheeks nothing presses on it; beside it a block stands on the ground."""
     sides = {"left": (0, 1, 0, 2), "middle": (1, 2, 0.5, 1.5), "right": (2, 3, 0, 2), "other": (1.2, 1.8, 1.5, 2.5)}
@@ -151,7 +154,7 @@ def test_a_block_that_only_wedging_holds_is_named(in_space, associated):
 
 
 @pytest.mark.parametrize("associated", [True, False])
-@pytest.mark.parametrize("degrees", [0.0, 11.25, 22.5, 57.0, 200.0])
+@pytest.mark.parametrize("degrees", among([0.0, 11.25, 22.5, 57.0, 200.0], 11.25, 57.0))
 def test_a_load_alone_slides_at_the_whole_friction_in_any_direction(degrees, associated):
     masonry = mr.Masonry.box((0.5, 0.8, 0.3), friction=0.37)
     weight, turn = masonry.blocks[masonry.free[0]].mass * mr.GRAVITY, math.radians(degrees)

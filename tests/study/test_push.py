@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from driven import WEIGHT, B, H, panel
+from everyday import slow
 from matplotlib.figure import Figure
 
 import mjrock as mr
@@ -17,8 +18,8 @@ JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 
 @pytest.fixture(scope="module")
 def turned():
-    """A panel that an actuator turns to 0.8 of overturning."""
-    return mr.push(panel(0.9, k_n=1e10), JACK, 0.4)
+    """A panel that an actuator turns to 0.4 of overturning."""
+    return mr.push(panel(0.9, k_n=1e10), JACK, 0.2)
 
 
 def rigid(moved):
@@ -35,8 +36,8 @@ def test_an_actuator_finds_the_softening_branch_of_a_panel(turned):
     assert error.max() < 0.01 * B / (2 * H)
     assert turned.peak == pytest.approx(WEIGHT * B / (2 * H), rel=0.01)
     assert turned.inertia_share < 0.015  # 0.01 was asked for, and the first piece is made five times at most
-    assert turned.ended == "reached 400 mm"
-    assert turned.displacement[-1] == pytest.approx(0.4, rel=0.01)
+    assert turned.ended == "reached 200 mm"
+    assert turned.displacement[-1] == pytest.approx(0.2, rel=0.01)
 
 
 def test_a_push_is_drawn(turned):
@@ -49,8 +50,8 @@ def test_a_push_is_drawn(turned):
 
 
 def test_local_damping_does_not_shift_it(turned):
-    damped = mr.push(panel(0.9, k_n=1e10, k_s=1e10), JACK, 0.4, local_damping=0.7)
-    at = np.linspace(0.02, 0.38, 10)
+    damped = mr.push(panel(0.9, k_n=1e10, k_s=1e10), JACK, 0.08, local_damping=0.7)
+    at = np.linspace(0.01, 0.075, 10)
     found = [np.interp(at, each.displacement, each.force) for each in (damped, turned)]
     np.testing.assert_allclose(*found, atol=0.002 * turned.peak)
 
@@ -84,9 +85,12 @@ def test_the_area_under_the_curve_of_an_actuator_is_the_energy_gained(turned):
 
 @pytest.fixture(scope="module")
 def toppled():
-    """A panel that is pushed by a direction to 0.8 of overturning, each way."""
-    far = np.sin(ALPHA) - np.sin(0.2 * ALPHA)
-    return {way: mr.push(panel(2.0, k_n=1e10), way, np.hypot(B, H) * far) for way in (1, -1)}
+    """A panel that is pushed by a direction to 0.8 of overturning."""
+    return toppled_by(1)
+
+
+def toppled_by(way):
+    return mr.push(panel(2.0, k_n=1e10), way, np.hypot(B, H) * (np.sin(ALPHA) - np.sin(0.2 * ALPHA)))
 
 
 ALPHA = np.arctan(B / H)
@@ -97,10 +101,9 @@ def rotation(moved):
     return ALPHA - np.arcsin(np.sin(ALPHA) - moved / np.hypot(B, H))
 
 
-@pytest.mark.parametrize("way", [1, -1])
-def test_a_direction_finds_the_whole_curve_of_a_rigid_block(toppled, way):
+def test_a_direction_finds_the_whole_curve_of_a_rigid_block(toppled):
     """tan(alpha - theta), what the balance of moments about the toe gives, and the potential energy gained."""
-    push = toppled[way]
+    push = toppled
     turns = push.displacement > 1e-3
     closed = np.tan(ALPHA - rotation(push.displacement))
     np.testing.assert_allclose(push.force[turns], closed[turns], rtol=0.015)
@@ -111,9 +114,11 @@ def test_a_direction_finds_the_whole_curve_of_a_rigid_block(toppled, way):
     assert push.inertia_share < 0.01
 
 
+@pytest.mark.slow
 def test_a_push_against_x_is_the_mirror_of_one_along_x(toppled):
+    other = toppled_by(-1)
     for name in ("displacement", "force"):
-        np.testing.assert_allclose(getattr(toppled[1], name), getattr(toppled[-1], name), rtol=1e-4, atol=1e-8)
+        np.testing.assert_allclose(getattr(toppled, name), getattr(other, name), rtol=1e-4, atol=1e-8)
 
 
 @pytest.mark.slow
@@ -125,27 +130,27 @@ def test_damping_in_proportion_to_mass_does_not_shift_it(mass_damping):
     np.testing.assert_allclose(push.force[turns], closed[turns], rtol=2e-3)
 
 
-def test_a_load_that_stays_and_a_mass_have_their_part():
+@pytest.mark.parametrize(("vertical", "mass"), [slow((5000.0, 0.0)), (0.0, 500.0)])
+def test_a_load_that_stays_and_a_mass_have_their_part(vertical, mass):
     """V = W (h cos + b sin) + P (2h cos + b sin) about the toe, over x = h sin + b (1 - cos); a mass weighs, too."""
-    vertical = 5000.0
-    for effect, mass in ((mr.Load(vertical, 2 * H, block="panel"), 0.0), (mr.AddedMass(500.0, 2 * H, block=1), 500.0)):
-        push = mr.push(panel(2.0, k_n=1e10), 1, 0.03, effects=effect)
-        theta = np.linspace(0.0, 0.2, 2001)
-        top, other = H * np.sin(theta) * 2 + B * (1 - np.cos(theta)), H * np.sin(theta) + B * (1 - np.cos(theta))
-        share = mass / (mass + WEIGHT / mr.GRAVITY)
-        moved, load = share * top + (1 - share) * other, mass * mr.GRAVITY + (0.0 if mass else vertical)
-        gained = WEIGHT * (H * np.cos(theta) + B * np.sin(theta)) + load * (2 * H * np.cos(theta) + B * np.sin(theta))
-        closed = np.gradient(gained, moved) / (WEIGHT + mass * mr.GRAVITY)
-        turns = push.displacement > 2e-3
-        expected = np.interp(push.displacement, moved, closed)
-        np.testing.assert_allclose(push.force[turns], expected[turns], rtol=0.015)
+    effect = mr.AddedMass(mass, 2 * H, block=1) if mass else mr.Load(vertical, 2 * H, block="panel")
+    push = mr.push(panel(2.0, k_n=1e10), 1, 0.03, effects=effect)
+    theta = np.linspace(0.0, 0.2, 2001)
+    top, other = H * np.sin(theta) * 2 + B * (1 - np.cos(theta)), H * np.sin(theta) + B * (1 - np.cos(theta))
+    share = mass / (mass + WEIGHT / mr.GRAVITY)
+    moved, load = share * top + (1 - share) * other, mass * mr.GRAVITY + vertical
+    gained = WEIGHT * (H * np.cos(theta) + B * np.sin(theta)) + load * (2 * H * np.cos(theta) + B * np.sin(theta))
+    closed = np.gradient(gained, moved) / (WEIGHT + mass * mr.GRAVITY)
+    turns = push.displacement > 2e-3
+    expected = np.interp(push.displacement, moved, closed)
+    np.testing.assert_allclose(push.force[turns], expected[turns], rtol=0.015)
 
 
 def test_it_ends_where_nothing_is_borne_any_more(toppled):
     """A panel that a direction has turned goes on from there to overturning, where its centroid is above its toe."""
-    push = mr.push(panel(2.0, k_n=1e10), 1, 0.4, start=toppled[1].answer.end)
+    push = mr.push(panel(2.0, k_n=1e10), 1, 0.4, start=toppled.answer.end)
     assert push.ended.startswith("goes on by itself from 25")
-    assert push.displacement[0] == pytest.approx(toppled[1].displacement[-1], abs=2e-3)
+    assert push.displacement[0] == pytest.approx(toppled.displacement[-1], abs=2e-3)
     assert push.displacement[-1] == pytest.approx(B, rel=0.02)
     np.testing.assert_allclose(push.force, np.tan(ALPHA - rotation(push.displacement)), atol=0.01 * B / H)
 
@@ -217,7 +222,7 @@ def test_a_strip_between_floors_follows_its_rigid_curve_down_to_nothing():
 def test_masonry_in_space_bears_what_it_bears_in_the_plane(toppled, driver, angle):
     push = mr.push(panel(2.0, k_n=1e10, in_space=True), driver, 0.1, angle=angle)
     at = np.linspace(0.002, 0.1, 30)
-    found = [np.interp(at, each.displacement, each.force) for each in (push, toppled[1])]
+    found = [np.interp(at, each.displacement, each.force) for each in (push, toppled)]
     np.testing.assert_allclose(*found, rtol=0.01)
 
 
@@ -274,25 +279,27 @@ def test_it_stops_where_the_force_has_fallen():
 @pytest.mark.parametrize(("friction", "multiplier"), [(0.2, 0.2), (0.9, B / H)])
 def test_a_force_that_grows_finds_the_multiplier_of_collapse(friction, multiplier):
     masonry = panel(friction, k_n=1e10)
-    push = mr.push(masonry, -1, 0.02)
+    push = mr.push(masonry, -1, 0.01)
     assert push.peak == pytest.approx(multiplier, rel=0.01)
     assert push.peak == pytest.approx(mr.collapse_multiplier(masonry, -1).multiplier, rel=0.01)
-    assert push.ended == "moved by 20 mm"
+    assert push.ended == "moved by 10 mm"
+    assert push.displacement.max() < 0.011  # what gives way does not run on
     assert (np.diff(push.displacement) > -1e-6).all()
 
 
+@pytest.mark.slow
 def test_blocks_that_give_way_do_not_run_on():
     """A quiet push takes long pieces, in which blocks that nothing holds would move by metres."""
-    push = mr.push(panel(0.2, k_n=1e10), -1, 0.02, inertia=0.0025)
+    push = mr.push(panel(0.2, k_n=1e10), -1, 0.01, inertia=0.0025)
     assert push.peak == pytest.approx(0.2, rel=0.005)
-    assert 0.02 < push.displacement.max() < 0.022
-    assert np.diff(push.displacement).max() < 0.002
+    assert 0.01 < push.displacement.max() < 0.011
+    assert np.diff(push.displacement).max() < 0.001
 
 
 def test_a_push_to_and_fro_loses_friction_each_way():
-    push = mr.push(panel(0.3, k_n=1e10), mr.Actuator("panel", (-B, 0.1), 1, None, 1e8), [0.02, -0.02, 0.01])
+    push = mr.push(panel(0.3, k_n=1e10), mr.Actuator("panel", (-B, 0.1), 1, None, 1e8), [0.01, -0.01, 0.005])
     work = float((0.5 * (push.force[1:] + push.force[:-1]) * np.diff(push.displacement)).sum())
-    assert work == pytest.approx(0.3 * WEIGHT * 0.09, rel=0.01)
+    assert work == pytest.approx(0.3 * WEIGHT * 0.045, rel=0.01)
     assert push.force.min() == pytest.approx(-0.3 * WEIGHT, rel=0.01)
 
 

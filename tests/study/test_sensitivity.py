@@ -118,6 +118,16 @@ def test_of_a_wall_and_resumed(build, tmp_path):
         assert {row["scale"] for row in file.rows()} == {1.2, 1.5}
 
 
+def test_rows_of_an_older_study_have_the_settings_of_this_one(build, tmp_path):
+    """A store that another study has filled holds runs of the same content whose labels are those of that study."""
+    store = tmp_path / "both.sqlite"
+    mr.sensitivity(build, {"scale": 2.0}, {"duration": [0.5, 0.4]}, store, workers=1)
+    found = mr.sensitivity(build, {"scale": 2.0}, {"duration": [0.5, 0.4], "scale": [3.0]}, store, workers=1)
+    settings = [(row["duration"], row["scale"]) for row in found.rows]
+    assert settings == [(0.5, 2.0), (0.4, 2.0), (0.5, 3.0), (0.4, 3.0)]
+    assert "None" not in plotting.tornado(found).get_yticklabels()[0].get_text()
+
+
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [

@@ -40,7 +40,7 @@ def shaken(masonry, duration, solve=mr.simulate, amplitude=3.0, **options):
 def thrown(seed, settled=True):
     """A pile whose blocks leave their joints and meet others."""
     velocity = np.random.default_rng(seed).normal(0.0, 1.5, (len(PILE.free), 3))
-    return mr.solve_explicit(mr.MasonryCase(PILE, 0.12, velocity=velocity, settled=settled), output_step=5e-3)
+    return mr.solve_explicit(mr.MasonryCase(PILE, 0.06, velocity=velocity, settled=settled), output_step=5e-3)
 
 
 RUNS = {

@@ -6,10 +6,19 @@ import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
-from ...quantities import Array, Implausible, keep, require_kind, require_stiffness, require_whole, require_within
+from ...quantities import (
+    Array,
+    Implausible,
+    Within,
+    keep_declared,
+    require_kind,
+    require_stiffness,
+    require_whole,
+)
 from ..wall.block import Block
 
 LAWS_END = 0.3
@@ -61,10 +70,11 @@ class Interface:
     Args:
         k_n: normal interface stiffness [N/m3], 1e4 to 1e14.
         xi: damping ratio [-] as a fraction, 0 to 100.
-        face: width of the face across the lines: the thickness for the base, the height for the side stop [m].
-        length: length of the lines along the wall [m].
-        frequency: what the damping ratio refers to, see `reference_frequency` [rad/s].
-        points: number of contact lines, at least 2.
+        face: width of the face across the lines: the thickness for the base, the height for the side stop [m],
+            1e-3 to 1000.
+        length: length of the lines along the wall [m], 1e-3 to 1000.
+        frequency: what the damping ratio refers to, see `reference_frequency` [rad/s], 1e-3 to 1e9.
+        points: number of contact lines, 2 to 1000.
         friction: coefficient of friction of every line [-], 0 to 10, or None. A base of None holds: it does not slide,
             as rocking theory has it. A side of None is smooth.
 
@@ -72,26 +82,16 @@ class Interface:
         ValueError: for a value outside its range.
     """
 
-    k_n: float
-    xi: float
-    face: float
-    length: float
-    frequency: float
-    points: int = 2
-    friction: float | None = None
+    k_n: Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")]
+    xi: Annotated[float, Within(0, 100, name="damping ratio xi")]
+    face: Annotated[float, Within(1e-3, 1000, "m")]
+    length: Annotated[float, Within(1e-3, 1000, "m")]
+    frequency: Annotated[float, Within(1e-3, 1e9, "rad/s", "reference frequency")]
+    points: Annotated[int, Within(2, 1000, name="contact points", whole=True)] = 2
+    friction: Annotated[float | None, Within(0, 10)] = None
 
     def __post_init__(self) -> None:
-        keep(
-            self,
-            face=require_within("face", self.face, 1e-3, 1e3, "m"),
-            length=require_within("length", self.length, 1e-3, 1e3, "m"),
-            frequency=require_within("reference frequency", self.frequency, 1e-3, 1e9, "rad/s"),
-            k_n=require_stiffness("interface stiffness k_n", self.k_n),
-            xi=require_within("damping ratio xi", self.xi, 0.0, 100.0),
-            points=require_points(self.points),
-        )
-        if self.friction is not None:
-            keep(self, friction=require_within("friction", self.friction, 0.0, 10.0))
+        keep_declared(self)
         if self.xi > LAWS_END * (1 + 1e-9):
             warnings.warn(
                 f"xi = {self.xi:g} is {self.xi:.0%} of critical, and the laws end at {LAWS_END:.0%}; "

@@ -59,6 +59,7 @@ class Actuator(Effect):
     """
 
     label: ClassVar[str] = "actuator"
+    only: ClassVar[str] = "solve_explicit"
     arguments: ClassVar[str] = "block, at, direction,\ndisplacement, stiffness"
     block: Any
     at: Any

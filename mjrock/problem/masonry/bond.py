@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
-from ...quantities import Implausible, keep, require_kind, require_within, shown
+from ...quantities import Array, Implausible, keep, require_within
 from .bond_law import HARDENED, YIELDS
-from .joint_law import Law
-from .joints import Joint
-from .joints_in_space import SpaceJoint
 
 LEAST_POINTS = 3
 """Fewest contact lines of a joint with a bond: of these the stiffness in bending can be k_n I."""
@@ -111,6 +107,34 @@ class Bond:
                 return f"{name} = {energy:g} J/m2, and mortar takes more than {FRAGILE:g} J/m2: is it in N/mm?"
         return ""
 
+    def require_fit(self, joint: str, k_n: float, k_s: float, friction: float, points: int) -> None:
+        """Raise a ValueError that names the joint, if its springs cannot have this bond.
+
+        Args:
+            joint: its name.
+            k_n, k_s: its stiffness along the normal and along the face, infinite where it sticks rigidly [N/m3].
+            friction: its coefficient of friction [-].
+            points: its contact lines.
+        """
+        if self.is_dry:
+            return
+        if points < LEAST_POINTS:
+            raise ValueError(
+                f"points = {points}, and {joint} has a bond: on two lines it would crack in bending at 3 times "
+                f"the moment that it bears; the valid range is {LEAST_POINTS} or more, and 5 or more follow the crack"
+            )
+        if not math.isfinite(k_s):
+            raise ValueError(f"bond of {joint}: k_s = None, and a bond needs a shear stiffness; give k_s in N/m3")
+        if self.residual_friction is not None:
+            require_within(f"residual_friction of {joint}", self.residual_friction, 0.0, friction)
+        if self.steepest > k_n:
+            stiff, tough = (ROUNDED_UP * least for least in (self.steepest, self.crushing_energy_on(k_n)))
+            raise ValueError(
+                f"bond of {joint}: its spring of k_n = {k_n:g} N/m3 gives back more than crushing takes; the "
+                f"valid range of k_n is {stiff:.3g} N/m3 or more with this crushing_energy, and that of the "
+                f"crushing_energy {tough:.3g} J/m2 or more with this k_n; or leave crushing out"
+            )
+
     @property
     def is_dry(self) -> bool:
         """Whether the joint has no bond at all."""
@@ -140,28 +164,15 @@ class Bond:
         return HARDENED * (self.crushing or 0.0) * (self.hardening or 0.0)
 
 
-@dataclass(frozen=True)
-class Halved:
-    """Bonds of a wall of divided units: `between` them, one or a function of the joint, and `within` them."""
+def strengths(bonds: Sequence[Bond | None], name: str) -> Array:
+    """A strength of each bond [Pa], zero where there is none, shape (joints,)."""
+    return np.array([0.0 if bond is None else getattr(bond, name) for bond in bonds])
 
-    between: Bond | Callable[[Any], Bond | None] | None
-    within: Bond
-
-    def __call__(self, joint: Joint | SpaceJoint) -> Bond | None:
-        """The bond of a joint."""
-        first, second = joint.name.split("|")
-        if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
-            return self.within
-        return self.between(joint) if callable(self.between) else self.between
-
-
-OfBond = Bond | Callable[[Any], Bond | None] | None
-"""A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
 
 BONDS = {
     # shear wall J4D of Raijmakers and Vermeltfoort, as two independent micro-models of it have its mortar, after
-    # Lourenco and Rots, Journal of Engineering Mechanics 123, 1997; its crushing from memory
-    "cement mortar, wall J4D": Bond(0.25e6, 0.35e6, 18.0, 125.0, 10.5e6, 5e3),
+    # Lourenco and Rots, Journal of Engineering Mechanics 123, 1997; without crushing, for which no source was at hand
+    "cement mortar, wall J4D": Bond(0.25e6, 0.35e6, 18.0, 125.0),
     # out-of-plane shake-table wall of the SAFEGO project, 3DEC deck of its authors; G_c = 15 + 0.43 f_c - 0.0036 f_c^2
     "clay brick, SAFEGO": Bond(0.2e6, 0.3e6, 13.0, 130.0, 20e6, 22.2e3),
     # calcium silicate bricks tested at EUCENTRE, deck of the group; G_I = 0.025 (2 f_t)^0.7 and G_II = 10 G_I in N/mm
@@ -170,55 +181,3 @@ BONDS = {
     "rubble, EPFL": Bond(0.05e6, 0.05e6, 20.0, 5.0),
 }
 """Named bonds, each with its source above it. Tests of one's own masonry come first, see docs/mortar.md."""
-
-
-def required_bond(bond: Any) -> OfBond:
-    """A bond, a function of the joint, or None."""
-    if not callable(bond):
-        require_kind("bond", bond, Bond, type(None))
-    return bond  # type: ignore[no-any-return]
-
-
-def bonds_of(given: OfBond, joints: Sequence[Joint | SpaceJoint], law: Law, points: int) -> tuple[Bond | None, ...]:
-    """The bond of each joint, None where it is dry.
-
-    Args:
-        given: one for all, or a function of the joint.
-        joints: the joints.
-        law: their k_n, k_s, infinite where one sticks rigidly [N/m3], and friction [-], shape (joints,) each.
-        points: contact lines of each joint.
-
-    Raises:
-        ValueError: for a bond on a joint of two lines or without k_s, of a residual friction above that of the joint,
-            or whose crushing softens faster than the joint springs back.
-    """
-    found: list[Bond | None] = []
-    for joint, k_n, k_s, most in zip(joints, law.k.tolist(), law.k_s.tolist(), law.friction.tolist(), strict=True):
-        bond = given
-        if callable(given):
-            try:
-                bond = given(joint)
-            except TypeError as error:
-                raise TypeError(f"bond = {shown(given)} is not called as bond(joint): {error}") from None
-        require_kind(f"bond of {joint.name}", bond, Bond, type(None))
-        if not isinstance(bond, Bond) or bond.is_dry:
-            found.append(None)
-            continue
-        if points < LEAST_POINTS:
-            raise ValueError(
-                f"points = {points}, and {joint.name} has a bond: on two lines it would crack in bending at 3 times "
-                f"the moment that it bears; the valid range is {LEAST_POINTS} or more, and 5 or more follow the crack"
-            )
-        if not np.isfinite(k_s):
-            raise ValueError(f"bond of {joint.name}: k_s = None, and a bond needs a shear stiffness; give k_s in N/m3")
-        if bond.residual_friction is not None:
-            require_within(f"residual_friction of {joint.name}", bond.residual_friction, 0.0, most)
-        if bond.steepest > k_n:
-            stiff, tough = (ROUNDED_UP * least for least in (bond.steepest, bond.crushing_energy_on(k_n)))
-            raise ValueError(
-                f"bond of {joint.name}: its spring of k_n = {k_n:g} N/m3 gives back more than crushing takes; the "
-                f"valid range of k_n is {stiff:.3g} N/m3 or more with this crushing_energy, and that of the "
-                f"crushing_energy {tough:.3g} J/m2 or more with this k_n; or leave crushing out"
-            )
-        found.append(bond)
-    return tuple(found)

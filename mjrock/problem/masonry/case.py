@@ -24,7 +24,7 @@ from ..ground.motion import GroundMotion
 from ..wall.case import Case
 from ..wall.effect import Effect
 from ..wall.effects import KINDS, Carrying, Load
-from ..wall.in_space import LATER, require_in_plane
+from ..wall.in_space import require_in_plane
 from .actuator import Actuator
 from .effects import numbered, require_anchored, require_in_space, require_pushing
 from .masonry import Masonry
@@ -80,9 +80,9 @@ class MasonryCase(Carrying):
     velocity: Array | ArrayLike | None = None
     effects: tuple[Effect, ...] = ()
     supports: Any = ()
-    transverse: GroundMotion | None = field(default=None, kw_only=True, metadata=LATER)
-    settled: bool = field(default=True, kw_only=True, metadata=LATER)
-    tilt: Any = field(default=None, kw_only=True, metadata=LATER)
+    transverse: GroundMotion | None = field(default=None, kw_only=True)
+    settled: bool = field(default=True, kw_only=True)
+    tilt: Any = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
@@ -116,7 +116,8 @@ class MasonryCase(Carrying):
         self._keep_sequence(Actuator)
         numbers: list[Effect] = []
         for i, effect in enumerate(self.effects):
-            require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
+            if not (isinstance(effect, Effect) and effect.only):
+                require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
             effect = numbered(f"effects[{i}]", effect, self.masonry)
             numbers.append(effect)
             if effect.block is None:

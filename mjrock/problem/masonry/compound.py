@@ -8,9 +8,8 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from ...geometry.graph import components
 from ...quantities import Array, frozen, keep, require_flag, require_kind, shown
 from .joints import Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
@@ -100,9 +99,7 @@ class Compound:
             joints: tuple[Joint | SpaceJoint, ...] = find(_named(self.parts), CLOSE)  # type: ignore[arg-type]
         except ValueError as error:
             raise ValueError(f"parts: {error}") from None
-        pairs = np.array([(joint.below, joint.above) for joint in joints], dtype=np.int64).reshape(-1, 2)
-        graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(self.parts),) * 2)
-        labels = connected_components(graph, directed=False)[1]
+        labels = components([(joint.below, joint.above) for joint in joints], len(self.parts))
         if labels.any():
             loose = int(labels.argmax())
             raise ValueError(

@@ -19,6 +19,12 @@ WIDEST = 0.1
 """Largest tolerance of masonry [m]."""
 FINE = 1.05
 """Factor to which the tolerance that joints need is found [-]."""
+FAR = 30.0
+"""How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
+OVERDAMPED = 30.0
+"""Damping ratio of the lowest mode above which the frequency that xi refers to is doubted [-]."""
+UNDAMPED = 1e-4
+"""The same below which it is doubted [-], where xi is a hundred times as much."""
 Finder = Callable[[float], Sequence[Joint | SpaceJoint]]
 """The joints that a tolerance gives [m]."""
 ALIKE = 0.99
@@ -29,6 +35,22 @@ def odd_damping(xi: Array) -> str:
     """What is odd about damping ratios of joints at the lowest frequency [-], in words, empty where nothing is."""
     most = float(xi.max(initial=0.0))
     return f"xi = {most:g} is {most:.0%} of critical; damping ratios are fractions" if most > 1 else ""
+
+
+def odd_frequency(xi: float, frequency: float, lowest: float) -> str:
+    """What is odd about a given frequency, beside the lowest one of the masonry [rad/s], in words, empty where nothing.
+
+    With the lowest one it makes of xi the damping ratio of that mode, which says whether c/k is odd.
+    """
+    found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
+    overdamped = found > OVERDAMPED and lowest > FAR * frequency
+    if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
+        return ""
+    return (
+        f"frequency = {frequency:g} rad/s, and the lowest one of this masonry is {lowest:.3g} rad/s: with xi = "
+        f"{xi:g} that one is damped to {found:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in "
+        "rad/s, and None takes the lowest"
+    )
 
 
 def odd_sizes(blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:

@@ -3,11 +3,15 @@
 A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit steps and their ledger, the search for the
 pose of rest and limit analysis all take the law from here. MuJoCo has the same law in its rows, see `engine.rows`.
 
+The spring along the normal is linear. `secant_stiffness`, `equivalent_stiffness`, `largest_stiffness`, `depth_of_force`
+and `depth_of_energy` say so, and nothing else in explicit steps does: another spring is another text of these five.
+
 A row is anything with these numbers by name: a row of compiled steps, or a `Law`.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,12 +36,42 @@ class Law(NamedTuple):
 
 
 @inlined
+def secant_stiffness(row: Any, depth: float) -> Any:
+    """Force of the spring along the normal over its depth [N/m], at a depth [m]."""
+    return row.k
+
+
+@inlined
+def equivalent_stiffness(row: Any, depth: float) -> Any:
+    """Stiffness of the linear spring that holds the same energy at a depth [N/m]."""
+    return row.k
+
+
+@inlined
+def largest_stiffness(row: Any) -> Any:
+    """Largest stiffness of the spring along the normal for which steps are short enough [N/m]."""
+    return row.k
+
+
+@inlined
+def depth_of_force(row: Any, factor: float, depth: float) -> float:
+    """Depth at which the spring along the normal has a multiple of the force that it has at some depth [m]."""
+    return factor * depth
+
+
+@inlined
+def depth_of_energy(row: Any, factor: float, depth: float) -> float:
+    """Depth at which the spring along the normal holds a multiple of the energy that it holds at some depth [m]."""
+    return math.sqrt(factor) * depth
+
+
+@inlined
 def normal_force(row: Any, gap: float, rate: float) -> float:
     """Force that presses the two sides apart [N], at a gap [m] that grows at a rate [m/s].
 
     It is that of spring and dashpot while the gap is negative, and never a tension.
     """
-    return max(-(row.k * gap + row.c * rate), 0.0) if gap < 0 else 0.0
+    return max(-(secant_stiffness(row, -gap) * gap + row.c * rate), 0.0) if gap < 0 else 0.0
 
 
 @inlined
@@ -50,7 +84,7 @@ def shear_limit(row: Any, push: Any) -> Any:
 def stored(row: Any, gap: float) -> float:
     """Energy in the spring along the normal [J]."""
     depth = min(gap, 0.0)
-    energy: float = 0.5 * row.k * (depth * depth)
+    energy: float = 0.5 * equivalent_stiffness(row, -depth) * (depth * depth)
     return energy
 
 

@@ -6,11 +6,11 @@ import math
 import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,7 @@ from ...quantities import (
     Array,
     Implausible,
     Integers,
+    Within,
     frozen,
     keep,
     named,
@@ -35,37 +36,44 @@ from ...quantities import (
 from ..damping.contacts import AnyLaw, required_law
 from ..wall.block import Block
 from ..wall.effects import SideStop
-from ..wall.in_space import LATER
 from ..wall.section import Opening
-from .bond import Bond, Halved, OfBond, bonds_of, required_bond
+from .bond import Bond
 from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, curved, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
 from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
-from .drawing import WIDEST, gaps, odd_damping, odd_sizes, split_faces
+from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
 from .dxf_files import OfLayer, polygons_of, read_dxf
-from .joint_law import Law
+from .joint_table import JointTable
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
 from .mesh_files import obj_text, read_obj, read_stl
 from .meshes import Mesh, blocks_of
-from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
+from .of_joint import (
+    PROPERTIES,
+    AnyJoints,
+    ByKind,
+    Halved,
+    OfBond,
+    OfJoint,
+    OrElse,
+    properties_of,
+    required_points,
+)
+from .options import JointOptions, OtherOptions, keywords_checked, one_by_one
 from .polygon import Polygon
 from .polyhedron import Polyhedron
-from .stack_law import retardations
+from .stack_law import damping_by_law
 from .vaults import Span, barrel_of, bridge_of, groin_of
 
 AnyPath = str | PathLike[str]
-FAR = 30.0
-"""How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
-OVERDAMPED = 30.0
-"""Damping ratio of the lowest mode above which the frequency that xi refers to is doubted [-]."""
-UNDAMPED = 1e-4
-"""The same below which it is doubted [-], where xi is a hundred times as much."""
+LINES = Within(2, 1000, whole=True), Within(2, 50, whole=True)
+"""Valid `points` of a joint in the plane and in space."""
 
 
-@dataclass(frozen=True, repr=False)
+@keywords_checked
+@dataclass(frozen=True, repr=False, init=False)
 class Masonry:
     """Rigid blocks on compliant joints.
 
@@ -87,20 +95,20 @@ class Masonry:
     Args:
         blocks: the blocks, all in the plane, `Polygon` or `Compound` of these, or all in space, `Polyhedron` or
             `Compound` of these; at least one fixed and one that is not, at most 5000.
-        k_n: normal stiffness of the joints [N/m3], 1e4 to 1e14, or a function of the joint.
-        friction: coefficient of friction [-], 0 to 10, or a function of the joint.
-        xi: damping ratio [-], 0 to 100, or a function of the joint. The dashpot of a line is c = (2 xi / omega) k, the
-            stiffness-proportional damping of distinct-element codes.
+        k_n: normal stiffness of the joints [N/m3], 1e4 to 1e14, or a function of the joint; None takes 1e10.
+        friction: coefficient of friction [-], 0 to 10, or a function of the joint; None takes 0.7.
+        xi: damping ratio [-], 0 to 100, or a function of the joint; None takes 0.05. The dashpot of a line is
+            c = (2 xi / omega) k, the stiffness-proportional damping of distinct-element codes.
         frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed and none
             sliding. It is `reference_frequency` for one block on the ground. Where inclined faces leave no such motion,
             they slide on k_s, or freely where that is None.
-        points: contact lines of each joint, 2 to 1000. In space 2 to 50: two put a contact point on each corner of the
-            joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each of their
-            corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint of n
-            lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with 9. In
-            space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint with a
-            bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I. A joint that has slid
-            keeps its lines and k_n, on the part of its faces that still lies over each other.
+        points: contact lines of each joint, 2 to 1000; None takes 2. In space 2 to 50: two put a contact point on each
+            corner of the joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each
+            of their corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint
+            of n lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with
+            9. In space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint
+            with a bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I. A joint that
+            has slid keeps its lines and k_n, on the part of its faces that still lies over each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
@@ -114,9 +122,14 @@ class Masonry:
         bond: what mortar holds, a `Bond` or a function of the joint that gives one, or None where a joint is dry, for
             `solve_explicit`. It needs `k_s` and three `points` or more. The first crack in bending is that of the
             elastic section for any number of them; five or more follow the crack, see docs/mortar.md.
+        joints: what the joints are, a `Dry` or a `Mortar` for all, or a function of the joint that gives one, in the
+            place of k_n, friction, xi, k_s, frequency, points and bond, which are the short way to the same. A function
+            is asked once of each joint. The joints that are found are then `joints`.
 
     Raises:
-        ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
+        TypeError: for a keyword that it does not take, and names the nearest one.
+        ValueError: for a value outside its range, joints given both ways, blocks that overlap, or a law for what is not
+            a stack.
 
     Warns:
         Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for an xi
@@ -124,92 +137,65 @@ class Masonry:
             rounded vertices have split.
 
     Examples:
-        >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
+        >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9, joints=mr.Dry(k_n=1e10, friction=0.7))
         >>> len(arch.blocks), len(arch.joints)
         (19, 18)
     """
 
     blocks: Sequence[AnyBlock]
-    k_n: OfJoint = 1e10
-    friction: OfJoint = 0.7
-    xi: OfJoint = 0.05
-    frequency: float | None = None
-    points: int = 2
-    tolerance: float = 1e-5
-    law: AnyLaw | str | None = None
-    k_s: OfJoint | None = None
-    bond: OfBond = field(default=None, kw_only=True, metadata=LATER)
+    k_n: OfJoint
+    friction: OfJoint
+    xi: OfJoint
+    frequency: OfJoint | None
+    points: int
+    tolerance: float
+    law: AnyLaw | str | None
+    k_s: OfJoint | None
+    bond: OfBond
 
-    def __repr__(self) -> str:
-        corners = np.concatenate([self.blocks[i].corners for i in self.free])
-        size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
-        joints = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
-        if self.law is not None:
-            del joints["xi"]
-        said = [
-            f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in joints.items() if v is not None
-        ]
-        if self.law is not None:
-            said.append(f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
-        bonded = "" if self.bond is None else ", mortar"
-        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.blocks, Sequence) or isinstance(self.blocks, str):
-            raise TypeError(f"blocks = {shown(self.blocks)} is not a list of blocks")
-        keep(self, blocks=tuple(self.blocks))
-        for i, block in enumerate(self.blocks):
-            if not isinstance(block, Polygon | Polyhedron | Compound):
-                raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon, Polyhedron or Compound")
-            if block.in_space != self.blocks[0].in_space:
-                which = [
-                    f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}"
-                    for b in (block, self.blocks[0])
-                ]
-                raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
-        if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
-            raise ValueError(
-                f"blocks = {len(self.free)} free and {len(self.blocks) - len(self.free)} fixed; at least one of each "
-                f"and at most {MOST_BLOCKS} are needed"
-            )
-        for name, number in Counter(self.names).items():
-            if number > 1:
-                raise ValueError(f"blocks: {number} of them have the name {name}")
-        keep(
-            self,
-            points=require_whole("points", self.points, 2, 50 if self.in_space else 1000),
-            tolerance=require_within("tolerance", self.tolerance, 1e-9, WIDEST, "m"),
-        )
-        if self.frequency is not None:
-            keep(self, frequency=require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s"))
-        keep(self, **{name: required(name, getattr(self, name)) for name in OF_JOINTS})
-        if self.law is not None:
-            keep(self, law=required_law(self.law, self.points))
-            if self.frequency is not None:
-                given = f"frequency = {self.frequency:g} rad/s"
-                raise ValueError(f"{given} is given with a law, which has its own; leave it")
+    def __init__(
+        self,
+        blocks: Sequence[AnyBlock],
+        k_n: OfJoint | None = None,
+        friction: OfJoint | None = None,
+        xi: OfJoint | None = None,
+        frequency: OfJoint | None = None,
+        points: int | None = None,
+        tolerance: float = 1e-5,
+        law: AnyLaw | str | None = None,
+        k_s: OfJoint | None = None,
+        *,
+        bond: OfBond = None,
+        joints: AnyJoints | None = None,
+    ) -> None:
+        keep(self, blocks=blocks_of_one_kind(blocks), law=law)
+        keep(self, tolerance=require_within("tolerance", tolerance, 1e-9, WIDEST, "m"))
+        given = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
+        keep(self, **properties_of(joints, given | {"bond": bond}))
         if not self.joints:
             side = "a face" if self.in_space else "an edge"
             raise ValueError(
                 f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
                 f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
             )
-        keep(self, bond=required_bond(self.bond))
-        _ = (
-            self.joint_stiffness,
-            self.joint_friction,
-            self.joint_damping,
-            self.joint_shear,
-            self.bonds,
-        )  # checks what they hold
-        if self.law is not None:
-            _ = self.retardation
-        elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
+        keep(self, points=required_points(self.points, self.joints, LINES[self.in_space]))
+        if law is not None:
+            keep(self, law=required_law(law, self.points))
+        for odd in self._doubts():
             warnings.warn(odd, Implausible, stacklevel=3)
-        overdamped = "" if self.law is not None or self.frequency is not None else odd_damping(self.joint_damping)
-        for odd in (overdamped, odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
-            if odd:
-                warnings.warn(odd, Implausible, stacklevel=3)
+
+    def __repr__(self) -> str:
+        corners = np.concatenate([self.blocks[i].corners for i in self.free])
+        size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
+        given = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
+        for name, left in (("k_s", np.isinf(self.joint_shear).all()), ("xi", self.law is not None)):
+            if left:
+                del given[name]
+        said = [f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in given.items()]
+        if self.law is not None:
+            said.append(f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
+        bonded = ", mortar" if any(self.bonds) else ""
+        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
 
     @property
     def in_space(self) -> bool:
@@ -274,42 +260,50 @@ class Masonry:
         return joints_in_plane(self.polygons, tolerance)
 
     @cached_property
+    def table(self) -> JointTable:
+        """The properties of the joints, a row each, with the damping of the law where there is one."""
+        given = {name: getattr(self, name) for name in PROPERTIES}
+        table = JointTable.of(self.joints, given)
+        if self.law is None:
+            return table
+        if (known := table.frequency[~np.isnan(table.frequency)]).size:
+            raise ValueError(f"frequency = {known[0]:g} rad/s is given with a law, which has its own; leave it")
+        xi, frequency = damping_by_law(self.blocks, self.joints, table.k_n, self.points, self.law)
+        return table._replace(xi=xi, frequency=frequency)
+
+    @property
     def joint_stiffness(self) -> Array:
         """k_n of each joint [N/m3], shape (joints,)."""
-        return values_of("k_n", self.k_n, self.joints)
+        return self.table.k_n
+
+    @property
+    def joint_friction(self) -> Array:
+        """Coefficient of friction of each joint [-], shape (joints,)."""
+        return self.table.friction
+
+    @property
+    def joint_damping(self) -> Array:
+        """xi of each joint [-], shape (joints,)."""
+        return self.table.xi
+
+    @property
+    def joint_shear(self) -> Array:
+        """k_s of each joint [N/m3], infinite for one that sticks rigidly, shape (joints,)."""
+        return self.table.k_s
+
+    @property
+    def residual_friction(self) -> Array:
+        """Coefficient of friction of each joint that has lost its bond [-], shape (joints,)."""
+        return self.table.residual_friction
+
+    @property
+    def bonds(self) -> tuple[Bond | None, ...]:
+        """The bond of each joint, None where it is dry."""
+        return self.table.bonds
 
     def areas_of(self, k: Array, joint: Integers) -> Array:
         """What part of its joint each contact line stands for [m2], from its k [N/m] and the number of its joint."""
-        return np.asarray(k / self.joint_stiffness[joint])
-
-    @cached_property
-    def joint_friction(self) -> Array:
-        """Coefficient of friction of each joint [-], shape (joints,)."""
-        return values_of("friction", self.friction, self.joints)
-
-    @cached_property
-    def residual_friction(self) -> Array:
-        """Coefficient of friction of each joint that has lost its bond [-], shape (joints,)."""
-        given = [bond and bond.residual_friction for bond in self.bonds]
-        return np.array(
-            [most if least is None else least for least, most in zip(given, self.joint_friction, strict=True)]
-        )
-
-    @cached_property
-    def joint_damping(self) -> Array:
-        """xi of each joint [-], shape (joints,)."""
-        return values_of("xi", self.xi, self.joints)
-
-    @cached_property
-    def joint_shear(self) -> Array:
-        """k_s of each joint [N/m3], infinite for one that sticks rigidly, shape (joints,)."""
-        return values_of("k_s", self.k_s, self.joints)
-
-    @cached_property
-    def bonds(self) -> tuple[Bond | None, ...]:
-        """The bond of each joint, None where it is dry."""
-        law = Law(self.joint_stiffness, 0.0, self.joint_shear, self.joint_friction)
-        return bonds_of(self.bond, self.joints, law, self.points)
+        return np.asarray(k / self.table.k_n[joint])
 
     @cached_property
     def lines(self) -> Lines:
@@ -320,45 +314,39 @@ class Masonry:
     @cached_property
     def retardation(self) -> Array:
         """c/k of each joint [s], shape (joints,)."""
-        if self.law is not None:
-            return retardations(self.blocks, self.joints, self.joint_stiffness, self.points, self.law)
-        if not self.joint_damping.any():
+        xi, frequency = self.table.xi, self.table.frequency
+        if not xi.any():
             return np.zeros(len(self.joints))
-        return np.asarray(2 * self.joint_damping / (self.frequency or self._lowest_frequency))
+        own = np.isnan(frequency)
+        return np.asarray(2 * xi / (np.where(own, self._lowest_frequency, frequency) if own.any() else frequency))
 
     @cached_property
     def _lowest_frequency(self) -> float:
-        along = self.joint_shear[self.lines.joint] * self.areas_of(self.lines.k, self.lines.joint)
-        return lowest_frequency(self.blocks, self.lines, self.joint_friction, along)
+        along = self.table.k_s[self.lines.joint] * self.areas_of(self.lines.k, self.lines.joint)
+        return lowest_frequency(self.blocks, self.lines, self.table.friction, along)
 
-    def _doubt_of_frequency(self, frequency: float) -> str:
-        """What is odd about a given frequency [rad/s], in words, empty where nothing is.
-
-        With the lowest one of the masonry it makes of xi the damping ratio of that mode, which says whether c/k is odd.
-        """
-        xi = float(self.joint_damping.max())
-        lowest = self._lowest_frequency if xi else 0.0
-        found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
-        overdamped = found > OVERDAMPED and lowest > FAR * frequency
-        if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
-            return ""
-        return (
-            f"frequency = {frequency:g} rad/s, and the lowest one of this masonry is {lowest:.3g} rad/s: with xi = "
-            f"{xi:g} that one is damped to {found:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in "
-            "rad/s, and None takes the lowest"
-        )
+    def _doubts(self) -> list[str]:
+        """What is odd about it, in words, empty where nothing is. Its table is made, and so checked, for that."""
+        xi, frequency = self.table.xi, self.table.frequency
+        own, odd = np.isnan(frequency), ""
+        if self.law is None and not own.all():
+            i = int(np.where(own, -1.0, xi / frequency).argmax())
+            lowest = self._lowest_frequency if xi[i] else 0.0
+            odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
+        sizes, faces = odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)
+        return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces) if doubt]
 
     @classmethod
     def stack(
         cls,
         blocks: Sequence[Block],
-        k_n: OfJoint,
+        k_n: OfJoint | None = None,
         *,
         ground: bool = True,
         side_stop: bool | SideStop = False,
         k_side: float | None = None,
         side_friction: float = 0.0,
-        **options: Any,
+        **options: Unpack[OtherOptions],
     ) -> Self:
         """Rectangular blocks one on the other, centred, from the lowest upwards.
 
@@ -366,7 +354,7 @@ class Masonry:
 
         Args:
             blocks: the blocks, whose insets are zero.
-            k_n: stiffness of the joints [N/m3].
+            k_n: stiffness of the joints [N/m3], as of `Masonry`.
             ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
             side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
                 reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
@@ -382,16 +370,19 @@ class Masonry:
         made, side_friction = stacked(blocks, ground), require_within("side_friction", side_friction, 0.0, 10.0)
         side = side_of(made, side_stop)
         k_side = None if k_side is None else require_stiffness("k_side", k_side)
+        given = one_by_one({**options, "k_n": k_n})
         if side is None:
             if k_side is not None or side_friction:
                 raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
-            return cls(made, k_n=k_n, **options)
-        if options.get("law") is None and options.get("frequency") is None:
-            bare = cls(made, k_n=k_n, **options)
-            options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
-        k_n = required("k_n", k_n)
-        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
-        return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
+            return cls(made, **given)
+        frequency = given["frequency"]
+        if given.get("law") is None and (frequency is None or callable(frequency)):
+            bare = cls(made, **given)
+            lowest = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
+            given["frequency"] = OrElse(frequency, lowest) if callable(frequency) else lowest
+        given["k_n"] = ByKind(given["k_n"], k_side or given["k_n"])
+        given["friction"] = ByKind(given["friction"], side_friction)
+        return cls((*made, side), **given)
 
     @classmethod
     def arch(
@@ -405,7 +396,7 @@ class Masonry:
         length: float = 1.0,
         chords: int = 1,
         ground: bool = False,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A circular arch of voussoirs of equal angles, between two fixed abutments.
 
@@ -453,7 +444,7 @@ class Masonry:
         abutments: bool = True,
         density: float = 2000.0,
         length: float = 1.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """Equal arches side by side on piers: a bridge of several spans, or an arch on buttresses.
 
@@ -485,7 +476,7 @@ class Masonry:
         courses: int = 17,
         *,
         density: float = 2000.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A barrel vault in space between two fixed abutments, its courses in running bond along y.
 
@@ -514,7 +505,7 @@ class Masonry:
         *,
         cut: bool = False,
         density: float = 2000.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A groin vault, or cross vault: two equal barrels that cross over a square bay, on four fixed piers.
 
@@ -548,7 +539,7 @@ class Masonry:
         density: float = 2000.0,
         *,
         halves: Bond | None = None,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A wall of units in running bond on the ground, which moves in the plane of its face.
 
@@ -565,8 +556,8 @@ class Masonry:
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        options = _halved(halves, options)
-        return cls(bonded_wall(length, height, unit, thickness, density, halves is not None), **options)
+        wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
+        return cls(wall, **_halved(halves, options))
 
     @classmethod
     def shear_wall(
@@ -578,7 +569,7 @@ class Masonry:
         density: float = 2000.0,
         *,
         halves: Bond | None = None,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A wall in running bond between a fixed base and a loading beam, as laboratories press and shear it.
 
@@ -596,9 +587,8 @@ class Masonry:
             >>> wall.names[0], wall.names[-1], len(wall.free)
             ('base', 'beam', 18)
         """
-        options = _halved(halves, options)
         wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
-        return cls(between_beams(wall[1:]), **options)
+        return cls(between_beams(wall[1:]), **_halved(halves, options))
 
     @classmethod
     def wallette(
@@ -613,7 +603,7 @@ class Masonry:
         headers: int = 0,
         beam: bool = True,
         halves: Bond | None = None,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A wall in running bond in space on a fixed base, as laboratories load it out of its plane.
 
@@ -640,15 +630,13 @@ class Masonry:
             raise ValueError(
                 f"halves with leaves = {leaves} and headers = {headers}: units of several leaves are whole"
             )
-        options = _halved(halves, options)
         wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
-        blocks = between_beams(wall[1:])
-        return cls(
-            wallette_of(blocks if require_flag("beam", beam) else blocks[:-1], unit[0], leaves, headers), **options
-        )
+        flat = between_beams(wall[1:])
+        blocks = wallette_of(flat if require_flag("beam", beam) else flat[:-1], unit[0], leaves, headers)
+        return cls(blocks, **_halved(halves, options))
 
     @classmethod
-    def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Any) -> Self:
+    def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Unpack[JointOptions]) -> Self:
         """One box, `block`, on the ground, in the middle of it.
 
         Args:
@@ -663,7 +651,14 @@ class Masonry:
 
     @classmethod
     def column(
-        cls, width: Ends, height: float, drums: int, *, sides: int = 4, density: float = 2000.0, **options: Any
+        cls,
+        width: Ends,
+        height: float,
+        drums: int,
+        *,
+        sides: int = 4,
+        density: float = 2000.0,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A column of drums of equal height on the ground.
 
@@ -692,7 +687,7 @@ class Masonry:
         *,
         oculus: float = 0.05,
         density: float = 2000.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A hemispherical dome of voussoirs with plane faces, which springs from the ground.
 
@@ -725,7 +720,7 @@ class Masonry:
         gable: int = 0,
         ground: Polyhedron | None = None,
         density: float = 2000.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """A facade and return walls behind it, on the ground.
 
@@ -765,7 +760,7 @@ class Masonry:
         ground: bool = False,
         density: float = 2000.0,
         scale: float = 1.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a Wavefront OBJ file: its objects, or the groups of them.
 
@@ -794,7 +789,7 @@ class Masonry:
         ground: bool = False,
         density: float = 2000.0,
         scale: float = 1.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of an STL file, binary or text: its solids, or the closed bodies that it lists one after the other.
 
@@ -816,7 +811,7 @@ class Masonry:
         ground: bool = False,
         density: float = 2000.0,
         scale: float = 1.0,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, or an `Assembly` of
         compas_assembly. Its supports are fixed.
@@ -841,7 +836,7 @@ class Masonry:
         density: OfLayer = 2000.0,
         length: OfLayer = 1.0,
         scale: float | None = None,
-        **options: Any,
+        **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install 'mjrock[dxf]'`.
 
@@ -903,7 +898,7 @@ class Masonry:
         ground: bool,
         density: float,
         scale: float,
-        options: dict[str, Any],
+        options: JointOptions,
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
         fixed = _names(fixed)
@@ -941,10 +936,37 @@ class Masonry:
         return self
 
 
-def _halved(halves: Bond | None, options: dict[str, Any]) -> dict[str, Any]:
-    """Arguments of masonry whose units are divided by a bond, or not."""
+def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
+    """The blocks of masonry, all of the plane or all in space, with names of their own.
+
+    Raises:
+        TypeError, ValueError: for what is no block, for both kinds, too few or too many, or names that stand twice.
+    """
+    if not isinstance(blocks, Sequence) or isinstance(blocks, str):
+        raise TypeError(f"blocks = {shown(blocks)} is not a list of blocks")
+    for i, block in enumerate(blocks):
+        if not isinstance(block, Polygon | Polyhedron | Compound):
+            raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon, Polyhedron or Compound")
+        if block.in_space != blocks[0].in_space:
+            which = [f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}" for b in (block, blocks[0])]
+            raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
+    free = sum(not block.fixed for block in blocks)
+    if not 0 < free < len(blocks) <= MOST_BLOCKS:
+        raise ValueError(
+            f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BLOCKS} are "
+            "needed"
+        )
+    for name, number in Counter(names_of(blocks)).items():
+        if number > 1:
+            raise ValueError(f"blocks: {number} of them have the name {name}")
+    return tuple(blocks)
+
+
+def _halved(halves: Bond | None, options: JointOptions) -> dict[str, Any]:
+    """Keywords of masonry whose units are divided by a bond, or not."""
     require_kind("halves", halves, Bond, type(None))
-    return options if halves is None else options | {"bond": Halved(options.get("bond"), halves)}
+    given = one_by_one(options)
+    return given if halves is None else given | {"bond": Halved(given["bond"], halves)}
 
 
 def _names(fixed: Sequence[str]) -> Sequence[str]:

@@ -8,9 +8,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from ...geometry.graph import components
 from ...quantities import Array
 from .builders import MOST_BLOCKS
 from .polyhedron import Polyhedron
@@ -89,8 +88,7 @@ def _apart(faces: MeshFaces, parts: list[int]) -> list[MeshFaces]:
         pairs += [(numbers[0], number) for number in numbers]
     if not pairs:
         return []
-    graph = coo_array((np.ones(len(pairs)), np.transpose(pairs)), shape=(len(own), len(own)))
-    labels = connected_components(graph, directed=False)[1].tolist()
+    labels = components(pairs, len(own)).tolist()
     shells: dict[int, MeshFaces] = {}
     for face, part in zip(faces, parts, strict=True):
         shells.setdefault(labels[own[part, face[0]]], []).append(face)

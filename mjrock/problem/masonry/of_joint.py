@@ -1,47 +1,104 @@
-"""Properties of joints: one number for all of them, a function of the joint, or values by kind and by name."""
+"""Properties of joints as they are given: one for all, a function of the joint, or what such a function is made of."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
-import numpy as np
-
-from ...quantities import Array, require_within, shown
+from ...quantities import Within, declared, require_kind, shown
+from .bond import Bond
+from .dry import Dry, Mortar
 from .joints import Joint
 from .joints_in_space import SpaceJoint
 
-OfJoint = float | Callable[[Any], float]
+AnyJoint = Joint | SpaceJoint
+T = TypeVar("T")
+FunctionOfJoint = Callable[[Any], T]
+OfJoint = float | FunctionOfJoint[float]
 """A number, or a function of the joint that gives one."""
-OF_JOINTS = {
-    "k_n": (1e4, 1e14, "N/m3"),
-    "friction": (0.0, 10.0, ""),
-    "xi": (0.0, 100.0, ""),
-    "k_s": (1e4, 1e16, "N/m3"),
-}
-"""Lowest and highest value of the properties of a joint, and their unit."""
+OfBond = Bond | FunctionOfJoint[Bond | None] | None
+"""A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
+AnyJoints = Dry | Mortar | FunctionOfJoint[Dry | Mortar]
+"""What all joints of masonry are, or a function of the joint that says what it is."""
+PROPERTIES = tuple(Dry().properties)
+"""Names of what a joint has, which are keywords of `Masonry` too."""
 
 
-def required(name: str, given: OfJoint) -> OfJoint:
-    """A property of joints, a number as a float within its range, or a function as it is; k_s may be None."""
-    if callable(given) or (name == "k_s" and given is None):
-        return given
-    return require_within(name, given, *OF_JOINTS[name])
+def asked(name: str, given: FunctionOfJoint[T], joint: AnyJoint) -> T:
+    """What a function of the joint gives for one, or a TypeError that says how it is called."""
+    try:
+        return given(joint)
+    except TypeError as error:
+        raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
 
 
-def values_of(name: str, given: OfJoint | None, joints: Sequence[Joint | SpaceJoint]) -> Array:
-    """A property of each joint, infinite where None is given, shape (joints,)."""
+def required_points(given: int | FunctionOfJoint[int], joints: Sequence[AnyJoint], within: Within) -> int:
+    """The contact lines of all joints, within a range; a ValueError names joints that differ."""
     if not callable(given):
-        return np.full(len(joints), np.inf if given is None else given)
-    values = []
-    for joint in joints:
-        try:
-            values.append(given(joint))
-        except TypeError as error:
-            raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
-    pairs = zip(joints, values, strict=True)
-    return np.array([require_within(f"{name} of {joint.name}", value, *OF_JOINTS[name]) for joint, value in pairs])
+        return int(within.checked("points", given))
+    first, *others = [(joint.name, given(joint)) for joint in joints]
+    for name, points in others:
+        if points != first[1]:
+            raise ValueError(
+                f"points = {first[1]} of {first[0]} and {points} of {name}: all joints of masonry have as many"
+            )
+    return int(within.checked("points", first[1]))
+
+
+def properties_of(joints: AnyJoints | None, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The properties of joints by name, a number or a function of the joint each.
+
+    Args:
+        joints: what all joints are, or a function of the joint that gives it, or None.
+        given: the properties that are given by keyword instead; None takes that of a `Dry`.
+
+    Raises:
+        TypeError: for another kind.
+        ValueError: for a number outside its range, or where both are given.
+    """
+    named = {name: value for name, value in given.items() if value is not None}
+    if joints is None:
+        ranges = declared(Dry)
+        return Dry().properties | {
+            name: value if callable(value) or name not in ranges else ranges[name][0].checked(name, value)
+            for name, value in named.items()
+        }
+    if named:
+        raise ValueError(f"joints is given with {', '.join(named)}, which it says itself; give one or the other")
+    if callable(joints):
+        choice = Choice(joints)
+        return {name: Chosen(choice, name) for name in PROPERTIES}
+    require_kind("joints", joints, Dry, Mortar)
+    return joints.properties
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A function of the joint that gives what it is, which is asked once of each joint."""
+
+    function: FunctionOfJoint[Dry | Mortar]
+    known: dict[AnyJoint, dict[str, Any]] = field(default_factory=dict, compare=False, repr=False)
+
+    def __call__(self, joint: AnyJoint) -> dict[str, Any]:
+        """The properties of a joint by name."""
+        if joint not in self.known:
+            chosen = asked("joints", self.function, joint)
+            require_kind(f"joints of {joint.name}", chosen, Dry, Mortar)
+            self.known[joint] = chosen.properties
+        return self.known[joint]
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """One property of what a function of the joint gives."""
+
+    choice: Choice
+    name: str
+
+    def __call__(self, joint: AnyJoint) -> Any:
+        """The value of a joint."""
+        return self.choice(joint)[self.name]
 
 
 @dataclass(frozen=True)
@@ -51,7 +108,7 @@ class ByKind:
     beds: OfJoint
     others: OfJoint
 
-    def __call__(self, joint: Joint | SpaceJoint) -> float:
+    def __call__(self, joint: AnyJoint) -> float:
         """The value of a joint."""
         given = self.beds if joint.is_bed else self.others
         return given(joint) if callable(given) else given
@@ -66,10 +123,38 @@ class ByName:
 
     values: tuple[tuple[str, float], ...]
 
-    def __call__(self, joint: Joint | SpaceJoint) -> float:
+    def __call__(self, joint: AnyJoint) -> float:
         """The value of a joint; a ValueError says if it has none."""
         for name, value in self.values:
             if name == joint.name:
                 return value
         names = ", ".join(name for name, _ in self.values)
         raise ValueError(f"the joint {joint.name} has no value among those of {names}")
+
+
+@dataclass(frozen=True)
+class OrElse:
+    """A function of the joint, and a number that stands where it gives None."""
+
+    given: FunctionOfJoint[float | None]
+    otherwise: float
+
+    def __call__(self, joint: AnyJoint) -> float:
+        """The value of a joint."""
+        value = self.given(joint)
+        return self.otherwise if value is None else value
+
+
+@dataclass(frozen=True)
+class Halved:
+    """Bonds of a wall of divided units: `between` them, one or a function of the joint, and `within` them."""
+
+    between: OfBond
+    within: Bond
+
+    def __call__(self, joint: AnyJoint) -> Bond | None:
+        """The bond of a joint."""
+        first, second = joint.name.split("|")
+        if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
+            return self.within
+        return self.between(joint) if callable(self.between) else self.between

@@ -55,10 +55,11 @@ def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> B
     return Block(b=b, h=height, length=joint.length, density=float(mass.sum()) / (4 * b * height * joint.length))
 
 
-def retardations(
+def damping_by_law(
     blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int, law: AnyLaw | str
-) -> Array:
-    """c/k of each joint of a stack [s], as `Contacts.from_law` gives it for the rigid wall above.
+) -> tuple[Array, Array]:
+    """xi of each joint of a stack, and the frequency to which it refers [rad/s], as `Contacts.from_law` gives them for
+    the rigid wall above.
 
     What is asked for is the restitution of that wall by conservation of angular momentum. A joint with a fixed block
     beside the stack is damped as the side stop of the whole stack.
@@ -82,7 +83,7 @@ def retardations(
         except ValueError as error:
             raise ValueError(f"law = has no wall for the joint {joints[i].name}: {error}; give xi") from None
     under = {joints[i].above: i for i in beds}
-    retardation = np.empty(len(joints))
+    damping = np.empty((2, len(joints)))
     for i, joint in enumerate(joints):
         base, k_side, top = i, None, None
         if i not in walls:
@@ -102,5 +103,6 @@ def retardations(
             contacts = Contacts.from_law(wall, e, k_base=float(k_n[base]), k_side=k_side, law=law, points=points)
         for warning in caught:
             warnings.warn(f"the joint {joint.name}: {warning.message}", warning.category, stacklevel=4)
-        retardation[i] = contacts.base.retardation if contacts.side is None else contacts.side.retardation
-    return retardation
+        interface = contacts.side or contacts.base
+        damping[:, i] = interface.xi, interface.frequency
+    return damping[0], damping[1]

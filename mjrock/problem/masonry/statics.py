@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import coo_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
+from ...geometry.graph import components
 from ...linear import loose
 from ...quantities import GRAVITY, Array, Flags
+from .bond import strengths
 from .joint_law import Law, shear_limit
 from .lines import free_numbers, rates, slips
 from .masonry import Masonry
@@ -183,9 +184,8 @@ def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[c
     directions = np.stack([-lines.normal, *(sign * way for way in ways for sign in (1.0, -1.0))])
     if not any(masonry.bonds):
         return csc_array((len(masonry.free) * (6 if masonry.in_space else 3), 0)), np.zeros(0), directions[:0]
-    strengths = np.array([(0.0, 0.0) if bond is None else (bond.tension, bond.cohesion) for bond in masonry.bonds])
     area = masonry.areas_of(lines.k, lines.joint)
-    pull, along = (area[:, None] * strengths[lines.joint]).T
+    pull, along = (area * strengths(masonry.bonds, name)[lines.joint] for name in ("tension", "cohesion"))
     columns = vstack([rates(masonry.blocks, lines, way) for way in directions]).T
     limits = np.concatenate([pull, *[along] * (2 * len(ways))])
     return csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions
@@ -242,8 +242,7 @@ def _lacking(masonry: Masonry, forces: Array) -> Flags:
     number, count = free_numbers(masonry.blocks), len(masonry.free)
     pairs = number[np.reshape([(joint.below, joint.above) for joint in masonry.joints], (-1, 2))]
     pairs = pairs[(pairs >= 0).all(axis=1)]
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    part = connected_components(graph, directed=False)[1]
+    part = components(pairs, count)
     unknowns = len(weight_of(masonry))
     first = (EDGES if masonry.in_space else 2) * len(masonry.lines.k)
     missing = forces[first : first + 2 * unknowns].reshape(2, count, -1).sum(axis=(0, 2))

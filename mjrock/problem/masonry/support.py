@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from ...quantities import Array, require_kind, require_row, shown
-from ..wall.in_space import LATER
 from .histories import require_as_many
 from .masonry import Masonry
 
@@ -32,7 +31,7 @@ class Support:
     t: tuple[float, ...]
     dx: tuple[float, ...]
     dz: tuple[float, ...]
-    dy: tuple[float, ...] | None = field(default=None, kw_only=True, metadata=LATER)
+    dy: tuple[float, ...] | None = field(default=None, kw_only=True)
 
     @property
     def displacement(self) -> Array:

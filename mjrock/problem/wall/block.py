@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +17,9 @@ from ...quantities import (
     Array,
     Implausible,
     Real,
+    Within,
     keep,
+    keep_declared,
     require_kind,
     require_real,
     require_row,
@@ -24,7 +27,6 @@ from ...quantities import (
     shown,
 )
 from .effects import AddedMass
-from .in_space import LATER
 from .restoring_moment import Restoring, of_force, pose_of
 from .section import Front, Gable, Moments, Opening, Profile, moments, require_profile
 
@@ -56,25 +58,19 @@ class Block:
             not lie between its edges.
     """
 
-    b: float
-    h: float
-    length: float = 1.0
-    density: float = 2000.0
+    b: Annotated[float, Within(1e-3, 10, "m", "half thickness b")]
+    h: Annotated[float, Within(5e-3, 100, "m", "half height h")]
+    length: Annotated[float, Within(1e-3, 1000, "m")] = 1.0
+    density: Annotated[float, Within(100, 30_000, "kg/m3")] = 2000.0
     inset: float = 0.0
     openings: tuple[Opening, ...] = ()
     profile: Profile | None = None
     masses: tuple[AddedMass, ...] = ()
-    gable: Gable | None = field(default=None, kw_only=True, metadata=LATER)
+    gable: Gable | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        keep(
-            self,
-            b=require_within("half thickness b", self.b, 1e-3, 10.0, "m"),
-            h=require_within("half height h", self.h, 5e-3, 100.0, "m"),
-            length=require_within("length", self.length, 1e-3, 1e3, "m"),
-            density=require_within("density", self.density, 100.0, 3e4, "kg/m3"),
-            inset=require_real("inset", self.inset),
-        )
+        keep_declared(self)
+        keep(self, inset=require_real("inset", self.inset))
         require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
         if not 0 <= self.inset < self.b:
             raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")

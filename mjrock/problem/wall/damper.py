@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from ...quantities import keep, require_within
+from ...quantities import Within, keep_declared
 from .effect import Anchored, LinkLaw
 from .in_space import IN_SPACE, Point, keep_place
 
@@ -40,8 +40,8 @@ class Damper(Anchored):
     colour: ClassVar[str] = "#3f8f5b"
     dashes: ClassVar[Literal["-", "--", "-."]] = "-."
     height: float = None  # type: ignore[assignment]
-    c: float = None  # type: ignore[assignment]
-    length: float = 5.0
+    c: Annotated[float, Within(0, 1e9, "N s/m", "coefficient c of the damper")] = None  # type: ignore[assignment]
+    length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
     anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
@@ -49,11 +49,7 @@ class Damper(Anchored):
 
     def __post_init__(self) -> None:
         keep_place(self, "damper")
-        keep(
-            self,
-            c=require_within("coefficient c of the damper", self.c, 0.0, 1e9, "N s/m"),
-            length=require_within("length of the damper", self.length, 0.01, 1000.0, "m"),
-        )
+        keep_declared(self, "damper")
 
     @property
     def law(self) -> LinkLaw:

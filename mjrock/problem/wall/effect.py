@@ -13,7 +13,7 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 
 from ...quantities import Array
-from .in_space import Point, written
+from .in_space import Point, short_repr
 
 
 class LinkLaw(NamedTuple):
@@ -70,10 +70,12 @@ class Effect:
         on_face: whether it holds the inner face. Otherwise it acts at `offset` from the middle of base or block.
         on_block: whether its point has to lie on its block.
         offset: from there, outwards [m].
+        only: what may take it, "solve_explicit", or empty where all solvers do.
     """
 
     label: ClassVar[str]
     arguments: ClassVar[str]
+    only: ClassVar[str] = ""
     on_face: ClassVar[bool] = False
     on_block: ClassVar[bool] = True
     height: float
@@ -81,7 +83,7 @@ class Effect:
     at: Point | None
     offset: float = 0.0
 
-    __repr__ = written
+    __repr__ = short_repr
 
     @property
     def mass_added(self) -> float:

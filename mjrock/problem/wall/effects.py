@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, TypeVar
+from typing import Annotated, ClassVar, TypeVar
 
-from ...quantities import keep, require_within, shown
+from ...quantities import Within, keep, keep_declared, shown
 from .damper import Damper
 from .effect import Anchored, Effect
 from .friction_damper import FrictionDamper
-from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, written
+from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, short_repr
 from .tie import Tie
 
 
@@ -43,7 +43,7 @@ class Thrust(Effect):
     label: ClassVar[str] = "thrust"
     arguments: ClassVar[str] = "height, force"
     height: float = None  # type: ignore[assignment]
-    force: float = None  # type: ignore[assignment]
+    force: Annotated[float, Within(-1e9, 1e9, "N")] = None  # type: ignore[assignment]
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
     direction: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
@@ -56,7 +56,7 @@ class Thrust(Effect):
                 raise ValueError(f"{name} has no length; the valid range are vectors longer than 1e-9")
             keep(self, direction=(given[0] / length, given[1] / length, given[2] / length))
         keep_place(self, "thrust")
-        keep(self, force=require_within("force of the thrust", self.force, -1e9, 1e9, "N"))
+        keep_declared(self, "thrust")
 
     @property
     def force_vector(self) -> Point:
@@ -94,19 +94,15 @@ class Load(Effect):
 
     label: ClassVar[str] = "load"
     arguments: ClassVar[str] = "force, height, offset"
-    force: float
+    force: Annotated[float, Within(0, 1e9, "N")]
     height: float = None  # type: ignore[assignment]
-    offset: float = 0.0
+    offset: Annotated[float, Within(-10, 10, "m")] = 0.0
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         keep_place(self, "load")
-        keep(
-            self,
-            force=require_within("force of the load", self.force, 0.0, 1e9, "N"),
-            offset=require_within("offset of the load", self.offset, -10.0, 10.0, "m"),
-        )
+        keep_declared(self, "load")
 
     @property
     def force_vector(self) -> Point:
@@ -137,19 +133,15 @@ class AddedMass(Effect):
     label: ClassVar[str] = "mass"
     arguments: ClassVar[str] = "mass, height, offset"
     on_block: ClassVar[bool] = False
-    mass: float
+    mass: Annotated[float, Within(0, 1e8, "kg", "added mass")]
     height: float = None  # type: ignore[assignment]
-    offset: float = 0.0
+    offset: Annotated[float, Within(-13, 13, "m")] = 0.0
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         keep_place(self, "added mass")
-        keep(
-            self,
-            mass=require_within("added mass", self.mass, 0.0, 1e8, "kg"),
-            offset=require_within("offset of the added mass", self.offset, -13.0, 13.0, "m"),
-        )
+        keep_declared(self, "added mass")
 
     @property
     def mass_added(self) -> float:
@@ -167,18 +159,18 @@ class SideStop:
     """A stop behind the inner face that reaches from the base up to a height, as side walls do.
 
     Args:
-        top: the height that it reaches [m], 0.01 to the height of the wall.
+        top: the height that it reaches [m], 0.01 to 200, and at most that of the wall.
 
     Raises:
         ValueError: for a value outside its range.
     """
 
-    top: float
+    top: Annotated[float, Within(0.01, HIGHEST, "m")]
 
-    __repr__ = written
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        keep(self, top=require_within("top of the side stop", self.top, 0.01, HIGHEST, "m"))
+        keep_declared(self, "side stop")
 
 
 KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, AddedMass)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from ...quantities import keep, require_within
+from ...quantities import Within, keep_declared
 from .effect import Anchored, LinkLaw
 from .in_space import IN_SPACE, Point, keep_place
 
@@ -39,9 +39,9 @@ class FrictionDamper(Anchored):
     dashes: ClassVar[Literal["-", "--", "-."]] = "--"
     limit: ClassVar[str] = "slip_force"
     height: float = None  # type: ignore[assignment]
-    stiffness: float = None  # type: ignore[assignment]
-    slip_force: float = None  # type: ignore[assignment]
-    length: float = 5.0
+    stiffness: Annotated[float, Within(1, 1e12, "N/m")] = None  # type: ignore[assignment]
+    slip_force: Annotated[float, Within(1e-3, 1e9, "N")] = None  # type: ignore[assignment]
+    length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
     anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
@@ -49,12 +49,7 @@ class FrictionDamper(Anchored):
 
     def __post_init__(self) -> None:
         keep_place(self, "friction damper")
-        keep(
-            self,
-            stiffness=require_within("stiffness of the friction damper", self.stiffness, 1.0, 1e12, "N/m"),
-            slip_force=require_within("slip_force of the friction damper", self.slip_force, 1e-3, 1e9, "N"),
-            length=require_within("length of the friction damper", self.length, 0.01, 1000.0, "m"),
-        )
+        keep_declared(self, "friction damper")
 
     @property
     def law(self) -> LinkLaw:

@@ -1,7 +1,4 @@
-"""Where an effect acts: its block and height, and fields that effects have in space beside those of the plane.
-
-A field that came later counts in the fingerprint of a task only where it is set. Tasks without it keep theirs.
-"""
+"""Where an effect acts: its block and height, and fields that effects have in space beside those of the plane."""
 
 from __future__ import annotations
 
@@ -17,13 +14,11 @@ BLOCKS = 100_000
 """Largest number of a block."""
 FARTHEST = 1e4
 """Largest coordinate of a point [m]."""
-LATER = {"later": True}
-"""Metadata of a field that came later. It is given by keyword. Fingerprints leave it out while it has its default."""
-IN_SPACE = {**LATER, "in space": True}
-"""Metadata of such a field of an effect that only masonry in space takes."""
+IN_SPACE = {"in space": True}
+"""Metadata of a field of an effect that only masonry in space takes."""
 
 
-def written(effect: Any) -> str:
+def short_repr(effect: Any) -> str:
     """An effect as it would be written, without what may be said by keyword and is not."""
     shown = ((field, getattr(effect, field.name)) for field in fields(effect))
     said = (f"{field.name}={value!r}" for field, value in shown if not (field.kw_only and value == field.default))

@@ -11,12 +11,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, keep, require_flag, require_within, shown
-from .in_space import LATER, written
+from ...quantities import Array, Within, keep_declared, require_flag, require_within, shown
+from .in_space import short_repr
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""
@@ -35,10 +35,10 @@ class Opening:
     Args:
         width: along the wall [m], 0.01 to 1000.
         height: its own height [m], 0.01 to 200.
-        sill: height of its lower edge above the base [m], 0 for a door, which shortens the base too.
+        sill: height of its lower edge above the base [m], 0 to 200; 0 is a door, which shortens the base too.
         round: whether it is a circle, or an ellipse where width and height differ, such as a rose window.
-        at: where its middle lies along the wall, from the middle of the wall [m], for pictures. None draws openings of
-            one sill at equal distances.
+        at: where its middle lies along the wall, from the middle of the wall [m], -500 to 500, for pictures. None draws
+            openings of one sill at equal distances.
 
     Raises:
         ValueError: for a value outside its range.
@@ -49,24 +49,17 @@ class Opening:
         56628
     """
 
-    width: float
-    height: float
-    sill: float = 0.0
-    round: bool = field(default=False, kw_only=True, metadata=LATER)
-    at: float | None = field(default=None, kw_only=True, metadata=LATER)
+    width: Annotated[float, Within(0.01, 1000, "m")]
+    height: Annotated[float, Within(0.01, 200, "m")]
+    sill: Annotated[float, Within(0, 200, "m")] = 0.0
+    round: bool = field(default=False, kw_only=True)
+    at: Annotated[float | None, Within(-500, 500, "m")] = field(default=None, kw_only=True)
 
-    __repr__ = written
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         require_flag("round of the opening", self.round)
-        if self.at is not None:
-            keep(self, at=require_within("at of the opening", self.at, -500.0, 500.0, "m"))
-        keep(
-            self,
-            width=require_within("width of the opening", self.width, 0.01, 1000.0, "m"),
-            height=require_within("height of the opening", self.height, 0.01, 200.0, "m"),
-            sill=require_within("sill of the opening", self.sill, 0.0, 200.0, "m"),
-        )
+        keep_declared(self, "opening")
 
     @property
     def head(self) -> float:
@@ -98,15 +91,11 @@ class Gable:
         52800
     """
 
-    height: float
-    top: float = 0.0
+    height: Annotated[float, Within(0.01, 200, "m")]
+    top: Annotated[float, Within(0, 1000, "m")] = 0.0
 
     def __post_init__(self) -> None:
-        keep(
-            self,
-            height=require_within("height of the gable", self.height, 0.01, 200.0, "m"),
-            top=require_within("top of the gable", self.top, 0.0, 1000.0, "m"),
-        )
+        keep_declared(self, "gable")
 
 
 class Moments(NamedTuple):

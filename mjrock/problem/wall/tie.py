@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from ...quantities import keep, require_array, require_real, require_whole, require_within
+from ...quantities import Within, keep, keep_declared, require_array, require_real, require_whole, require_within
 from .effect import Anchored, LinkLaw
-from .in_space import HIGHEST, IN_SPACE, LATER, Point, keep_place
+from .in_space import HIGHEST, IN_SPACE, Point, keep_place
 
 GOVERNING = ("bar", "punching", "bearing")
 """What the strength of a tie with an anchor plate may be that of."""
@@ -28,7 +28,7 @@ class Tie(Anchored):
         slack: elongation before it pulls [m], 0 to 10.
         strength: force at which it yields [N], above 0; infinite for one that does not.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
-        anchor_height: height of the anchor [m]; None is that of the tie.
+        anchor_height: height of the anchor [m], -200 to 200; None is that of the tie.
         block: the block that it holds.
         ultimate: plastic elongation at which it breaks [m], 0 to 10, such as the slip at which an anchor plate is
             pulled through; 0 for one that breaks as it begins to yield. None never breaks.
@@ -51,43 +51,33 @@ class Tie(Anchored):
     label: ClassVar[str] = "tie"
     arguments: ClassVar[str] = "height, stiffness, slack,\nstrength, ultimate, length, anchor_height"
     height: float = None  # type: ignore[assignment]
-    stiffness: float = None  # type: ignore[assignment]
-    slack: float = 0.0
+    stiffness: Annotated[float, Within(1, 1e12, "N/m")] = None  # type: ignore[assignment]
+    slack: Annotated[float, Within(0, 10, "m")] = 0.0
     strength: float = math.inf
-    length: float = 5.0
-    anchor_height: float | None = None
+    length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
+    anchor_height: Annotated[float | None, Within(-HIGHEST, HIGHEST, "m", "height of the anchor")] = None
     block: int = 0
-    ultimate: float | None = None
+    ultimate: Annotated[float | None, Within(0, 10, "m")] = None
     at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
     anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
     anchor_block: int | None = field(default=None, kw_only=True, metadata=IN_SPACE)
-    governed_by: str | None = field(default=None, kw_only=True, metadata=LATER)
+    governed_by: str | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         keep_place(self, "tie")
-        keep(
-            self,
-            stiffness=require_within("stiffness of the tie", self.stiffness, 1.0, 1e12, "N/m"),
-            slack=require_within("slack of the tie", self.slack, 0.0, 10.0, "m"),
-            strength=require_real("strength of the tie", self.strength),
-            length=require_within("length of the tie", self.length, 0.01, 1000.0, "m"),
-        )
+        keep_declared(self, "tie")
+        keep(self, strength=require_real("strength of the tie", self.strength))
         if not self.strength > 0:
             raise ValueError(
                 f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
             )
         if self.governed_by is not None and not (isinstance(self.governed_by, str) and self.governed_by in GOVERNING):
             raise ValueError(f"governed_by of the tie = {self.governed_by!r} is none of {', '.join(GOVERNING)}")
-        if self.anchor_height is not None:
-            anchored = require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
-            keep(self, anchor_height=anchored)
-        if self.ultimate is not None:
-            keep(self, ultimate=require_within("ultimate of the tie", self.ultimate, 0.0, 10.0, "m"))
-            if self.strength == math.inf:
-                raise ValueError(
-                    f"ultimate of the tie = {self.ultimate:g} m, and its strength is infinite: it does not yield and "
-                    "never breaks; give it a strength [N], or leave ultimate out"
-                )
+        if self.ultimate is not None and self.strength == math.inf:
+            raise ValueError(
+                f"ultimate of the tie = {self.ultimate:g} m, and its strength is infinite: it does not yield and "
+                "never breaks; give it a strength [N], or leave ultimate out"
+            )
 
     @classmethod
     def of_bar(

@@ -12,7 +12,7 @@ from typing import Any
 NUMBER = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
 
 
-class Overheard:
+class WarningCounter:
     """Warnings by their kind. Those that differ in their numbers alone are of one kind, which keeps the first text."""
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ class Overheard:
 
 
 @contextlib.contextmanager
-def listening(first: Callable[[str], bool | None]) -> Iterator[None]:
+def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
     """Hand the text of every warning that would be shown to `first`, and show those for which it says so."""
     before = warnings.showwarning
 

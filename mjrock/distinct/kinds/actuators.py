@@ -1,0 +1,158 @@
+"""Actuators of explicit steps: they drive points of bodies, or all bodies, along histories, and guide bodies."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...compiled import inlined
+from ...geometry.vectors import Vector, dot, increase, plus, read, scaled, spun
+from ...linear import entries
+from ...problem.masonry.case import MasonryCase
+from ...problem.masonry.lines import free_numbers
+from ...quantities import Array, Integers
+from ...scene.checks import GROUND
+from ...scene.scene import Scene
+from ..contact import add_force
+from ..rows import Row, Rows
+from ..supports import Supports, move_supports, moving, places, surges
+from ..system import Books, System
+from ..turning import rotation_change, rotations
+from .link import AnyCase, Kind, Named
+
+
+class Histories(NamedTuple):
+    """Rows, and the histories that they follow, along one axis each."""
+
+    rows: Rows
+    drives: Supports
+
+
+class Actuators(Kind, Histories):
+    """Springs and dashpots, `k` and `c` [N/m, N s/m], from a history to a point of a body along the way `between`.
+
+    One without a body drives the centroid of all. `reach` is the displacement at the start of the history [m], and
+    `dragged` the part of the force of the last step that the dashpot had [N].
+    """
+
+    own = ("k", "c", "reach", "dragged")
+    told = "actuators"
+    booked = ("actuators", "dashpots")
+
+    @classmethod
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+        """Those of a case of masonry, which count displacements from the pose of rest."""
+        d = bodies["rest"].shape[1]
+        if not isinstance(case, MasonryCase) or not case.actuators:
+            return (), cls(cls.table(d, 0), moving((), 1))
+        number, actuators = free_numbers(case.masonry.blocks), tuple(case.actuators.values())
+        held = np.array([GROUND if each.block is None else number[each.block] for each in actuators])
+        way, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
+        at = np.array([each.way if each.at is None else each.at for each in actuators])
+        at = np.where(single, at - bodies["rest"][held], 0.0)
+        change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
+        mean = np.average(bodies["place"], axis=0, weights=bodies["mass"])
+        table = cls.table(
+            d,
+            len(actuators),
+            body=held,
+            at=at,
+            between=way,
+            k=np.array([each.stiffness for each in actuators]),
+            c=np.array([each.damping for each in actuators]),
+            reach=(np.where(single, bodies["place"][held] + change, mean) * way).sum(axis=1),
+        )
+        histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
+        return tuple(case.actuators), cls(table, moving(histories, 1))
+
+    def rates(self, bodies: Rows) -> csr_array:
+        """Rates of what they drive: a point, or the centroid of all."""
+        mass = np.asarray(bodies["mass"])
+        ways = np.where((self.rows["body"] < 0)[:, None], self.rows["between"], 0.0)
+        turning = np.zeros((len(self.rows), 2 * ways.shape[1] - 3))
+        shares = np.hstack([ways, turning])[:, None] * (mass / mass.sum())[:, None]
+        pairs = np.broadcast_to(np.arange(len(bodies)), shares.shape[:2])
+        return csr_array(super().rates(bodies) + entries(shares, pairs, shares.shape[1] * shares.shape[2]))
+
+    def surges(self, t: float, until: float) -> tuple[Integers, Array]:
+        """Those of the histories, on what is driven alone."""
+        single = self.rows["body"] >= 0
+        return self.rows["body"][single], surges(self.drives, t, until)[single]
+
+    def remembered(self, t: float) -> Actuators:
+        """Their displacements count from there."""
+        gone = places(self.drives, t)
+        self.rows["reach"] += gone[:, 0]
+        return Actuators(self.rows, self.drives._replace(moved=self.drives.moved - gone))
+
+    def going_on(self, before: Actuators) -> Actuators:
+        """The same ones go on from where those before had driven their blocks."""
+        same = ["body", "at", "between", "k", "c"]
+        if len(before.rows) == len(self.rows) and not (before.rows[same] != self.rows[same]).any():
+            for name in ("pulled", "dragged", "reach"):
+                self.rows[name] = before.rows[name]
+            self.drives.moved[:] = before.drives.moved
+        return self
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """They put in what they push over the ways of their histories."""
+        drives = self.drives
+        move_supports(drives, t, h)
+        for i in range(len(self.rows)):
+            row, way = self.rows[i], read(self.rows[i].between)
+            moved, speed = driven_place(row, system.bodies, way)
+            rate = drives.moving[i, 0] - speed
+            dragged = row.c * rate
+            force = row.k * (drives.moved[i, 0] - (moved - row.reach)) + dragged
+            books.links[row.account] += 0.5 * h * (row.pulled + force) * drives.moving[i, 0]
+            books.links[row.account + 1] += 0.5 * h * (row.dragged + dragged) * rate
+            row.pulled, row.dragged = force, dragged
+            drive(row, system.bodies, force, way)
+
+    @inlined
+    def hold(self, system: System, books: Books, energy: Row) -> None:
+        """What their springs hold, and what they have put in."""
+        for i in range(len(self.rows)):
+            row = self.rows[i]
+            held = row.pulled - row.dragged
+            energy.elastic += 0.5 * held * held / row.k
+            energy.driven += books.links[row.account]
+
+
+@inlined
+def drive(row: Row, bodies: Rows, force: float, way: Vector) -> None:
+    """Let an actuator push its point along a way, or all bodies in proportion to their masses [N]."""
+    if row.body >= 0:
+        body, at = bodies[row.body], read(row.at)
+        add_force(body, plus(at, rotation_change(body, at)), scaled(force, way))
+        return
+    acceleration = scaled(force / mass_of(bodies), way)
+    for b in range(len(bodies)):
+        increase(bodies[b].force, scaled(bodies[b].mass, acceleration))
+
+
+@inlined
+def mass_of(bodies: Rows) -> float:
+    """Mass of all bodies [kg]."""
+    mass = 0.0
+    for b in range(len(bodies)):
+        mass += bodies[b].mass
+    return mass
+
+
+@inlined
+def driven_place(row: Row, bodies: Rows, way: Vector) -> tuple[float, float]:
+    """Displacement along a way [m] and velocity [m/s] of what an actuator drives: its point, or the centroid of all."""
+    if row.body >= 0:
+        body, at = bodies[row.body], read(row.at)
+        change = rotation_change(body, at)
+        speed = plus(read(body.velocity), spun(read(body.spin), plus(at, change)))
+        return dot(way, plus(read(body.place), change)), dot(way, speed)
+    moved, speeds, mass = 0.0, 0.0, mass_of(bodies)
+    for b in range(len(bodies)):
+        moved += bodies[b].mass * dot(way, read(bodies[b].place))
+        speeds += bodies[b].mass * dot(way, read(bodies[b].velocity))
+    return moved / mass, speeds / mass

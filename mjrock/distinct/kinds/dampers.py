@@ -1,0 +1,33 @@
+"""Viscous dampers of explicit steps."""
+
+from __future__ import annotations
+
+from ...compiled import inlined
+from ...scene.scene import Scene
+from ..rows import Rows
+from ..system import Books, System
+from .link import AnyCase, Kind, Named, Table, book_support, lengthening, pull, push_apart
+
+
+class Dampers(Kind, Table):
+    """Dashpots: `c` [N s/m]. They resist the rate of their length both ways."""
+
+    own = ("c",)
+    booked = ("dashpots",)
+
+    @classmethod
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+        """Those of a scene."""
+        return cls.linking(scene.links.damped, scene.dampers.between)
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """They take what the mean of their force of two steps does."""
+        for i in range(len(self.rows)):
+            damper = self.rows[i]
+            now = pull(damper, system)
+            rate = lengthening(damper, system, now)
+            force = -damper.c * rate
+            books.links[damper.account] -= 0.5 * h * (force + damper.pulled) * rate
+            book_support(damper, system, books, now, force, h)
+            push_apart(damper, system, now, force)

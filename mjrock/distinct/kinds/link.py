@@ -1,0 +1,187 @@
+"""What all kinds of links have: two ends, a table of rows, and what a run asks of a kind.
+
+A link stands between a point of a body and an anchor on the ground, on a fixed block or on another body. A kind of
+links is a class in a file of this folder, with its rows, its force, its energy, its accounts and what a later run
+remembers of it. `KINDS` of `links` lists the kinds, and nothing else knows which kinds there are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...compiled import inlined
+from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, vector
+from ...linear import rates_of
+from ...problem.masonry.case import MasonryCase
+from ...problem.wall.case import Case
+from ...quantities import Array, Integers
+from ...scene.parts import Links
+from ...scene.scene import Scene
+from ..contact import add_force
+from ..rows import Row, Rows, integers, numbers, rows, vectors
+from ..system import Books, System
+from ..turning import rotation_change
+
+AnyCase = Case | MasonryCase
+Named = tuple[tuple[str, ...], Any]
+"""The names of links, and the links."""
+
+
+class Table(NamedTuple):
+    """Links that have their rows alone."""
+
+    rows: Rows
+
+
+class Kind:
+    """A kind of links. It is a NamedTuple too, `Table` or one of its own, so that compiled loops know it.
+
+    `act` and `hold` are compiled. The others have here what most kinds need.
+
+    Attributes:
+        rows: a row for each link, with the numbers of `table` and `own` ones.
+        endless: those of them that may be infinite.
+        told: "links" where responses tell the forces among those of links, "actuators" among those of actuators.
+        booked: the parts of the ledger in which each link has an account. That of row i begins at `rows[i].account` of
+            `Books.links`.
+    """
+
+    rows: Rows
+    own: ClassVar[tuple[str, ...]] = ()
+    endless: ClassVar[tuple[str, ...]] = ()
+    told: ClassVar[str] = "links"
+    booked: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def table(cls, d: int, count: int, **columns: Any) -> Rows:
+        """Rows of links in d directions with these columns, on the ground unless they say otherwise."""
+        fields = [
+            *integers("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
+            *integers("anchor_block", "support"),  # the block of the other end and what moves it, -1 for none
+            *integers("number", "account"),  # of the link among all links, and of its first account
+            *vectors(d, "at", "origin"),  # where, from the centroids of the two bodies [m]
+            *vectors(d, "between"),  # from the anchor at rest [m]
+            *numbers("pulled"),  # force in the last step, negative where it pulls [N]
+            *numbers(*cls.own),
+        ]
+        return rows(np.dtype(fields), count, **{"anchor": -1, "anchor_block": -1, "support": -1} | columns)
+
+    @classmethod
+    def linking(cls, links: Links, between: Array, **columns: Any) -> Named:
+        """Links of a scene with these columns. Their other `own` numbers are those of the law of the links."""
+        count = len(links.body)
+        taken = {name: getattr(links, name) for name in ("body", "anchor_block", *cls.own) if name not in columns}
+        ends = {"anchor": links.anchor_body, "at": links.at, "origin": links.anchor_at, "between": between}
+        table = cls.table(between.shape[1], count, **columns | taken | ends if count else {})
+        return links.names, cls(table)  # type: ignore[call-arg]
+
+    @classmethod
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+        """The links of this kind in a scene of a case, whose bodies are at rest."""
+        raise NotImplementedError
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """Add the forces at the pose of time t [s], and book what the last step, of length h, has taken."""
+        raise NotImplementedError
+
+    @inlined
+    def hold(self, system: System, books: Books, energy: Row) -> None:
+        """Add what the links hold at the pose to the energy of a sample [J], see `system.ENERGY`."""
+
+    def springs(self) -> tuple[Array, Array]:
+        """The largest stiffness and damping coefficient of each link [N/m, N s/m], for the longest stable step."""
+        named, none = self.rows.dtype.names or (), np.zeros(len(self.rows))
+        k, c = (np.asarray(self.rows[name]) if name in named else none for name in ("k", "c"))
+        return k, c
+
+    def rates(self, bodies: Rows) -> csr_array:
+        """Rates at which the links lengthen, for unit velocities at rest, shape (links, unknowns)."""
+        table = self.rows
+        between, arms = np.asarray(table["between"]), (np.asarray(table["at"]), np.asarray(table["origin"]))
+        ways = between / np.linalg.norm(between, axis=1)[:, None]
+        return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, ways, len(bodies))
+
+    def surges(self, t: float, until: float) -> tuple[Integers, Array]:
+        """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""
+        return np.empty(0, dtype=np.int64), np.empty(0)
+
+    def remembered(self, t: float) -> Any:
+        """The links for a run that carries on from a time [s], which counts its time from there."""
+        return self
+
+    def going_on(self, before: Any) -> Any:
+        """The links with which a run starts that carries on one with the links before."""
+        for name in ("support", "number", "account"):
+            before.rows[name] = self.rows[name]
+        return before
+
+
+def put_on_supports(table: Rows, supports: Mapping[int, int]) -> None:
+    """Let supports move the ends of links on their blocks, from the number of the support of each block."""
+    table["support"] = [supports.get(block, -1) for block in table["anchor_block"].tolist()]
+
+
+class Pull(NamedTuple):
+    """A link at a pose: its length [m], its direction away from the anchor, and the arms to its two ends [m]."""
+
+    length: float
+    way: Vector
+    arm: Vector
+    anchor_arm: Vector
+
+
+@inlined
+def pull(link: Row, system: System) -> Pull:
+    """Where a link is."""
+    bodies = system.bodies
+    body, at = bodies[link.body], read(link.at)
+    change = rotation_change(body, at)
+    arm, across = plus(at, change), plus(read(link.between), plus(read(body.place), change))
+    anchor_arm = read(link.origin)
+    if link.anchor >= 0:
+        anchor = bodies[link.anchor]
+        change = rotation_change(anchor, anchor_arm)
+        across = minus(across, plus(read(anchor.place), change))
+        anchor_arm = plus(anchor_arm, change)
+    elif link.support >= 0:
+        across = minus(across, vector(system.supports.moved, link.support, at))
+    length = math.sqrt(dot(across, across))
+    return Pull(length, scaled(1 / length, across), arm, anchor_arm)
+
+
+@inlined
+def push_apart(link: Row, system: System, now: Pull, force: float) -> None:
+    """Add a force along a link on the bodies at both ends [N], positive where it pushes them apart."""
+    add_force(system.bodies[link.body], now.arm, scaled(force, now.way))
+    if link.anchor >= 0:
+        add_force(system.bodies[link.anchor], now.anchor_arm, scaled(-force, now.way))
+
+
+@inlined
+def lengthening(link: Row, system: System, now: Pull) -> float:
+    """Rate of the length of a link [m/s]."""
+    body = system.bodies[link.body]
+    velocity = plus(read(body.velocity), spun(read(body.spin), now.arm))
+    if link.anchor >= 0:
+        anchor = system.bodies[link.anchor]
+        velocity = minus(velocity, plus(read(anchor.velocity), spun(read(anchor.spin), now.anchor_arm)))
+    elif link.support >= 0:
+        velocity = minus(velocity, vector(system.supports.moving, link.support, now.way))
+    return dot(now.way, velocity)
+
+
+@inlined
+def book_support(link: Row, system: System, books: Books, now: Pull, force: float, h: float) -> None:
+    """Book the work that the support of a link does in a time h, from the force of the last step to this one [N].
+
+    The force is then that of the last step."""
+    if link.support >= 0:
+        carried = dot(now.way, vector(system.supports.moving, link.support, now.way))
+        books.totals[0].ground += 0.5 * h * (link.pulled + force) * carried
+    link.pulled = force

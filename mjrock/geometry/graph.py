@@ -1,0 +1,44 @@
+"""What hangs together. SciPy's graphs take long to import, which is done when something is asked of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..quantities import Integers
+
+
+def components(pairs: ArrayLike, count: int) -> Integers:
+    """The number of the connected component of each node, shape (count,).
+
+    Args:
+        pairs: the two nodes of each edge, shape (edges, 2).
+        count: number of nodes.
+    """
+    from scipy.sparse.csgraph import connected_components
+
+    return np.asarray(connected_components(_graph(pairs, count), directed=False)[1])
+
+
+def nearest_roots(pairs: ArrayLike, count: int, roots: Sequence[int]) -> Integers:
+    """The root that the fewest edges part each node from, or a negative number where none is connected, shape (count,).
+
+    Args:
+        pairs: the two nodes of each edge, shape (edges, 2).
+        count: number of nodes.
+        roots: the nodes from which edges are counted.
+    """
+    from scipy.sparse.csgraph import dijkstra
+
+    found = dijkstra(_graph(pairs, count), directed=False, indices=roots, min_only=True, return_predecessors=True)
+    return np.asarray(found[2])
+
+
+def _graph(pairs: ArrayLike, count: int) -> Any:
+    from scipy.sparse import coo_array
+
+    rows, columns = np.reshape(np.asarray(pairs, dtype=np.int64), (-1, 2)).T
+    return coo_array((np.ones(len(rows)), (rows, columns)), shape=(count, count))

@@ -1,0 +1,77 @@
+"""The range of a number is declared once, and the docstring of its class says the same."""
+
+import math
+import re
+from dataclasses import is_dataclass
+from typing import Annotated
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.quantities import Within, declared, keep_declared
+
+PUBLIC = [kind for name in mr.HOME if is_dataclass(kind := getattr(mr, name)) and isinstance(kind, type)]
+NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+
+
+def of_argument(kind, name):
+    """What the docstring of a class says of an argument."""
+    entry = rf"^ {{8}}(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ {{8}}\w|^ {{4}}\S|\Z)"
+    found = re.search(entry, kind.__doc__, re.MULTILINE | re.DOTALL)
+    return " ".join(found[1].split()) if found else ""
+
+
+def faults(kind):
+    """The declared numbers of a class whose docstring lacks or contradicts their range or unit."""
+    for name, (within, _) in declared(kind).items():
+        text = of_argument(kind, name)
+        ranges = [(float(low), float(high)) for low, high in re.findall(rf"({NUMBER}) to ({NUMBER})", text)]
+        if (within.low, within.high) not in ranges or (f"[{within.unit or '-'}]" not in text and not within.whole):
+            yield f"{kind.__name__}.{name}: {within.low:g} to {within.high:g} [{within.unit or '-'}] is not in {text!r}"
+
+
+def test_docstrings_have_the_declared_ranges():
+    assert [fault for kind in PUBLIC for fault in faults(kind)] == []
+
+
+def test_numbers_are_declared():
+    assert sum(len(declared(kind)) for kind in PUBLIC) > 30
+
+
+class Wall:
+    """A class of a test.
+
+    Args:
+        height: of the wall [m], 0 to 10.
+        length: of the wall [cm], 0 to 5.
+        floors: of the wall, 1 to 3.
+        thickness: of the wall [m], 0 to 0.5; None is not known.
+    """
+
+    height: Annotated[float, Within(0, 20, "m")]
+    length: Annotated[float, Within(0, 5, "m")]
+    floors: Annotated[int, Within(1, 3, whole=True)]
+    thickness: Annotated[float | None, Within(0, 0.5, "m")]
+
+    def __init__(self, height, length, floors, thickness):
+        self.height, self.length, self.floors, self.thickness = height, length, floors, thickness
+        keep_declared(self, "wall")
+
+
+def test_docstrings_with_another_range_or_unit_are_found():
+    assert [fault.split(":")[0] for fault in faults(Wall)] == ["Wall.height", "Wall.length"]
+
+
+def test_numbers_are_checked_and_kept_as_declared():
+    wall = Wall(np.float32(20), 5, 3.0, None)
+    assert [type(value) for value in vars(wall).values()] == [float, float, int, type(None)]
+    for wrong, said in (
+        ((20.1, 5, 3, None), "height of the wall = 20.1 m is outside the valid range 0 to 20 m"),
+        ((math.nan, 5, 3, None), "height of the wall = nan m"),
+        ((20, None, 3, None), "length of the wall = None is not a real number"),
+        ((20, 5, 2.5, None), "floors of the wall = 2.5 is not a whole number"),
+        ((20, 5, 3, 0.6), "thickness of the wall = 0.6 m"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=re.escape(said)):
+            Wall(*wrong)
