@@ -97,10 +97,10 @@ def test_what_is_not_the_same_is_told():
 
 
 def test_an_error_that_is_not_named_is_told(monkeypatch):
-    def fail(self):
+    def fail(self, *args, **options):
         raise IndexError("list index out of range")
 
-    monkeypatch.setattr(Masonry, "__post_init__", fail)
+    monkeypatch.setattr(Masonry, "__init__", fail)
     assert "IndexError" in judge(0)["unnamed"]
 
 
