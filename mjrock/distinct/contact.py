@@ -53,15 +53,14 @@ class Meeting(NamedTuple):
 
 
 @inlined
-def meeting(system: System, line: Row) -> Meeting:
-    """Where a line is."""
+def over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector]:
+    """Where the point of a line is from its face, the normal of that, and the arms to it, see `Meeting`."""
     body, at, normal = system.bodies[line.body], read(line.at), read(line.normal)
     change = rotation_change(body, at)
     arm, across = plus(at, change), plus(read(line.between), plus(read(body.place), change))
-    face_arm, turned = arm, may_face_away(body)
+    face_arm = arm
     if line.face >= 0:
         face, origin = system.bodies[line.face], read(line.origin)
-        turned = turned or may_face_away(face)
         change = rotation_change(face, origin)
         across = minus(across, plus(read(face.place), change))
         face_arm = plus(plus(origin, change), across)
@@ -71,8 +70,17 @@ def meeting(system: System, line: Row) -> Meeting:
             across = minus(across, vector(system.supports.moved, line.support, at))
         if line.face == POINT:
             normal, arm = in_world(body, normal), minus(arm, across)
+    return across, normal, arm, face_arm
+
+
+@inlined
+def meeting(system: System, line: Row) -> Meeting:
+    """Where a line is."""
+    body = system.bodies[line.body]
+    across, normal, arm, face_arm = over_face(system, line)
     gap = dot(normal, across)
     if gap < 0 and line.margin < math.inf:
+        turned = may_face_away(body) or (line.face >= 0 and may_face_away(system.bodies[line.face]))
         if turned and dot(normal, in_world(body, read(line.normal))) < 0:
             return Meeting(TURNED_OVER, normal, arm, face_arm, True)
         if dot(across, across) - gap * gap > line.margin:

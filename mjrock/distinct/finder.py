@@ -48,6 +48,9 @@ be taken [-]. So rounding does not decide between two that are equal."""
 ALIKE = 1e-6
 """Relative difference up to which blocks are as large, and difference of heights over the smallest size up to which
 they are as high [-]."""
+ON_ENDS = 0.01
+"""Distance up to which a place outside of a block counts as inside, over the overlap there [-]. That of two prisms
+whose ends lie in one plane is on these ends, and rounding does not decide."""
 OF_EDGES = 0.25
 """Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
 NONE = np.zeros(0, dtype=np.int64)
@@ -127,7 +130,7 @@ class Finder:
         self._fixed = np.array([block.fixed for block in blocks])[self.owner]
         centroids = (np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)[self.owner]
         solids = solids_of(blocks, self._half)
-        self.volumes = np.bincount(self.owner, weights=[solid.volume for solid in solids])
+        self.volumes = np.add.reduceat([solid.volume for solid in solids], self.first)
         self._rank = ranked([block.fixed for block in blocks], self.volumes, drawn[:, -1], self._half)
         inside = [flags for block in blocks for flags in inside_of(block)]
         self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
@@ -165,9 +168,9 @@ class Finder:
     def _in_order(self, found: Found) -> Found:
         """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
         in rank, those of a pair together."""
-        ranks = (self._rank[self.owner[solid]] for solid in (found.face, found.other))
-        pairs = pair_number(*ranks, len(self.number)), pair_number(found.face, found.other, len(self.owner))
-        return found.only(np.lexsort(pairs[::-1]))
+        rank = self._rank[self.owner]
+        of_blocks = pair_number(rank[found.face], rank[found.other], len(self.number))
+        return found.only(np.lexsort((pair_number(found.face, found.other, len(self.owner)), of_blocks)))
 
     def between(self, a: Integers, b: Integers) -> Integers:
         """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
@@ -353,7 +356,8 @@ def shallowest(
     there, most, middle = first >= 0, -math.inf, corner_of(solids, solids.first[face])
     if there:
         most, middle = table[first].gap, read(table[first].at)
-    common = there and lies_in(solids, blocks[0], middle) and lies_in(solids, blocks[1], middle)
+    slack = ON_ENDS * max(-most, 0.0)
+    common = there and lies_in(solids, blocks[0], middle, slack) and lies_in(solids, blocks[1], middle, slack)
     best, of_best, taken = face, blocks, LESS * most
     for turn in range(2):
         block, other = blocks if turn == 0 else (blocks[1], blocks[0])
@@ -385,11 +389,11 @@ def height(solids: Solids, face: int, at: Vector) -> float:
 
 
 @inlined
-def lies_in(solids: Solids, block: int, at: Vector) -> bool:
-    """Whether a place lies inside a block."""
+def lies_in(solids: Solids, block: int, at: Vector, slack: float) -> bool:
+    """Whether a place lies inside a block, or outside by some slack [m]."""
     inside = True
     for face in range(solids.face[block], solids.face[block + 1]):
-        inside = inside and height(solids, face, at) <= 0
+        inside = inside and height(solids, face, at) <= slack
     return inside
 
 

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled_at_once, inlined
-from ..geometry.vectors import components, dot, minus, plus, put, spin_components, vector
-from ..problem.masonry.joint_law import stored
+from ..geometry.vectors import dot, put, read, vector
+from ..problem.masonry.joint_law import normal_force, stored
 from ..quantities import GRAVITY, Array, Flags, Integers
-from .contact import meeting
+from .contact import meeting, over_face, relative
 from .finder import Found
 from .handover import Blocks
 from .solids import Poses
@@ -128,27 +128,21 @@ class Wear(NamedTuple):
 @compiled_at_once
 def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
     """Write where the blocks are that move, and how fast, and take the inertia of the bodies there."""
-    write_motion(system, blocks, motion, system.axes)
-
-
-@inlined
-def write_motion(system: System, blocks: Blocks, motion: Motion, axes: tuple[int, ...]) -> None:
-    """`take_motion`, in the plane or in space."""
     poses, supports = motion.poses, system.supports
     for b in range(len(blocks.free)):
         body, block = system.bodies[b], blocks.free[b]
         take_turn(body)
         take_inverse_inertia(body)
-        for i in range(len(axes)):
-            put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, axes)))
-        spin = spin_components(body.spin, axes)
-        put(poses.moved[block], components(body.place, axes))
-        put(motion.velocity[block], components(body.velocity, axes))
+        place, spin = read(body.place), read(body.spin)
+        for i in range(len(place)):
+            put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, place)))
+        put(poses.moved[block], place)
+        put(motion.velocity[block], read(body.velocity))
         motion.about[block] = math.sqrt(dot(spin, spin)) * blocks.sizes[block]
     for block in range(len(blocks.support)):
         if blocks.support[block] >= 0:
-            put(poses.moved[block], vector(supports.moved, blocks.support[block], axes))
-            put(motion.velocity[block], vector(supports.moving, blocks.support[block], axes))
+            put(poses.moved[block], vector(supports.moved, blocks.support[block], system.axes))
+            put(motion.velocity[block], vector(supports.moving, blocks.support[block], system.axes))
 
 
 @inlined
@@ -276,12 +270,6 @@ def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags, lo
 @compiled_at_once
 def wears(system: System, wear: Wear) -> bool:
     """Bring slip, gap and tilt of joints up to date. Returns whether a pair has left its joints."""
-    return wears_joints(system, wear, system.axes)
-
-
-@inlined
-def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
-    """`wears`, in the plane or in space."""
     pairs, slip, gap, tilt = wear.pairs, wear.slip, wear.gap, wear.tilt
     for pair in range(len(slip)):
         slip[pair], gap[pair], tilt[pair] = 0.0, math.inf, 0.0
@@ -289,17 +277,8 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
         take_turn(system.bodies[b])
     for p in range(len(pairs)):
         line = system.lines[p]
-        body, at, normal = system.bodies[line.body], components(line.at, axes), components(line.normal, axes)
-        across = plus(components(line.between, axes), plus(components(body.place, axes), rotation_change(body, at)))
-        own = in_world(body, normal)
-        if line.face >= 0:
-            face = system.bodies[line.face]
-            change = rotation_change(face, components(line.origin, axes))
-            across = minus(across, plus(components(face.place, axes), change))
-            normal = plus(normal, rotation_change(face, normal))
-        elif line.support >= 0:
-            across = minus(across, vector(system.supports.moved, line.support, axes))
-        apart = dot(normal, across)
+        across, normal, _, _ = over_face(system, line)
+        own, apart = in_world(system.bodies[line.body], read(line.normal)), dot(normal, across)
         slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
         gap[pairs[p]] = min(gap[pairs[p]], apart)
         tilt[pairs[p]] = max(tilt[pairs[p]], 1 - dot(own, normal))
@@ -311,18 +290,16 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
 
 
 @compiled_at_once
-def held(system: System, which: Integers, depth: Array) -> float:
-    """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]."""
-    return held_by_lines(system, which, depth, system.axes)
-
-
-@inlined
-def held_by_lines(system: System, which: Integers, depth: Array, axes: tuple[int, ...]) -> float:
-    """`held`, in the plane or in space."""
-    energy = 0.0
+def held(system: System, which: Integers, depth: Array) -> tuple[float, float]:
+    """Energy in the springs along the normal of some of the lines [J] and the power at which they give it away [W], and
+    write how deep each presses [m]."""
+    energy = power = 0.0
     for i in range(len(which)):
         line = system.lines[which[i]]
-        gap = meeting(system, line).gap
-        depth[i] = max(-gap, 0.0)
-        energy += stored(line, gap)
-    return energy
+        meet = meeting(system, line)
+        depth[i] = max(-meet.gap, 0.0)
+        energy += stored(line, meet.gap)
+        if meet.gap < 0:
+            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
+            power += normal_force(line, meet.gap, 0.0) * rate
+    return energy, power

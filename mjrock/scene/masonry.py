@@ -69,28 +69,21 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
         require_carried(masonry, effects)
         raise unsettled(masonry, effects, error.pose) from None
     if any(masonry.bonds):
-        require_held(masonry, scene, pose)
+        require_held(scene, pose)
 
 
-def require_held(masonry: Masonry, scene: Scene, pose: Array) -> None:
+def require_held(scene: Scene, pose: Array) -> None:
     """Raise ValueError with the names of the joints whose bonds need more than their strength at the pose of rest."""
     contacts = scene.contacts
     push = scene.potential.pushes(pose.ravel())[: len(contacts.k)]
-    limit = np.array([np.inf if bond is None else bond.elastic_limit for bond in masonry.bonds])
-    area = masonry.areas_of(contacts.k, contacts.joint)
-    share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / area / limit[contacts.joint])
+    limit = np.array([np.inf if bond is None else bond.elastic_limit for bond in contacts.bonds])[contacts.joint]
+    share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / contacts.area / limit)
     torn = np.unique(contacts.joint[share > 1])
     if len(torn):
-        names = named([masonry.joints[i].name for i in torn])
+        names = named([contacts.joints[i] for i in torn])
         raise ValueError(
             f"the masonry cannot stand: at rest the bonds of {names} would need {share.max():.3g} times their strength"
         )
-
-
-def strength(masonry: Masonry, lines: Lines, name: str) -> Array:
-    """A strength of the bond of each contact line [N], zero where there is none."""
-    held = np.array([0.0 if bond is None else getattr(bond, name) for bond in masonry.bonds])
-    return np.asarray(held[lines.joint] * masonry.areas_of(lines.k, lines.joint))
 
 
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
@@ -208,8 +201,9 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             friction=masonry.joint_friction[lines.joint],
             joint=lines.joint,
             joints=tuple(joint.name for joint in masonry.joints),
-            tension=strength(masonry, lines, "tension"),
-            cohesion=strength(masonry, lines, "cohesion"),
+            k_s=masonry.joint_shear[lines.joint] * lines.k / masonry.joint_stiffness[lines.joint],
+            area=masonry.areas_of(lines.k, lines.joint),
+            bonds=masonry.bonds,
         ),
         *attachments(effects, number, lambda effect: placed(masonry, effect), centroids[free]),
         limits=limits,

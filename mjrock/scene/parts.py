@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
+from ..problem.masonry.bond import Bond, strengths
 from ..problem.wall.effect import LinkLaw
 from ..quantities import Array, Flags, Integers, frozen
 from .checks import GROUND, keep_array, require_inertia, require_others
@@ -110,8 +111,10 @@ class ContactPoints:
         joints: names of the joints. The ledger has an account for each.
         holds: which contacts stand for a base that holds, shape (m,), or one answer for all. Their coefficient of
             friction is a number that holds it, and no law of sliding.
-        tension, cohesion: what the bond of each contact holds in tension and along the face [N], shape (m,), or one
-            number for all.
+        k_s: spring of each contact along its face [N/m], infinite where it sticks rigidly, shape (m,), or one number
+            for all.
+        area: what part of its joint each contact stands for [m2], shape (m,), or one number for all.
+        bonds: what mortar holds in each joint, None where a joint is dry; empty where all are.
     """
 
     body: Integers
@@ -125,8 +128,9 @@ class ContactPoints:
     joint: Integers
     joints: tuple[str, ...]
     holds: Flags | bool = False
-    tension: Array | float = 0.0
-    cohesion: Array | float = 0.0
+    k_s: Array | float = math.inf
+    area: Array | float = 0.0
+    bonds: tuple[Bond | None, ...] = ()
 
     def __post_init__(self) -> None:
         m, directions = len(self.k), np.shape(self.normal)[-1] if np.size(self.normal) else 2
@@ -143,8 +147,21 @@ class ContactPoints:
         if not ((self.joint >= 0) & (self.joint < len(self.joints))).all():
             raise ValueError(f"joint of the contacts is outside the valid range 0 to {len(self.joints) - 1}")
         object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), (m,))))
-        for name in ("tension", "cohesion"):
+        for name in ("k_s", "area"):
             object.__setattr__(self, name, frozen(np.broadcast_to(np.array(getattr(self, name), dtype=float), (m,))))
+
+    @cached_property
+    def tension(self) -> Array:
+        """Tension that the bond of each contact holds [N], shape (m,)."""
+        return self._strength("tension")
+
+    @cached_property
+    def cohesion(self) -> Array:
+        """Force along the face that it holds without pressure [N], shape (m,)."""
+        return self._strength("cohesion")
+
+    def _strength(self, name: str) -> Array:
+        return np.asarray(strengths(self.bonds, name)[self.joint] * self.area if self.bonds else np.zeros(len(self.k)))
 
     @property
     def group(self) -> tuple[str, ...]:

@@ -31,10 +31,10 @@ def heap(length: float, height: float, duration: float) -> mr.Response:
 
 def drawn(answer: mr.Response) -> Figure:
     """The wall at some times of its fall, seen from the ground."""
-    masonry = answer.case.masonry
+    masonry = answer.of_masonry.masonry
     length, height = np.concatenate([masonry.blocks[i].corners for i in masonry.free]).max(axis=0)
-    limits = [(-0.5 * length, 2.2 * length), (-0.5, height + 0.4)]
-    figure = Figure(figsize=(13, 2.2), layout="constrained")
+    limits = [(-0.3 * length, 3.1 * length), (-0.5, height + 0.4)]
+    figure = Figure(figsize=(13, 1.9), layout="constrained")
     for ax, row in zip(figure.subplots(1, FRAMES), np.linspace(0, len(answer.t) - 1, FRAMES).astype(int), strict=True):
         plotting.blocks(ax, masonry, answer.pose[row], joints=False, limits=limits)
         ax.set(title=f"{answer.t[row]:.1f} s", xlabel="x [m]")

@@ -120,7 +120,7 @@ def run(masonry: mr.Masonry, study: Study, peak: float) -> mr.Response:
 def drawn(study: Study, answers: Sequence[mr.Response]) -> Figure:
     """The wall at rest, and at the end of both runs."""
     figure = Figure(figsize=(11, 2.5), layout="constrained")
-    masonry = answers[0].case.masonry
+    masonry = answers[0].of_masonry.masonry
     titles = [
         "at rest",
         *(f"{peak:g} m/s² after {one.t[-1]:.1f} s" for peak, one in zip(study.peaks, answers, strict=True)),

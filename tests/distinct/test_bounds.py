@@ -1,4 +1,4 @@
-"""Compiled loops stay within their arrays: the tests of explicit steps in a process whose loops check every index."""
+"""The tests of explicit steps in processes whose loops check every index, and whose loops are plain Python."""
 
 import os
 import subprocess
@@ -38,6 +38,25 @@ for loop, table in ((rows_beyond, rows(kinds(2).way, 2)), (numbers_beyond, np.ze
 """Rows and arrays, in the loop itself and in a function that takes the place of its call."""
 
 
+SMALL = [
+    "bonds_of_lines",
+    "clipping",
+    "contact_lines",
+    "forces_of_lines",
+    "friction_of_lines",
+    "handing_over",
+    "longest_step",
+    "loop_of_steps",
+    "pulls_of_links",
+    "slowing",
+    "softening",
+    "solids",
+    "touches_of_lines",
+    "turning",
+]
+"""Tests of single functions, and of a few steps."""
+
+
 def checked(tmp_path, *command):
     """A Python command whose loops are compiled with checks."""
     environment = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONHASHSEED": "0"}
@@ -56,4 +75,14 @@ def test_an_index_beyond_an_array_is_refused(tmp_path):
 def test_no_loop_of_the_explicit_steps_writes_beyond_its_arrays(tmp_path):
     """All everyday tests of this folder, which take some two minutes of a core, half of them to compile."""
     run = checked(tmp_path, "-m", "pytest", "-n", "0", "-q", "-p", "no:cacheprovider", str(Path(__file__).parent))
+    assert run.returncode == 0, run.stdout[-4000:] + run.stderr[-2000:]
+
+
+@pytest.mark.slow
+def test_the_loops_do_the_same_as_plain_python():
+    """The small tests, by what runs where a loop is not compiled."""
+    files = [str(Path(__file__).with_name(f"test_{name}.py")) for name in SMALL]
+    command = [sys.executable, "-m", "pytest", "-n", "0", "-q", "-p", "no:cacheprovider", *files]
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout[-4000:] + run.stderr[-2000:]

@@ -64,9 +64,10 @@ def test_how_far_a_block_is_outside_of_a_face_and_reaches():
     assert solids.extent[face_of(solids, 1, (0, 1, 0))] == pytest.approx(2.8)
     assert finder.height(solids, face_of(solids, 0, (1, 0, 0)), (1.5, 9.0, 9.0)) == pytest.approx(0.2)
     assert finder.height(solids, face_of(solids, 1, (0, 0, -1)), (1.5, 9.0, 0.15)) == pytest.approx(0.1)
-    assert finder.lies_in(solids, 0, (1.2, 0.0, -0.1))
-    assert not finder.lies_in(solids, 0, (1.4, 0.0, -0.1))
-    assert not finder.lies_in(solids, 1, (0.2, 0.1, 0.2))
+    assert finder.lies_in(solids, 0, (1.2, 0.0, -0.1), 0.0)
+    assert not finder.lies_in(solids, 0, (1.4, 0.0, -0.1), 0.0)
+    assert finder.lies_in(solids, 0, (1.4, 0.0, -0.1), 0.11)
+    assert not finder.lies_in(solids, 1, (0.2, 0.1, 0.2), 0.0)
 
 
 def test_the_face_that_another_block_is_farthest_outside_of():
@@ -178,7 +179,7 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
 
     monkeypatch.setattr(finder, "clip", clip)
     monkeypatch.setattr(finder, "outside", lambda _, face, other: out.get(face, -2.0))
-    monkeypatch.setattr(finder, "lies_in", lambda _, block, at: True)
+    monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: True)
     monkeypatch.setattr(finder, "height", lambda _, face, at: heights.get(face, 0.0))
     table, heights = rows(PLACE, 3), {}
     for least, expected, more in (
@@ -203,7 +204,7 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
     for above, taken in ((-0.09, 2), (-0.11, 0)):  # the deepest place of the first face lies so deep below this one
         heights[2] = above
         assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == taken
-    monkeypatch.setattr(finder, "lies_in", lambda _, block, at: block != 1)  # that place is not common to both
+    monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: block != 1)  # that place is not common to both
     assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == 2
     for gap, taken in ((-0.001, 2), (0.0, 0), (0.001, 0)):  # places that are open
         depth[2] = gap
@@ -266,6 +267,26 @@ def test_blocks_that_are_farther_than_they_reach_do_not_meet(monkeypatch):
 @pytest.mark.parametrize("gap", [0.005, -0.1])
 def test_blocks_that_are_near_and_do_not_lie_over_each_other_pass_by(monkeypatch, gap):
     assert decided(monkeypatch, (gap, -0.3), clipped=0)[0] == ("passes", 0, (0, 1), gap)
+
+
+@pytest.mark.parametrize("turn", [None, *range(8)])
+def test_prisms_whose_ends_lie_in_one_plane_meet_along_the_face_of_their_joint(turn):
+    """One lies on a side of the other with 0.9 mm of overlap at an end and 0.04 mm at the other one, beside a side that
+    is inclined by 9 degrees to it, over which it has 0.04 mm alone. The deepest place is on both ends of both."""
+    slope = math.atan(2 / 9)
+    along, up = np.array([math.cos(slope), math.sin(slope)]), np.array([-math.sin(slope), math.cos(slope)])
+    lower = mr.Polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 0.5), (0.1, 0.3), (0.0, 0.26)])
+    low, high = ((0.1, 0.3) + at * along - deep * up for at, deep in ((-0.01, 4e-5), (0.9, 9e-4)))
+    blocks = [lower, mr.Polygon([low, high, high + 0.3 * up, low + 0.3 * up])]
+    if turn is None:
+        normal, solids = up, blocks
+    else:
+        spun = Rotation.random(random_state=turn)
+        normal = spun.apply((up[0], 0.0, up[1]))
+        solids = [moved(mr.Polyhedron.prism(block), (0.0, 0.0, 0.0), spun) for block in blocks]
+    _, places = found(solids, reach=0.01)
+    assert places.gap.min() == pytest.approx(-9e-4, rel=1e-3)
+    assert np.abs(places.normal @ normal).min() > 0.999
 
 
 @pytest.mark.parametrize("in_space", [False, True])

@@ -15,7 +15,7 @@ import mjrock as mr
 from mjrock.distinct import explicit, following, links
 
 PACKAGE = Path(mr.__file__).parent
-PAGE = (PACKAGE.parent / "docs" / "own_effect.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "own_effect.md").read_text(encoding="utf-8")
 TEXT = re.search(r"<!-- bumpers.py -->\n```python\n(.*?)```", PAGE, re.DOTALL)[1]
 K, LENGTH, GAP, SPEED = 2e5, 0.3, 0.02, 0.8
 
@@ -90,6 +90,7 @@ def test_the_same_compiled_in_a_package_that_has_the_file(tmp_path):
         "from mjrock.distinct.kinds.bumpers import Bumper; print(here.mr.__file__); here.check(Bumper, False)"
     )
     setting = os.environ | {"PYTHONPATH": str(tmp_path), "MJROCK_INTERPRET": "0"}
-    done = subprocess.run([sys.executable, "-c", program], env=setting, capture_output=True, text=True, check=False)
+    options = {"env": setting, "cwd": tmp_path, "capture_output": True, "text": True, "check": False}
+    done = subprocess.run([sys.executable, "-c", program], **options)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(str(copy))

@@ -27,7 +27,7 @@ def test_a_slider_holds_friction_times_push_and_only_where_faces_touch():
     np.testing.assert_array_equal(found.shares.toarray(), np.diag([1.0, 1.0, 0.0, 1.0]))
     smooth = sliders(changed(scene, contacts={"friction": [0.7, 0.0, 0.7, 0.7]}), [10.0] * 4)
     np.testing.assert_allclose(smooth.limit, [7.0, -np.inf, 7.0, 7.0])
-    bonds = {"tension": [0.5, 0.5, 0.0, 0.0], "cohesion": [3.0, 3.0, 0.0, 0.0]}
+    bonds = {"area": 2e-3, "bonds": (mr.Bond(250.0, 1500.0, 1.0, 1.0), None)}
     bonded = sliders(changed(scene, contacts=bonds), [10.0, -1.0, -1.0, 10.0])
     np.testing.assert_allclose(bonded.limit, [10.0, 3.0, -np.inf, 7.0])
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from ...quantities import Implausible, keep, require_within
+import numpy as np
+
+from ...quantities import Array, Implausible, keep, require_within
 from .bond_law import HARDENED, YIELDS
 
 LEAST_POINTS = 3
@@ -159,6 +162,11 @@ class Bond:
     def energy_of_hardening(self) -> float:
         """Part of the energy of crushing that is taken before the peak [J/m2]."""
         return HARDENED * (self.crushing or 0.0) * (self.hardening or 0.0)
+
+
+def strengths(bonds: Sequence[Bond | None], name: str) -> Array:
+    """A strength of each bond [Pa], zero where there is none, shape (joints,)."""
+    return np.array([0.0 if bond is None else getattr(bond, name) for bond in bonds])
 
 
 BONDS = {

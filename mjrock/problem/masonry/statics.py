@@ -12,6 +12,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, v
 from ...geometry.graph import components
 from ...linear import loose
 from ...quantities import GRAVITY, Array, Flags
+from .bond import strengths
 from .joint_law import Law, shear_limit
 from .lines import free_numbers, rates, slips
 from .masonry import Masonry
@@ -183,9 +184,8 @@ def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[c
     directions = np.stack([-lines.normal, *(sign * way for way in ways for sign in (1.0, -1.0))])
     if not any(masonry.bonds):
         return csc_array((len(masonry.free) * (6 if masonry.in_space else 3), 0)), np.zeros(0), directions[:0]
-    strengths = np.array([(0.0, 0.0) if bond is None else (bond.tension, bond.cohesion) for bond in masonry.bonds])
     area = masonry.areas_of(lines.k, lines.joint)
-    pull, along = (area[:, None] * strengths[lines.joint]).T
+    pull, along = (area * strengths(masonry.bonds, name)[lines.joint] for name in ("tension", "cohesion"))
     columns = vstack([rates(masonry.blocks, lines, way) for way in directions]).T
     limits = np.concatenate([pull, *[along] * (2 * len(ways))])
     return csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions
