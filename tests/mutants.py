@@ -183,6 +183,11 @@ EQUIVALENT = {
     ),
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "forces.py: if not kinds.released_on[i] if n == 0 else now.gap > 0:": "at a gap of zero nothing presses",
+    **{
+        "compound.py: reaching = [part for part in self.polygons if np.ptp(np.clip(part.corners[:, 1] - z, "
+        f"{bounds})) > 0]": "what reaches a height to a nanometre does to two"
+        for bounds in ("-2e-09, 1e-9", "-1e-9, 2e-09")
+    },
     "encounters.py: fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -2)": "any negative number stands for a body",
     **{
         f"limit_state.py: if turn % EVERY {which}:": "other turns are as good to start from as every third one"

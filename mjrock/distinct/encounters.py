@@ -6,7 +6,8 @@ that have no common joint are looked at once one of them has moved nearly as far
 gives each pair its places, with the law of `pair_law`. Where the step asks for softer ones, they stay soft as long as
 they press: from find to find stiff and soft in turn, blocks would sink into each other. Until the next find each place
 moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked,
-along a face what they hold more: what they hold less friction takes.
+along a face what they hold more: what they hold less friction takes. What their change of force does over the half of
+a step before the pose is booked too.
 """
 
 from __future__ import annotations
@@ -228,7 +229,7 @@ class Encounters:
         slack, size = np.append(np.zeros(count), met.slack), len(number)
         gone = Lines.unwritten(chosen(lines, which), slack[which])
         new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
-        before = held(system, which, gone.depth)
+        before, gave = held(system, which, gone.depth)
         share = np.append(np.ones(count), met.share)[which]
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])
@@ -255,8 +256,9 @@ class Encounters:
         system = system._replace(lines=lines).with_ways()
         given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
         books.totals[0].friction -= given
-        now = held(system, np.arange(len(lines) - size, len(lines)), new.depth)
-        books.totals[0].encounter_ends += before + given - now
+        after, gives = held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        late = 0.5 * h * (gives - gave) if met.since > 0 else 0.0  # forces change half a step before the pose
+        books.totals[0].encounter_ends += before + given - after - late
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:

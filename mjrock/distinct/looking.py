@@ -10,9 +10,9 @@ import numpy as np
 
 from ..compiled import compiled_at_once, inlined
 from ..geometry.vectors import dot, put, read, vector
-from ..problem.masonry.joint_law import stored
+from ..problem.masonry.joint_law import normal_force, stored
 from ..quantities import GRAVITY, Array, Flags, Integers
-from .contact import meeting, over_face
+from .contact import meeting, over_face, relative
 from .finder import Found
 from .handover import Blocks
 from .solids import Poses
@@ -290,12 +290,16 @@ def wears(system: System, wear: Wear) -> bool:
 
 
 @compiled_at_once
-def held(system: System, which: Integers, depth: Array) -> float:
-    """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]."""
-    energy = 0.0
+def held(system: System, which: Integers, depth: Array) -> tuple[float, float]:
+    """Energy in the springs along the normal of some of the lines [J] and the power at which they give it away [W], and
+    write how deep each presses [m]."""
+    energy = power = 0.0
     for i in range(len(which)):
         line = system.lines[which[i]]
-        gap = meeting(system, line).gap
-        depth[i] = max(-gap, 0.0)
-        energy += stored(line, gap)
-    return energy
+        meet = meeting(system, line)
+        depth[i] = max(-meet.gap, 0.0)
+        energy += stored(line, meet.gap)
+        if meet.gap < 0:
+            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
+            power += normal_force(line, meet.gap, 0.0) * rate
+    return energy, power
