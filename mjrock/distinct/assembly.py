@@ -14,7 +14,7 @@ from ..problem.masonry.support import Support
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene
-from .faces import edges_of, margins, outlines_of_joints
+from .contacts.faces import edges_of, margins, outlines_of_joints
 from .kinds.link import put_on_supports
 from .rows import Rows, joined, kinds, rows
 from .supports import moving

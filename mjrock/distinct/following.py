@@ -14,10 +14,10 @@ from tqdm import tqdm
 from ..quantities import Array
 from ..result.samples import intervals
 from ..scene.explicit_step import stepping_seconds
-from .encounters import Encounters
 from .loop import Clock, advance
 from .memory import Memory, remember
 from .rows import ENDLESS, unsound
+from .search.encounters import Encounters
 from .setup import Setup
 from .system import Books, Samples, System
 

@@ -13,8 +13,8 @@ import scipy
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, vstack
 
 from ..linear import rates_of
-from ..problem.masonry.joint_law import largest_stiffness
-from ..problem.masonry.joints_in_space import axes_across
+from ..problem.masonry.blocks.joints_in_space import axes_across
+from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
 from ..scene.explicit_step import stable_step
 from .rows import Rows

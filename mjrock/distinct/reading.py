@@ -24,7 +24,7 @@ from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
-from .bonds import cracked
+from .contacts.bonds import cracked
 from .following import Followed
 from .kinds.ties import Ties
 from .rows import Row, Rows

@@ -18,7 +18,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, vstack
 from ..geometry.kinematics import AppliedForces, Places, gaps
 from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung
-from ..problem.masonry.joint_law import Law, shear_limit
+from ..problem.masonry.laws.joint_law import Law, shear_limit
 from ..quantities import GRAVITY, Array, Flags
 from .parts import ContactPoints
 from .potential import Potential

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from by_hand import PLACE, SPIN, VELOCITY, matrix, system
 
-from mjrock.distinct import looking
-from mjrock.distinct.finder import Found
-from mjrock.distinct.handover import Blocks
-from mjrock.distinct.looking import Motion, Reach, Seen, Wear
-from mjrock.distinct.solids import Poses
+from mjrock.distinct.search import looking
+from mjrock.distinct.search.finder import Found
+from mjrock.distinct.search.handover import Blocks
+from mjrock.distinct.search.looking import Motion, Reach, Seen, Wear
+from mjrock.distinct.search.solids import Poses
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 LOOK = 5e-3

@@ -27,6 +27,8 @@ FLOORS = (
     ("__main__",),
 )
 """From the ground up. Rooms of one floor do not import each other."""
+FOLDERS = ("blocks", "laws", "builders", "files")
+"""Folders of masonry from the ground up. They know nothing of the modules beside them."""
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_MUJOCO = ("geometry", "problem", "scene", "result", "theory", "reference", "distinct")
 LONGEST_FUNCTION, MOST_ARGUMENTS = 60, 7
@@ -62,6 +64,16 @@ def test_imports_run_down():
         offenders += [f"{name} imports {target}" for target in across if FLOOR[room(target)] >= FLOOR[room(name)]]
         if name.split(".")[0] in WITHOUT_MUJOCO:
             offenders += [f"{name} imports {module}" for module in others if module.split(".")[0] == "mujoco"]
+    assert offenders == []
+
+
+def test_folders_of_masonry_stand_on_each_other():
+    offenders = []
+    for height, folder in enumerate(FOLDERS):
+        for path in sorted((ROOT / "problem" / "masonry" / folder).glob("*.py")):
+            within = [name for name in imports(path)[0] if name.startswith("problem.masonry.")]
+            below = tuple(f"problem.masonry.{name}." for name in FOLDERS[: height + 1])
+            offenders += [f"{folder}/{path.stem} imports {name}" for name in within if not name.startswith(below)]
     assert offenders == []
 
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import mjrock as mr
-from mjrock.distinct.friction import SETTLED
+from mjrock.distinct.contacts.friction import SETTLED
 
 from .quantities import Scene, changed, moved, scaled, turned
 from .random_scenes import DENSITY, PLACES, box, draw

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
-from mjrock.study.push import warn_if_fast
+from mjrock.study.loading.push import warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 

@@ -30,10 +30,10 @@ from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import require_in_plane
 from ..wall.standing import JointFrames, Solid
 from .actuator import Actuator
-from .bond import Bond
+from .blocks.joints import Joint
+from .blocks.joints_in_space import SpaceJoint
 from .effects import laden, numbered, placed, require_anchored, require_in_space, require_pushing
-from .joints import Joint
-from .joints_in_space import SpaceJoint
+from .laws.bond import Bond
 from .masonry import Masonry
 from .plausible import doubts
 from .standing import joints_of, solids_of
