@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .anymodel.notes import ContactWarning
     from .distinct.explicit import solve_explicit
     from .engine.model import SimulationError
-    from .engine.simulation import automatic_timestep, simulate
+    from .engine.simulation import simulate
     from .engine.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
     from .problem.damping.contacts import Contacts
@@ -68,10 +68,11 @@ if TYPE_CHECKING:
     from .result.compare import Comparison, compare
     from .result.ending import Outcome
     from .result.ledger import Ledger
+    from .result.problem import scene_of
     from .result.response import MasonryResponse, Response
     from .result.rocking import Impact
+    from .scene.fixed_step import automatic_timestep
     from .scene.masonry import masonry_scene
-    from .scene.of_case import scene_of
     from .scene.scene import Scene
     from .scene.wall import wall_scene
     from .study.analysis import Analysis, MasonryAnalysis

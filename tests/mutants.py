@@ -73,6 +73,7 @@ OWN = {
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
     "distinct/touches.py": ("touches_inside_a_step", "books_close"),
     **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py")},
+    **{f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion") for kind in ("wall", "masonry")},
     "result/forces.py": ("joint_frames", "forces"),
     "distinct/slowing.py": ("push",),
     "distinct/bonds.py": ("bonds", "bonded_masonry"),
@@ -96,7 +97,7 @@ OWN = {
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
     "result/fallen.py": ("fallen",),
     "result/ledger.py": ("ledger",),
-    **{f"result/{name}.py": ("files_of_motion",) for name in ("bodies", "gltf", "vtk")},
+    **{f"result/{name}.py": ("files_of_motion", "joint_frames") for name in ("bodies", "gltf", "vtk")},
     "result/ties.py": ("ties", "ties_that_break", "friction_damper", "masonry_effects"),
     "engine/run.py": ("marks", "end_of_run", "ledger", "books_of_masonry"),
     "engine/sliding.py": ("slipping", "sliding"),
@@ -177,11 +178,16 @@ EQUIVALENT = {
         "once there is a crack, the spring holds what is left of the strength, or more where slip has worn it"
     ),
     "bond_law.py: PASSES = 16": "eight passes have found the opening and the closing to rounding",
-    "forces.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
+    "standing.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
         "joints on what is fixed have no arm that is read"
     ),
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "forces.py: if not kinds.released_on[i] if n == 0 else now.gap > 0:": "at a gap of zero nothing presses",
+    **{
+        "compound.py: reaching = [part for part in self.polygons if np.ptp(np.clip(part.corners[:, 1] - z, "
+        f"{bounds})) > 0]": "what reaches a height to a nanometre does to two"
+        for bounds in ("-2e-09, 1e-9", "-1e-9, 2e-09")
+    },
     "encounters.py: fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -2)": "any negative number stands for a body",
     **{
         f"limit_state.py: if turn % EVERY {which}:": "other turns are as good to start from as every third one"
@@ -207,7 +213,6 @@ EQUIVALENT = {
         f"atol={least})]": "corners are one to rounding, or apart by more than the relative tolerance beside this one"
         for least in ("1e-12 / high", "2e-12 * high")
     },
-    "reading.py: peak_times: Array = field(default_factory=lambda: np.zeros(1))": "masonry has no peaks that are read",
     "reading.py: early = t[-1] <= case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to "
     "the duration": "no sample is half a step before the end to the last bit",
     "turning.py: PASSES = 6": "more passes take time only",

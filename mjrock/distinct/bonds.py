@@ -15,6 +15,7 @@ import numpy as np
 from ..compiled import inlined
 from ..geometry.vectors import Vector, dot, increase, minus, no_spin, plus, put, read, scaled
 from ..problem.masonry.bond_law import bonded_limit, crush, tear, wear
+from ..problem.masonry.case import AnyCase
 from ..problem.masonry.joint_law import normal_force, stored_along
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Flags, Integers
@@ -66,7 +67,7 @@ def holding(bonds: Rows) -> Flags:
     return np.asarray((bonds["k"] > 0) & (bonds["tension"] > 0) & (bonds["left"] > GONE))
 
 
-def cracked(bonds: Rows, joint: Integers, masonry: Masonry) -> dict[str, float]:
+def cracked(bonds: Rows, joint: Integers, masonry: Masonry | AnyCase) -> dict[str, float]:
     """When each joint that cracked did [s], the first first, from the number of the joint of each line."""
     when = {}
     for i in np.flatnonzero([bond is not None and bond.tension > 0 for bond in masonry.bonds]):

@@ -9,19 +9,18 @@ import numpy as np
 
 from ..patience import first_answer
 from ..problem.damping.contacts import Contacts
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausible import warn_if_still
 from ..quantities import require_flag, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
+from ..result.problem import problem_of
 from ..result.response import End, Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
 from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.explicit_step import warn_if_tiny
-from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
 from .overlap import checked_overlap
 from .reading import Run, response_of
@@ -33,7 +32,7 @@ SHORT = 0.02
 
 
 def solve_explicit(
-    case: Case | MasonryCase,
+    case: AnyCase,
     contacts: Contacts | None = None,
     timestep: float | None = None,
     *,
@@ -90,14 +89,14 @@ def solve_explicit(
         'at rest'
     """
     watch = Stopwatch()
-    require_case(case, contacts)
+    problem_of(case, contacts)
     require_flag("ledger", ledger)
     require_flag("forces", forces)
     if timestep is not None:
         timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
-    if isinstance(case, Case) and start is None:
+    if start is None:
         warn_if_still(case, forces=forces)
     with first_answer(solve_shortly, case=case, contacts=contacts):
         setup = slowed(carried_on(setup_of(case, contacts, state), start), mass_damping, local_damping)
@@ -128,7 +127,7 @@ def solve_explicit(
     }
     kept = slice(followed.samples)
     samples = samples.taken(kept).since_the_start()
-    if isinstance(case, MasonryCase):
+    if setup.encounters is not None:
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     looked = steps.looks(followed.steps)
     run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], looked)
@@ -139,6 +138,6 @@ def solve_explicit(
     return response
 
 
-def solve_shortly(case: Case | MasonryCase, contacts: Contacts | None) -> None:
+def solve_shortly(case: AnyCase, contacts: Contacts | None) -> None:
     """The first steps of a case, which call all loops."""
     solve_explicit(replace(case, duration=min(case.duration, SHORT)), contacts)

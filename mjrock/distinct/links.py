@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import inlined, method
+from ..problem.masonry.case import AnyCase
 from ..quantities import Array
 from ..scene.scene import Scene
 from .kinds.actuators import Actuators
 from .kinds.constant_forces import ConstantForces
 from .kinds.dampers import Dampers
-from .kinds.link import AnyCase, Kind
+from .kinds.link import Kind
 from .kinds.ties import Ties
 from .rows import Row, Rows
 from .system import Books, Links, System

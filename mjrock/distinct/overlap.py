@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 
 from ..geometry.hull import area_vector
-from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.case import AnyCase
 from ..quantities import Array
 from .encounters import STABLE, Encounters
 from .pair_law import pair_number
@@ -28,7 +28,7 @@ DOUBTED = 0.01
 """Share of a block from which on its overlap is warned of [-]."""
 
 
-def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array, h: float) -> float:
+def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float) -> float:
     """The largest share of a block that lies inside another at samples of a run [-], at most 200 of them.
 
     All pairs are looked at, whether their joint is intact or not. Where no block has come near another one that it has
@@ -66,7 +66,7 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array, h: f
         share = common / float(finder.volumes[[a, b]].min())
         at_start = max(at_start, share if i == 0 else 0.0)
         if share > worst:
-            names = case.masonry.names
+            names = case.blocks
             worst, said = share, f"{names[a]} and {names[b]} lie inside each other by {share:.1%} of the smaller one"
             left = float(encounters.met.softest[[a, b]].max())
             shorter = STABLE * unsoftened(left, h / STABLE, encounters.law.slowest)
@@ -89,7 +89,7 @@ def what_keeps_apart(share: float, left: float, shorter: float) -> str:
     return f"{said} and {joints} keep blocks apart" if stiffer > 1 else f"{said} keeps blocks apart"
 
 
-def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: MasonryCase) -> Poses:
+def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: AnyCase) -> Poses:
     """Where all blocks are at a sample."""
     bodies, d = system.bodies.copy(), len(system.axes)
     bodies["place"] = pose[:, :d]

@@ -12,16 +12,17 @@ import numpy as np
 
 from ..geometry.frames import SPACE
 from ..problem.damping.contacts import Contacts
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers
-from ..result.forces import Forces, Gathered, JointFrames, forces_of
-from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
+from ..result.forces import Forces, Gathered, forces_of
+from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
-from ..result.reading import BesidePoses, Reading, masonry_reading, wall_reading
+from ..result.problem import problem_of
+from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
 from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
+from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
 from .bonds import cracked
 from .following import Followed
@@ -42,7 +43,7 @@ class Run:
     """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s], and the times of
     the looks [s]."""
 
-    case: Case | MasonryCase
+    case: AnyCase
     contacts: Contacts | None
     scene: Scene
     setup: Setup
@@ -133,13 +134,13 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
         return None
     pulled, driven = run.forces_of("links", -samples.pulled), run.forces_of("actuators", samples.pulled)
     damage = None
-    if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
-        dry = [bond is None for bond in run.case.masonry.bonds]
+    if len(run.followed.system.bonds):
+        dry = [bond is None for bond in run.case.bonds]
         damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
     jacks = np.array([*driven.values()]).T.copy() if driven else None
     gathered = Gathered(run.t[kept], *loads, pulled, jacks, samples.guided, damage)
-    return forces_of(run.case, JointFrames.of(run.case), gathered)
+    return forces_of(run.case, run.case.frames, gathered)
 
 
 def plastic(run: Run) -> dict[str, Plastic]:
@@ -151,16 +152,13 @@ def plastic(run: Run) -> dict[str, Plastic]:
 
 def reading_of(run: Run) -> Reading:
     """What is read from a run."""
-    case, contacts, samples = run.case, run.contacts, run.samples
+    samples, system, joint = run.samples, run.followed.system, run.scene.contacts.joint
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
-    if isinstance(case, MasonryCase):
-        met = None if run.followed.memory is None else run.followed.memory.met
-        widest = run.followed.system.lines["widest"][: len(run.scene.contacts.joint)]
-        left = met is not None and bool(met.handed.any())
-        gone = cracked(run.followed.system.bonds, run.scene.contacts.joint, case.masonry)
-        return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left, gone))
-    assert contacts is not None
-    return wall_reading(case, contacts, run.t, motion, released=run.setup.course.released)
+    met = None if run.followed.memory is None else run.followed.memory.met
+    left = met is not None and bool(met.handed.any())
+    beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked(system.bonds, joint, run.case))
+    problem = problem_of(run.case, run.contacts)
+    return problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
 
 
 def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
@@ -220,6 +218,6 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         t=run.t[kept],
         **{name: energy[name] for name in ("kinetic", "potential", "elastic", "friction", "ground")},
         **booked,
-        ends={} if isinstance(run.case, Case) else ends,
+        ends=ends if run.case.joints else {},
         bonds=bonds if len(run.followed.system.bonds) else {},
     )

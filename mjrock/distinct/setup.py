@@ -15,11 +15,11 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
 from ..quantities import ON_ITS_FACE, require_within
+from ..result.problem import problem_of
 from ..result.response import State
 from ..scene.course import Course
 from ..scene.explicit_step import SHARE
 from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
-from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
 from .assembly import copied, guide, moved_by, started, system_of, take_grips
 from .bonds import bonded
@@ -117,8 +117,9 @@ def carried_on(setup: Setup, start: object) -> Setup:
 
 def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) -> Setup:
     """A wall at the start of a case, or in a given state."""
-    scene = scene_of(case, contacts)
-    course = continued(course_of(case, scene), state)
+    problem = problem_of(case, contacts)
+    scene = problem.scene()
+    course = continued(problem.course(scene), state)
     system = system_of(scene)
     names, links = links_of(scene, case, system.bodies)
     system = started(system, course.pose, course.velocity)._replace(ground=course.ground, links=links)

@@ -15,10 +15,10 @@ from ..compiled import compiled
 from ..geometry.frames import place
 from ..geometry.kinematics import meeting, over_face, where_friction_acts
 from ..geometry.vectors import increase, moment, plus, scaled, vector
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..quantities import Array, Integers
-from ..result.forces import Forces, Gathered, JointFrames, forces_of
+from ..result.bodies import Moving
+from ..result.forces import Forces, Gathered, forces_of
 from ..result.ties import Plastic, motion_of_ties
 from ..scene.scene import Scene
 from .energy_work import LedgerRoom, pressed_in, take_rows, take_step
@@ -48,9 +48,7 @@ class Loads(NamedTuple):
     held: Array
 
 
-def kept_forces(
-    case: Case | MasonryCase, scene: Scene, steps: Steps, t: Array, plastic: Mapping[str, Plastic]
-) -> Forces:
+def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Mapping[str, Plastic]) -> Forces:
     """The forces at samples: those of the steps in whose windows the samples lie, see `record.Windows`.
 
     Args:
@@ -59,14 +57,14 @@ def kept_forces(
         plastic: what ties have yielded.
     """
     chosen, sample = np.unique(np.searchsorted(steps.windows.t, t, side="right") - 1, return_inverse=True)
-    frames, contacts, d = JointFrames.of(case), scene.contacts, scene.freedom.translations
+    frames, contacts, d = case.frames, scene.contacts, scene.freedom.translations
     room = np.zeros((len(chosen), len(frames.names), scene.freedom.nv)), np.zeros((len(chosen), len(frames.blocks), d))
     sense = np.where(frames.above[contacts.joint] == contacts.body, 1.0, -1.0)
     loads = Loads(chosen, contacts.joint, sense, frames.fixed, frames.rest, *room)
     points = points_of(scene, steps.method)
     _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.of(scene), loads)
     pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
-    ties = motion_of_ties(case, steps.t, pose, plastic)
+    ties = motion_of_ties(Moving(case, steps.t, pose), plastic)
     of = chosen[sample]
     pulled = {name: ties[name].force[of] for name in scene.links.sprung.names}
     pulled |= dict(zip(scene.links.damped.names, -steps.record.damping[of].T, strict=True))

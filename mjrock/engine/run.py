@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,16 +9,15 @@ import mujoco
 import numpy as np
 
 from ..geometry.kinematics import gaps
-from ..problem.damping.contacts import Contacts
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
 from ..quantities import Array, Integers
-from ..result.ledger import ENERGY_GAIN, StepError, require_no_gain
+from ..result.ledger import StepError, require_no_gain
 from ..result.motion import SampledMotion
-from ..result.reading import Reading, masonry_reading, wall_reading
+from ..result.problem import Problem
+from ..result.reading import Reading
 from ..result.response import Response
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.course import Course
+from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from ..scene.structure import breaks
 from .energy_work import ground_work, ledger
@@ -33,30 +31,23 @@ SLIDING = 4.0
 """omega h up to which a fixed step follows masonry that slides, omega the highest contact frequency [-]."""
 
 
-def sound_timestep(frequency: float) -> float:
-    """`automatic_timestep` for the highest frequency of the closed contacts [rad/s]."""
-    return 2 * math.sqrt(ENERGY_GAIN) / frequency
-
-
 @dataclass(frozen=True, eq=False)
 class EngineRun:
     """A run of the engine that has been checked.
 
     Args:
-        case, contacts, scene, course: what was asked, what stands, and what happened to it. Masonry has no contacts.
+        problem, scene, course: what was asked, what stands, and what happened to it.
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
         broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
-        count: how many steps come before the wall cannot come back, or before the first block falls.
         scale: energy of the release, of the springs at rest, or at most where they start as drawn, and of what the
             ground put in or took [J].
         gain: energy that has appeared from nowhere after the first block fell, or None.
     """
 
-    case: Case | MasonryCase
-    contacts: Contacts | None
+    problem: Problem
     scene: Scene
     course: Course
     steps: Steps
@@ -64,14 +55,11 @@ class EngineRun:
     taken: Array
     broken: Integers
     reading: Reading
-    count: int
     scale: float
     gain: StepError | None
 
     @classmethod
-    def judged(
-        cls, case: Case | MasonryCase, contacts: Contacts | None, scene: Scene, course: Course, steps: Steps
-    ) -> EngineRun:
+    def judged(cls, problem: Problem, scene: Scene, course: Course, steps: Steps) -> EngineRun:
         """The run of these steps.
 
         Raises:
@@ -82,22 +70,17 @@ class EngineRun:
         energy = stored.sum(axis=1) - scene.rest_energies.sum()
         bodies = len(scene.bodies.names)
         motion = SampledMotion(steps.pose.reshape(-1, bodies, nq), steps.velocity.reshape(-1, bodies, nv), energy)
-        if isinstance(case, MasonryCase):
-            reading = masonry_reading(case, scene, steps.t, motion)
-            marks, count = marks_of_masonry(reading, steps)
-        else:
-            assert contacts is not None
-            reading = wall_reading(case, contacts, steps.t, motion, released=course.released)
-            marks, count = marks_of_wall(reading, case, steps)
+        reading = problem.read(scene, steps.t, motion, released=course.released)
+        marks, count = marks_of(reading, steps), reading.count
         work = ground_work(scene, course, steps)
-        drawn = isinstance(case, MasonryCase) and not case.settled  # its springs hold nothing at the start
+        drawn = not problem.case.settled  # its springs hold nothing at the start
         elastic = float(stored[:count, 2].max()) if drawn else float(scene.rest_energies[2])
         scale = max(float(energy[0]), 0.0) + float(np.abs(work[:count]).sum()) + elastic
         require_no_gain(steps.windows.t[marks], balance(scene, steps, work, marks), scale)
         gain = None
-        if isinstance(case, MasonryCase):
+        if reading.joints is not None:
             gain = gain_of_falling(scene, steps, work, count, scale + float(stored[:, 0].max()))
-        return cls(case, contacts, scene, course, steps, energy, taken, broken, reading, count, scale, gain)
+        return cls(problem, scene, course, steps, energy, taken, broken, reading, scale, gain)
 
     def response(
         self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: dict[str, Any]
@@ -107,7 +90,7 @@ class EngineRun:
         t, pose, velocity, end = steps.sampled(course.duration, spacing, stride)
         plastic = self.plastic()
         return Response(
-            case=self.case,
+            case=self.problem.case,
             solver="MuJoCo",
             t=t,
             motion=SampledMotion(pose, velocity, np.interp(t, steps.t, self.energy)),
@@ -119,7 +102,7 @@ class EngineRun:
             ledger=ledger(scene, course, steps).at(t) if want_ledger else None,
             stats=self.stats() | reading.stats | settings,
             end=end,
-            kept_forces=kept_forces(self.case, scene, steps, t, plastic) if want_forces else None,
+            kept_forces=kept_forces(self.problem.case, scene, steps, t, plastic) if want_forces else None,
         )
 
     def plastic(self) -> dict[str, Plastic]:
@@ -143,28 +126,24 @@ class EngineRun:
             "touches": steps.touches,
             "mujoco": mujoco.__version__,
         }
-        if isinstance(self.case, Case):
+        if self.reading.joints is None:
             deepest = -gaps(scene.places, steps.pose).min(axis=0)
             for joint, name in enumerate(contacts.joints):
                 stats[f"deepest_{name}"] = float(max(0.0, *deepest[contacts.joint == joint]))
         return stats
 
 
-def marks_of_wall(reading: Reading, case: Case, steps: Steps) -> tuple[Integers, int]:
-    """The windows in which the peaks of a wall lie and the last, in order, and the steps before it cannot come back.
+def marks_of(reading: Reading, steps: Steps) -> Integers:
+    """The windows between which no energy may appear, in order, until the wall cannot come back or a block falls.
 
-    What a fall releases dwarfs the energy it was released with.
+    They are those in which the peaks of a wall lie, and MARKS of masonry. What a fall of a wall releases dwarfs the
+    energy it was released with.
     """
-    times, count = reading.peak_times, case.returning(steps.pose[:, 2])
-    met = np.searchsorted(steps.windows.t, times[times <= steps.t[count - 1]])
-    return np.unique(np.concatenate([[0], np.minimum(met, count - 1), [count - 1]])), count
-
-
-def marks_of_masonry(reading: Reading, steps: Steps) -> tuple[Integers, int]:
-    """MARKS windows of masonry before its first block falls, in order, and how many steps come before that."""
-    assert reading.joints is not None
-    count = int(np.searchsorted(steps.t, next(iter(reading.joints.fallen.values()), np.inf)))
-    return np.linspace(0, count - 1, min(count, MARKS)).astype(int), count
+    last, times = reading.count - 1, reading.peak_times
+    if times is None:
+        return np.linspace(0, last, min(reading.count, MARKS)).astype(int)
+    met = np.searchsorted(steps.windows.t, times[times <= steps.t[last]])
+    return np.unique(np.concatenate([[0], np.minimum(met, last), [last]]))
 
 
 def gain_of_falling(scene: Scene, steps: Steps, work: Array, count: int, scale: float) -> StepError | None:

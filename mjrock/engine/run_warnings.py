@@ -7,16 +7,15 @@ import warnings
 import numpy as np
 
 from ..method import METHOD
-from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.masonry import Masonry
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..result.ledger import warn_if_open
 from ..result.response import Response
+from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from .energy_work import contact_work
 from .points import points_of
 from .record import Steps
-from .run import EngineRun, sound_timestep
+from .run import EngineRun
 
 SCATTER = 0.1
 """Standard deviation of |e| at a fixed step against a side stop, over omega h, relative [-]: a touch lies anywhere in a
@@ -24,11 +23,6 @@ step. It is measured on 24 walls of Table 1 from omega h = 0.06 to 0.8 (`scripts
 side stop |e| scatters by less than 0.002 omega h."""
 WORTH_SAYING = 0.02
 """Scatter of |e| that is warned of [-]."""
-OPEN = 0.05
-"""Energy that the ledger may have too much before that is warned of, over the energy of the release and of the
-ground motion [-]."""
-UNPAID = 0.01
-"""Energy of masonry without an account that is warned of, over the largest part of the ledger [-]."""
 ENDLESS = "faces have no end in MuJoCo, where a block that has left one may meet it again; solve_explicit follows it"
 LIFTED = 0.02
 """Share of the normal force that the rows of sliding contacts may add to it before that is warned of [-]."""
@@ -36,12 +30,12 @@ SLID = 0.01
 """Sliding of a base that should hold that is warned of, over b [-]."""
 
 
-def require_still(case: MasonryCase) -> None:
+def require_still(case: AnyCase) -> None:
     """Raise a ValueError where joints have bonds, supports move, or effects are for explicit steps only.
 
     Contacts of MuJoCo push only, and its fixed blocks belong to the world.
     """
-    case.masonry.require_dry("MuJoCo")
+    case.require_dry("MuJoCo")
     for i, effect in enumerate(case.effects):
         if effect.only:
             name = f"effects[{i}], {type(effect).__name__}"
@@ -51,12 +45,15 @@ def require_still(case: MasonryCase) -> None:
         raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")
 
 
-def warn_if_sheared(masonry: Masonry) -> None:
+def warn_if_sheared(scene: Scene) -> None:
     """Warn where joints have a shear stiffness, which MuJoCo's friction does not have."""
-    if np.isfinite(masonry.joint_shear).any():
+    contacts = scene.contacts
+    sprung = np.isfinite(contacts.k_s)
+    if sprung.any():
+        least = (np.asarray(contacts.k_s) / contacts.area)[sprung].min()
         warnings.warn(
-            f"k_s = {masonry.joint_shear.min():.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick "
-            "rigidly up to their friction",
+            f"k_s = {least:.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick rigidly up to their "
+            "friction",
             stacklevel=3,
         )
 
@@ -94,30 +91,27 @@ def warn_if_lifted(scene: Scene, steps: Steps) -> None:
         )
 
 
-def warn_if_slid(run: EngineRun, half_base: float) -> None:
+def warn_if_slid(run: EngineRun) -> None:
     """Warn of a base that has slid although it should hold, while the wall can still come back."""
     slip = run.reading.slip
-    slid = float(np.abs(slip[: run.count] - slip[0]).max())
-    if slid > SLID * half_base:
+    slid = float(np.abs(slip[: run.reading.count] - slip[0]).max())
+    holds = np.asarray(run.scene.contacts.holds)
+    if holds.any() and slid > SLID:
+        half_base = 0.5 * float(np.ptp(run.scene.contacts.at[holds, 0]))
         warnings.warn(
-            f"the base slid by up to {slid:.3g} m, {slid / half_base:.1%} of b, although it should hold: no "
+            f"the base slid by up to {slid * half_base:.3g} m, {slid:.1%} of b, although it should hold: no "
             "edge was loaded enough to hold it. Give the base the friction that it has",
             stacklevel=3,
         )
 
 
-def warn_of_gain(response: Response, run: EngineRun, case: Case, advice: str) -> None:
-    """Warn of a ledger of a wall with energy that nothing has put in while it can still come back, with advice."""
-    if response.ledger is not None:
-        unpaid = float(response.ledger.residual[case.returns_from(response.theta)].max(initial=0.0))
-        warn_if_open(unpaid, run.scale, OPEN, "the energy there was", lambda share: advice)
-
-
-def warn_of_masonry(response: Response, run: EngineRun, advice: str) -> None:
-    """Warn of energy that has appeared from nowhere after blocks of masonry fell, and of a ledger of masonry that does
-    not close, with advice."""
+def warn_of_gain(response: Response, run: EngineRun, advice: str) -> None:
+    """Warn of energy that has appeared from nowhere after blocks of masonry fell, and of a ledger that does not close
+    as long as a wall can still come back, with advice."""
     if run.gain is not None:
         warnings.warn(f"{run.gain} by t = {run.gain.t:.4g} s, after blocks fell: {ENDLESS}", stacklevel=3)
     elif response.ledger is not None:
-        unpaid, said = float(np.abs(response.ledger.residual).max()), ENDLESS if response.fallen else advice
-        warn_if_open(unpaid, response.ledger.largest, UNPAID, "its largest part", lambda share: said)
+        fell = response.joints is not None and bool(response.joints.fallen)
+        unpaid = run.problem.unpaid(response.ledger, response.motion, run.scale)
+        said = ENDLESS if fell else advice
+        warn_if_open(unpaid.energy, unpaid.whole, unpaid.share, unpaid.said, lambda share: said)

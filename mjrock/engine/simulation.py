@@ -8,27 +8,26 @@ from typing import Any
 from ..method import METHOD, Method
 from ..patience import expect, first_answer
 from ..problem.damping.contacts import Contacts
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.block import Block
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
 from ..result.ledger import StepError
+from ..result.problem import Problem, problem_of
 from ..result.response import End, Response, State
 from ..result.start import require_unbreakable, required_start
 from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
-from ..scene.of_case import course_of, require_case, scene_of
+from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
-from .run import EngineRun, explained, sound_timestep
+from .run import EngineRun, explained
 from .run_warnings import (
     require_still,
     warn_if_coarse,
@@ -36,12 +35,9 @@ from .run_warnings import (
     warn_if_sheared,
     warn_if_slid,
     warn_of_gain,
-    warn_of_masonry,
 )
 from .stepping import fitted_steps, fixed_steps
 
-Asked = tuple[Case | MasonryCase, Contacts | None]
-"""A case and its contacts; those of masonry are its own."""
 ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
 """Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground, whose rocking
 multiplies what an impact errs by (`scripts/measure/records_accuracy.py`)."""
@@ -119,23 +115,8 @@ class Options:
         return f"lower accuracy = {self.accuracy:g}" if self.timestep is None else "take a shorter timestep"
 
 
-def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
-    """The step [s] at which a touch misplaces no more than ENERGY_GAIN of the energy that it meets.
-
-    A point that touches inside a step of length h is met up to h/2 too early or too late, and its spring then stores up
-    to k (v h/2)^2 / 2 that the motion has not paid. Against the kinetic energy m v^2 / 2 behind the point that is
-    (omega h / 2)^2, with omega the frequency of the contact. So omega h = 2 sqrt(ENERGY_GAIN), omega the highest
-    frequency of the wall with every contact closed: about a hundred steps in the shortest contact period.
-    """
-    require_kind("wall", wall, Block)
-    require_kind("contacts", contacts, Contacts)
-    require_flag("side_stop", side_stop)
-    contacts.require_fit(wall, side_stop=side_stop)
-    return sound_timestep(contacts.highest_frequency(wall, side_stop=side_stop))
-
-
 def simulate(
-    case: Case | MasonryCase,
+    case: AnyCase,
     contacts: Contacts | None = None,
     timestep: float | None = None,
     *,
@@ -192,57 +173,50 @@ def simulate(
         'at rest'
     """
     given, watch = locals().copy(), Stopwatch()
-    require_case(case, contacts)
+    problem = problem_of(case, contacts)
     accuracy = default_accuracy(case) if accuracy is None else accuracy
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
-    if isinstance(case, MasonryCase):
-        require_still(case)
-        warn_if_sheared(case.masonry)
-    else:
-        if contacts is not None and contacts.base.friction is None:
-            warn_of_low_stop(case)
-        if start is None:
-            warn_if_still(case, forces=forces)
+    require_still(case)
+    if contacts is not None and contacts.base.friction is None:
+        warn_of_low_stop(case)
+    if start is None:
+        warn_if_still(case, forces=forces)
     if options.timestep is not None:
         require_unbreakable(case)
     if forces:
         required_room(case, case.duration / options.apart)
     state = None if start is None else required_start(start, case)
     with first_answer(simulate, **given):
-        scene = scene_of(case, contacts, method)
-        course = course_of(case, scene)
+        scene = problem.scene(method)
+        warn_if_sheared(scene)
+        course = problem.course(scene)
         if state is not None:
             course = course.continued(*state)
         expect(interpreted_seconds(scene, course.duration, options.timestep))
         if options.timestep is None:
-            if isinstance(case, MasonryCase):
-                warn_if_slow(scene, case.masonry)
-            run, settings = fitted((case, contacts), scene, course, options)
+            warn_if_slow(scene)
+            run, settings = fitted(problem, scene, course, options)
         else:
             warn_if_coarse(scene, options.timestep)
             warn_if_tiny(options.timestep, sound_timestep(scene.highest_frequency))
-            run, settings = fixed((case, contacts), scene, course, options, options.timestep)
+            run, settings = fixed(problem, scene, course, options, options.timestep)
         response = run.response(options.spacing, options.stride, options.ledger, options.forces, settings)
     if not (options.timestep is None or options.slides):
         warn_if_lifted(scene, run.steps)
-    if isinstance(case, Case) and contacts is not None:
-        if contacts.base.friction is None:
-            warn_if_slid(run, case.block.half_base)
-        warn_of_gain(response, run, case, options.remedy)
-    else:
-        warn_of_masonry(response, run, options.remedy)
+    warn_if_slid(run)
+    warn_of_gain(response, run, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
     return response
 
 
-def default_accuracy(case: Case | MasonryCase) -> float:
+def default_accuracy(case: AnyCase) -> float:
     """What fitted steps aim at where nothing else is asked for [-]."""
-    return ACCURACY_SHAKEN if isinstance(case, Case) and case.shaken else ACCURACY
+    return ACCURACY_SHAKEN if case.rocks_on_moving_ground else ACCURACY
 
 
-def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, dict[str, Any]]:
+def fitted(problem: Problem, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, dict[str, Any]]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
     Raises:
@@ -257,7 +231,7 @@ def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tupl
                 watch = Stopwatch()
                 steps = fitted_steps(engine, scene, course, used, coulomb=options.slides, method=method)
             took = watch.stepping()
-            run = EngineRun.judged(*asked, scene, course, steps)
+            run = EngineRun.judged(problem, scene, course, steps)
             return run, {"timestep": h, "accuracy": used, "newmark_beta": None, **took}
         except StepError as error:
             if used < 0.02 * options.accuracy:
@@ -265,7 +239,9 @@ def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tupl
             used /= 10
 
 
-def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float) -> tuple[EngineRun, dict[str, Any]]:
+def fixed(
+    problem: Problem, scene: Scene, course: Course, options: Options, h: float
+) -> tuple[EngineRun, dict[str, Any]]:
     """A run at steps of one length h [s], and what it took.
 
     Raises:
@@ -279,7 +255,7 @@ def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float
             watch = Stopwatch()
             steps = fixed_steps(engine, scene, course, h, beta, coulomb=options.slides, method=method)
         took = watch.stepping()
-        run = EngineRun.judged(*asked, scene, course, steps)
+        run = EngineRun.judged(problem, scene, course, steps)
     except StepError as error:
         raise explained(error, scene, h, None) from None
     return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, **took}

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from ..problem.damping.contacts import Contacts
-from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_kind, require_within
-from ..scene.of_case import course_of, scene_of
+from ..result.problem import problem_of
 from .model import released_mjcf
 
 
-def mjcf_of(case: Case | MasonryCase, contacts: Contacts | None, timestep: float, *, newmark_beta: float = 0.25) -> str:
+def mjcf_of(case: AnyCase, contacts: Contacts | None, timestep: float, *, newmark_beta: float = 0.25) -> str:
     """The model of a case as MJCF text; the same arguments give the same bytes.
 
     Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, contacts, timestep)` where the
@@ -33,10 +33,10 @@ def mjcf_of(case: Case | MasonryCase, contacts: Contacts | None, timestep: float
     """
     timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
     newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
-    if isinstance(case, MasonryCase):
-        case.masonry.require_dry("MuJoCo")
-    scene = scene_of(case, contacts)
-    return released_mjcf(scene, course_of(case, scene), timestep, newmark_beta)
+    problem = problem_of(case, contacts)
+    case.require_dry("MuJoCo")
+    scene = problem.scene()
+    return released_mjcf(scene, problem.course(scene), timestep, newmark_beta)
 
 
 def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: float = 0.25) -> str:

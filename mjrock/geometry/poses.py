@@ -39,6 +39,16 @@ def rotations(pose: Array) -> Array:
     return np.eye(3) + changes.reshape(*pose.shape[:-1], 3, 3)
 
 
+def rotated(vectors: Array, pose: Array) -> Array:
+    """Vectors of bodies at rest, shape (..., m, d), as they are turned at poses of shape (..., 3) or (..., 7)."""
+    return np.asarray(np.matmul(vectors, np.swapaxes(rotations(pose), -1, -2)))
+
+
+def displaced(about: Array, pose: Array) -> Array:
+    """Displacement of points of bodies [m], shape (..., m, d), which are given about the centroids at rest [m]."""
+    return np.asarray(pose[..., None, : about.shape[-1]] + (rotated(about, pose) - about))
+
+
 def at_rest(bodies: int, freedom: Freedom) -> Array:
     """The pose of bodies that have not moved, shape (bodies nq,)."""
     pose = np.zeros((bodies, freedom.nq))

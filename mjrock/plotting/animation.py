@@ -20,15 +20,15 @@ from PIL import Image
 from tqdm import tqdm
 
 from ..files import replacing
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
+from ..result.bodies import Moving
 from ..result.response import Response
 from .bodies import Bodies
-from .forces import Moving, forces_on, require_shown
-from .histories import acceleration, rotation, ties
-from .perspective import fill, solids, ties_in_view
-from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
+from .filmed import filmed
+from .forces import forces_on, require_shown
+from .perspective import fill, solids
+from .section import Update, blocks, frame_view, together
 from .solids import Solids
 from .style import Drawing, titled
 
@@ -164,13 +164,7 @@ def animate(
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     else:
         bodies = Bodies.of(response, magnify, limits)
-    histories: list[Drawing] = []
-    if isinstance(case := response.case, Case):
-        if case.shaken:
-            histories.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
-        histories.append(lambda ax: rotation(ax, [response]))
-        if response.ties:
-            histories.append(lambda ax: ties(ax, [response]))
+    case, histories = response.case, filmed(response.case).beside(response)
     pressed = None
     if forces is not None:
         require_shown("forces", forces, response)
@@ -206,7 +200,7 @@ def _film(
     bodies: Bodies | Solids,
     path: str | Path,
     histories: Sequence[Drawing],
-    case: Case | MasonryCase | None,
+    case: AnyCase | None,
     *,
     speed: float,
     fps: float,
@@ -265,7 +259,7 @@ def frame_times(t: Array, step: float) -> Array:
 def scene(
     bodies: Bodies | Solids,
     histories: Sequence[Drawing],
-    case: Case | MasonryCase | None,
+    case: AnyCase | None,
     *,
     speed: float = 1.0,
     title: str = "",
@@ -286,7 +280,8 @@ def scene(
     ax: Axes = (figure if halves is None else halves[0]).subplots(subplot_kw=depth)
     updates = _standing(ax, bodies, case)
     if pressed is not None:
-        updates.append(forces_on(ax, pressed[0], Moving(bodies.t, bodies.poses, bodies.magnify), pressed[1]))
+        moving = Moving(pressed[0].case, bodies.t, bodies.poses, bodies.magnify)
+        updates.append(forces_on(ax, pressed[0], moving, pressed[1]))
     scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
     clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)
@@ -314,19 +309,14 @@ def scene(
     return figure, update
 
 
-def _standing(ax: Axes, bodies: Bodies | Solids, case: Case | MasonryCase | None) -> list[Update]:
+def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None) -> list[Update]:
     """Draw bodies and what they meet."""
-    if isinstance(bodies, Solids):
-        assert isinstance(case, MasonryCase)
-        return [solids(ax, bodies), ties_in_view(ax, case, bodies)]
-    updates = [blocks(ax, bodies)]
-    if isinstance(case, Case):
-        updates.append(surroundings(ax, case, bodies))
-    else:
+    updates = [blocks(ax, bodies) if isinstance(bodies, Bodies) else solids(ax, bodies)]
+    if case is not None:
+        updates.append(filmed(case).around(ax, bodies))
+    elif isinstance(bodies, Bodies):
         frame_view(ax, bodies)
-        if case is not None:
-            updates.append(ties_of_masonry(ax, case, bodies))
-    if bodies.limits is not None:
+    if isinstance(bodies, Bodies) and bodies.limits is not None:
         ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
     return updates
 

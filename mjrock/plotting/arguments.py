@@ -140,7 +140,7 @@ def pair(first: Check, second: Check) -> Check:
 def of_wall(name: str, value: Any) -> None:
     """A response of a wall."""
     require_kind(name, value, Response)
-    if not isinstance(value.case, Case):
+    if value.rocking is None:
         raise TypeError(f"{name} is of masonry, and the picture is of one wall; for masonry take plotting.displacement")
 
 

@@ -5,25 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import laden
+from ..geometry.poses import displaced
+from ..problem.masonry.case import AnyCase
 from ..problem.masonry.masonry import Masonry
-from ..problem.wall.case import Case
 from ..quantities import Array, keep, require_array, require_kind, require_reals, require_row, require_within, shown
+from ..result.bodies import Moving
 from ..result.response import Response
 
 
 def require_masonry(what: str, response: Response) -> Masonry:
     """The masonry of a response; for one of a wall a ValueError says what takes masonry alone."""
-    masonry = getattr(response.case, "masonry", None)
-    if not isinstance(masonry, Masonry):
+    if response.joints is None:
         raise ValueError(f"{what} takes masonry or a response of it, and this response is one of a wall")
-    return masonry
+    return response.of_masonry.masonry
 
 
 Ends = tuple[Array, Array]
@@ -131,25 +129,17 @@ class Bodies:
     def of(cls, response: Response, magnify: float = 1.0, limits: ArrayLike | None = None) -> Bodies:
         """The bodies of a response: the wall, or the blocks of masonry that are not fixed."""
         require_kind("response", response, Response)
-        case: Any = response.case
-        if isinstance(case, Case):
-            rests = np.array([[case.wall.centroid_offset, case.wall.centroid_height]])
-            return cls(response.t, (case.wall.outline,), rests, response.pose, magnify, limits=limits)  # type: ignore[arg-type]
-        if response.in_space:
-            case.masonry.require_plane("Bodies")
-        blocks, free = case.masonry.blocks, list(case.masonry.free)
-        rests = laden(case.masonry, case.effects)[1][free]
-        fixed = [i for i, block in enumerate(blocks) if block.fixed]
-        return cls(
-            response.t,
-            tuple(blocks[i].corners - rest for i, rest in zip(free, rests, strict=True)),
-            rests,
-            response.pose,
-            magnify,
-            tuple(blocks[i].corners for i in fixed),
-            {fixed.index(case.masonry.names.index(s.block)): s.at(response.t) for s in case.supports},
-            limits,  # type: ignore[arg-type]
-        )
+        case, t = response.case, response.t
+        if case.in_space:
+            response.of_masonry.masonry.require_plane("Bodies")
+        moved = {i: case.support_of(block) for i, block in enumerate(case.fixed)}
+        shifts = {i: support.at(t) for i, support in moved.items() if support is not None}
+        corners = tuple(case.fixed.values())
+        return cls(t, case.outlines, case.rests, response.pose, magnify, corners, shifts, limits)  # type: ignore[arg-type]
+
+    def of_case(self, case: AnyCase) -> Moving:
+        """Where the bodies of the case are drawn."""
+        return Moving(case, self.t, self.poses, self.magnify)
 
     def at(self, times: Array) -> Bodies:
         """The same bodies at other times, their poses interpolated linearly."""
@@ -163,15 +153,6 @@ class Bodies:
         `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
         return self._drawn(self.poses[frame, body], self.rests[body], points)
-
-    def anchored(self, frame: int, case: MasonryCase, block: int, point: Array) -> Array:
-        """Where a point of a block of masonry, fixed or not, given at rest [m], shape (2,), is drawn at a frame [m]."""
-        free, blocks = case.masonry.free, case.masonry.blocks
-        if block in free:
-            body = free.index(block)
-            return np.asarray(self.placed(frame, body, (point - self.rests[body])[None])[0])
-        shift = self.shifts.get([i for i, one in enumerate(blocks) if one.fixed].index(block))
-        return point if shift is None else np.asarray(point + self.magnify * shift[frame])
 
     def support(self, frame: int, body: int) -> Array:
         """Where the corners of a fixed body are drawn at a frame [m], shape (corners, 2)."""
@@ -209,8 +190,4 @@ class Bodies:
 
     def _drawn(self, pose: Array, rest: Array, points: Array) -> Array:
         """Points about centroids [m], shape (..., n, 2), drawn at poses of shape (..., 3)."""
-        x, z = points[..., 0], points[..., 1]
-        dx, dz, theta = np.moveaxis(pose[..., None], -2, 0)
-        sine, cosine = np.sin(theta), np.cos(theta)
-        turned = np.stack([x * cosine + z * sine + dx, z * cosine - x * sine + dz], axis=-1)
-        return np.asarray(rest[..., None, :] + points + self.magnify * (turned - points))
+        return np.asarray(rest[..., None, :] + points + self.magnify * displaced(points, pose))

@@ -10,15 +10,14 @@ import numpy as np
 
 from ..files import write_text
 from ..geometry.poses import rotations
-from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.joints import Joint
 from ..problem.masonry.joints_in_space import SpaceJoint
+from ..problem.wall.standing import in_space
 from ..quantities import Array, Integers, require_path
-from ..result.bodies import bodies_of, frames_at, in_space
+from ..result.bodies import Moving, bodies_of, frames_at
 from ..result.response import Response
-from ..result.ties import held_by
 from .arguments import kind, picture
-from .forces import CRACKED, NOTHING, Acting, Moving, edges_of
+from .forces import CRACKED, NOTHING, Acting, edges_of
 from .perspective import GROUND
 from .section import FORCE
 from .solids import TINTS
@@ -107,6 +106,7 @@ class Page:
     def __init__(self, k3d: Any, response: Response, samples: Integers) -> None:
         self.k3d, self.response, self.case, self.samples = k3d, response, response.case, samples
         self.t, self.pose = response.t[samples], response.pose[samples]
+        self.moving = Moving(self.case, self.t, self.pose)
         self.all = bodies_of(self.case, self.t, self.pose, response.velocity[samples])
         corners = np.concatenate([body.corners + body.rest for body in self.all if not body.fixed])
         self.middle, self.extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
@@ -137,25 +137,26 @@ class Page:
     def ties(self) -> None:
         """Add a line for each link, until it breaks."""
         for name, link in self.case.links.items():
-            held = held_by(self.case, link)[1]
-            blocks = (link.block, link.anchor_block) if isinstance(self.case, MasonryCase) else (0, None)
-            ends = [self._placed(b, in_space(p)) for b, p in zip(blocks, (held, link.anchor_of(held)), strict=True)]
-            lines, ties = np.stack(ends, axis=2), self.response.ties
+            held = self.case.held_by(link)
+            ends = ((link.block, held), (link.anchor_block, link.anchor_of(held)))
+            placed = [self.moving.placed(block, point[None]) for block, point in ends]
+            lines, ties = in_space(np.stack(placed, axis=2)), self.response.ties
             lines[self.t >= (ties[name].broken if name in ties else np.inf)] = lines[0, 0, 0]
             self._lines(name, "ties", lines, TIE)
 
     def forces(self) -> None:
         """Add a bar for the force of each joint, in the plane on the front, and the outlines of cracked joints."""
-        acting = Acting(self.response, Moving(self.t, self.pose, 1.0))
+        acting = Acting(self.response, self.moving)
         bars = in_space(np.stack([acting.every_bar(frame) for frame in range(len(self.t))]))
         if not self.response.in_space:
             bars[..., 1] = self.front
         self._lines("forces", "forces", bars, FORCE)
         damage = np.nan_to_num(self.response.forces.damage[self.samples])
         for i in np.flatnonzero((damage > NOTHING).any(axis=0)):
-            joint = self.case.masonry.joints[i]
+            joint = self.response.of_masonry.masonry.joints[i]
             ends = edges_of(outline_of(joint))
-            edges = self._placed(joint.below, ends.reshape(-1, 3)).reshape(-1, *ends.shape)
+            below = self.all[joint.below]
+            edges = below.placed(ends.reshape(-1, 3) - below.rest).reshape(-1, *ends.shape)
             edges[damage[:, i] <= NOTHING] = edges[0, 0, 0]
             self._lines(joint.name, "cracks", edges, CRACKED)
 
@@ -172,13 +173,6 @@ class Page:
         pairs = np.arange(vertices.shape[1], dtype=np.uint32).reshape(-1, 2)
         options = {"color": _number(colour), "width": THICK * self.extent, "name": name, "group": group}
         self.plot += self.k3d.lines(self._series(vertices), pairs, indices_type="segment", shader="mesh", **options)
-
-    def _placed(self, block: int | None, points: Array) -> Array:
-        """Where points of a block, or of none, are at the samples [m], shape (n, m, 3)."""
-        about = np.atleast_2d(points)
-        if block is None:
-            return np.tile(about, (len(self.t), 1, 1))
-        return self.all[block].placed(about - self.all[block].rest)
 
     def _series(self, values: Any) -> dict[str, Any]:
         """An array for each time, as k3d takes it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +12,7 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-un
 
 from ..problem.masonry.joints import Joint
 from ..quantities import Array, Integers, shown
+from ..result.bodies import Moving
 from ..result.response import Response
 from .section import FORCE, Update
 
@@ -68,14 +69,6 @@ def require_shown(name: str, value: object, response: Response) -> None:
     _ = response.forces
 
 
-class Moving(NamedTuple):
-    """Bodies of a picture: times of its frames [s], poses as of a `Response`, and the factor on displacements [-]."""
-
-    t: Array
-    poses: Array
-    magnify: float
-
-
 class Acting:
     """The forces of the joints of a response where bodies are drawn.
 
@@ -85,7 +78,7 @@ class Acting:
     """
 
     def __init__(self, response: Response, bodies: Moving) -> None:
-        self.response, self.forces, self.case, self.bodies = response, response.forces, response.case, bodies
+        self.response, self.forces, self.bodies = response, response.forces, bodies
         self.frames = self.forces.frames
         self.sample = np.maximum(np.searchsorted(response.t, bodies.t * (1 + 1e-12), side="right") - 1, 0)
         normal, shear = self.forces.normal[self.sample], self.forces.shear[self.sample]
@@ -107,9 +100,8 @@ class Acting:
 
     def joints(self, frame: int) -> tuple[Array, Array]:
         """Middles [m] and axes of the joints in a frame, shapes (j, d) and (j, d, d)."""
-        bodies, frames = self.bodies, self.frames
-        middle, axes = frames.placed(self.case, bodies.t[frame : frame + 1], bodies.poses[frame : frame + 1])
-        return frames.middle + bodies.magnify * (middle[0] - frames.middle), axes[0]
+        middle, axes = self.bodies.at(frame).joints(self.frames)
+        return middle[0], axes[0]
 
     def placed(self, frame: int) -> tuple[Array, Array]:
         """Where the force of each joint acts in a frame [m], and the force over the scale, shape (j, d) each."""
@@ -136,7 +128,7 @@ class Acting:
         node = np.stack(sums, axis=-1) / np.where(weight > 0, weight, 1.0)[:, None]
         alone = np.bincount(body, minlength=count) == 1
         d = place.shape[1]
-        node[alone] = (frames.rest + self.bodies.magnify * self.bodies.poses[frame, :, :d])[alone]
+        node[alone] = (frames.rest + self.bodies.magnify * self.bodies.pose[frame, :, :d])[alone]
         return np.stack([place[joint], node[body]], axis=1), WIDEST * np.minimum(share[joint], LARGE)
 
     def bars(self, frame: int) -> tuple[Array, Array | float]:
@@ -157,7 +149,7 @@ class Acting:
         """Edges of the joints: the joint of each, and its ends from the middle along the axes [m], shape (e, 2, d)."""
         outlines = [
             np.array([joint.start, joint.end])[None] if isinstance(joint, Joint) else edges_of(joint.outline)
-            for joint in self.case.masonry.joints
+            for joint in self.response.of_masonry.masonry.joints
         ]
         of = np.repeat(np.arange(len(outlines)), [len(edges) for edges in outlines])
         off = np.concatenate(outlines) - self.frames.middle[of, None]

@@ -34,12 +34,12 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     fallen = [overturned_at(response) for response in responses]
     reached, styles = [0.0], styles_of(responses, labels)
     for response, end, style in zip(responses, fallen, styles, strict=True):
-        share = response.theta / response.case.wall.alpha
+        share = response.theta / response.of_wall[0].wall.alpha
         ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     far = 4 * max(reached)  # a line there would flatten the motion
-    for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
+    for limit in {case.overturning_rotation / case.wall.alpha for case, _ in (each.of_wall for each in responses)}:
         if abs(limit - 1) > 0.01 and limit < far:
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
             ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="top")
@@ -53,7 +53,7 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     ]
     if said:
         top = max(1.2, 1.05 * max(reached))
-        inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)
+        inwards = min(float(response.theta.min() / response.of_wall[0].wall.alpha) for response in responses)
         ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
         note = ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
@@ -65,7 +65,7 @@ def overturned_at(response: Response) -> float | None:
     """When the wall went beyond the rotation from which it comes back [s], or None if it did not overturn."""
     if response.outcome is not Outcome.OVERTURNED:
         return None
-    returns = np.flatnonzero(response.case.returns_from(response.theta))
+    returns = np.flatnonzero(response.of_wall[0].returns_from(response.theta))
     return float(response.t[min(returns[-1] + 1, len(response.t) - 1) if returns.size else 0])
 
 
@@ -99,12 +99,11 @@ def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
 
     The base is the ground or a floor.
     """
-    moved = [(getattr(case, name, None), *look) for name, look in GROUNDS.items()]
-    for motion, label, color in moved:
-        if motion is not None:
+    for name, (label, color) in GROUNDS.items():
+        if (motion := case.grounds.get(name)) is not None:
             t = np.append(motion.dt * np.arange(len(motion.accel)), [motion.duration, max(until, motion.duration)])
             ax.plot(t, np.append(motion.accel, [0.0, 0.0]), color=color, linewidth=0.8, label=label)
-    if sum(motion is not None for motion, *_ in moved) > 1 or case.vertical is not None:
+    if len(case.grounds) > 1 or case.vertical is not None:
         ax.legend(frameon=False, fontsize=7, loc="upper right", ncols=2)
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set(xlabel=TIME, ylabel="base [m/s²]")
@@ -184,7 +183,7 @@ def history(
     if not given:
         raise ValueError("responses is empty; at least one response is needed")
     for i, response in enumerate(given):
-        if isinstance(response.case, Case) != isinstance(given[0].case, Case):
+        if type(response.case) is not type(given[0].case):
             raise ValueError(f"responses[{i}] and responses[0] are one of a wall and one of masonry; draw each alone")
         if not same_ground(given[0], response) and not reversed_ground(given[0], response):
             raise ValueError(
@@ -194,13 +193,13 @@ def history(
     names = required_labels(given, labels)
     case, until = given[0].case, max(float(response.t[-1]) for response in given)
     tied = any(response.ties for response in given)
-    shaken = any(getattr(case, name, None) is not None for name in GROUNDS)
+    shaken = bool(case.grounds)
     heights = [1.0] * shaken + [2.0] + [1.2] * tied
     figure = Figure(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
     if shaken:
         acceleration(axes[0], case, until)
-    (rotation if isinstance(case, Case) else displacement)(axes[int(shaken)], given, names)
+    (rotation if given[0].joints is None else displacement)(axes[int(shaken)], given, names)
     if tied:
         ties(axes[-1], given, names)
     for ax in axes[:-1]:
@@ -214,7 +213,7 @@ def history(
 
 def same_ground(left: Response, right: Response) -> bool:
     """Whether two responses are those to the same ground motions."""
-    return all(getattr(left.case, name, None) == getattr(right.case, name, None) for name in GROUNDS)
+    return left.case.grounds == right.case.grounds
 
 
 def reversed_ground(left: Response, right: Response) -> bool:
@@ -222,7 +221,7 @@ def reversed_ground(left: Response, right: Response) -> bool:
     one, other = (response.case for response in (left, right))
     if one.motion is None or other.motion != one.motion.reversed():
         return False
-    return all(getattr(one, name, None) == getattr(other, name, None) for name in ("transverse", "vertical"))
+    return one.transverse == other.transverse and one.vertical == other.vertical
 
 
 def required_labels(responses: Sequence[Response], labels: object) -> list[str] | None:

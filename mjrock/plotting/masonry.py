@@ -2,32 +2,30 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon as Patch
 from numpy.typing import ArrayLike
 
+from ..geometry.frames import PLANE, SPACE
+from ..geometry.poses import at_rest
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.support import Support
 from ..quantities import Array, require_array, require_flag, require_kind, require_within
+from ..result.bodies import Moving
 from ..result.response import Response
 from ..result.samples import sample_at
 from .arguments import anything, picture
 from .bodies import ends_of, require_masonry, required_limits, window
-from .forces import Moving, forces_on, require_shown
+from .forces import forces_on, require_shown
 from .perspective import fill, solids
 from .solids import Solids
 
 BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
-
-
-def moved(corners: Array, centroid: Array, pose: Array) -> Array:
-    """Corners of a block that has moved by a pose x, z, theta [m, m, rad], shape (n, 2)."""
-    c, s = math.cos(pose[2]), math.sin(pose[2])
-    return np.asarray((corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2])
 
 
 @picture(limits=anything, joints=require_flag)
@@ -68,40 +66,36 @@ def blocks(
         ValueError: for cracks of dry joints, a pose of another shape, a value outside its range, or axes of two
             dimensions for blocks in space.
     """
-    time: Array = np.zeros(1)
-    supports: tuple[Support, ...] = ()
-    acting: tuple[Response, Moving, str] | None = None
-    if isinstance(masonry, Response) and pose is None:
-        run, masonry = masonry, require_masonry("blocks", masonry)
-        sample = sample_at(run.t, at)
-        pose, time, supports = run.pose[sample], run.t[sample : sample + 1], run.case.supports
-        there = run.pose[sample : sample + 1]
+    run, time = masonry if isinstance(masonry, Response) else None, np.zeros(1)
+    if run is None or pose is not None:
+        if at is not None or forces is not None:
+            raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
+        given: Any = masonry if run is None else require_masonry("blocks", run)
+        require_kind("masonry", given, Masonry)
+        case = MasonryCase(given, 1.0) if run is None else replace(run.of_masonry, supports=())
+    else:
+        _ = require_masonry("blocks", run)
+        sample, case = sample_at(run.t, at), run.of_masonry
+        pose, time = run.pose[sample], run.t[sample : sample + 1]
         if forces is not None:
             require_shown("forces", forces, run)
-            acting = run, Moving(time, there, require_within("magnified", magnified, 0.0, 1e6)), forces
-    elif at is not None or forces is not None:
-        raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
-    elif isinstance(masonry, Response):
-        masonry = require_masonry("blocks", masonry)
-    require_kind("masonry", masonry, Masonry)
-    magnified = require_within("magnified", magnified, 0.0, 1e6)
-    rest = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0] if masonry.in_space else [0.0, 0.0, 0.0]
-    bodies = len(masonry.free), len(rest)
-    placed = np.tile(rest, (bodies[0], 1)) if pose is None else require_array("pose", pose, bodies)
-    if masonry.in_space:
-        bodies_in_space = Solids(masonry, time, placed[None], magnified, camera, supports=supports, limits=limits)  # type: ignore[arg-type]
-        solids(ax, bodies_in_space, animated=False)(0)
+    masonry, magnified = case.masonry, require_within("magnified", magnified, 0.0, 1e6)
+    freedom = SPACE if case.in_space else PLANE
+    still = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
+    placed = (still if pose is None else require_array("pose", pose, still.shape))[None]
+    acting = None if run is None or forces is None else (run, Moving(case, time, placed, magnified), forces)
+    if case.in_space:
+        solids(ax, Solids(case, time, placed, magnified, camera, limits), animated=False)(0)  # type: ignore[arg-type]
         if acting is not None:
             forces_on(ax, *acting, animated=False)(0)
         fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes
         return ax
-    shifts = {support.block: magnified * support.at(time)[0] for support in supports}
-    where = dict(zip(masonry.free, magnified * placed, strict=True))
+    moving = Moving(case, time, magnified * placed)
     width = min(1.4, 14 / np.sqrt(len(masonry.blocks)))  # lines of many joints would hide the blocks
     drawn: list[list[Array]] = [[], []]
     for i, block in enumerate(masonry.blocks):
-        shift = shifts.get(masonry.names[i], 0.0)
-        corners = block.corners + shift if block.fixed else moved(block.corners, block.centroid, where[i])
+        moved = moving.displaced(i, block.corners)[0]
+        corners = block.corners + (magnified * moved if block.fixed else moved)
         drawn[block.fixed].append(corners)
         colour = STONE if block.fixed else BRICK
         ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.4 * width))

@@ -15,8 +15,6 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-u
 from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
 from ..geometry import convex
-from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import held_at
 from ..quantities import Array
 from .section import Update, pulling
 from .solids import Solids
@@ -106,20 +104,20 @@ def fill(ax: Axes, box: Any) -> None:
     space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((room / spans).min()))
 
 
-def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
+def ties_in_view(ax: Axes, bodies: Solids) -> Update:
     """Links of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
     gone once it broke."""
-    space, moves = in_three(ax), []
-    for link in case.links.values():
-        held = held_at(link)
+    space, moves, moving = in_three(ax), [], bodies.moving
+    for link in bodies.case.links.values():
+        held = bodies.case.held_by(link)
         ends = [(held, link.block), (link.anchor_of(held), link.anchor_block)]
+        drawn = [moving.placed(block, point[None])[:, 0] for point, block in ends]
         (line,) = space.plot([], [], [], color=link.colour, linewidth=1.8, zorder=4, animated=True)
-        moves.append((line, link.dashes, ends, *pulling(case, link, bodies.t, bodies.poses)))
+        moves.append((line, link.dashes, np.stack(drawn, axis=1), *pulling(moving, link)))
 
     def update(frame: int) -> None:
         for line, dashes, ends, pulls, broken in moves:
-            points = [bodies.displaced(frame, block, point) for point, block in ends]
-            line.set_data_3d(*np.transpose(points))
+            line.set_data_3d(*ends[frame].T)
             line.set_linestyle(dashes if pulls[frame] else ":")
             line.set_visible(not broken[frame])
 

@@ -16,7 +16,8 @@ from ..problem.wall.effect import Anchored, Effect
 from ..problem.wall.effects import forces_of
 from ..problem.wall.in_space import Point
 from ..quantities import Array, Flags
-from ..result.ties import elongation_of, held_by
+from ..result.bodies import Moving
+from ..result.ties import elongation_of
 from .bodies import Bodies
 
 STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
@@ -83,9 +84,9 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     toes = (1.0,) if case.one_sided else (1.0, -1.0)
     toe_x = [side * wall.half_base for side in toes]
     ax.plot(toe_x, [0.0] * len(toes), "o", markersize=5, color=FORCE, zorder=5)
-    updates = [_openings(ax, case, bodies)]
+    updates, moving = [_openings(ax, case, bodies)], bodies.of_case(case)
     for tie, text in zip(ties, tie_texts(ties, left, height), strict=True):
-        updates.append(_tie(ax, case, tie, bodies, markersize=6))
+        updates.append(_tie(ax, moving, tie, markersize=6))
         at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
         look = {"fontsize": 6, "color": tie.colour, "va": "bottom", "zorder": 6}
         note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
@@ -98,55 +99,49 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
 def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     """Links of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
     low, high = bodies.extent()
-    ties, updates = case.links, []
+    ties, updates, moving = case.links, [], bodies.of_case(case)
     edge = float(low[0]) - 0.25 * float(high[1] - low[1])
     for name, tie in ties.items():
-        updates.append(_tie(ax, case, tie, bodies, markersize=5, edge=edge))
-        place = edge, held_by(case, tie)[1][1] + tie.rise
+        updates.append(_tie(ax, moving, tie, markersize=5, edge=edge))
+        place = edge, case.held_by(tie)[1] + tie.rise
         ax.annotate(name, place, (4, 4), textcoords="offset points", fontsize=7, color=tie.colour)
     if ties:
         ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
     return together(updates)
 
 
-def _tie(
-    ax: Axes, case: Case | MasonryCase, tie: Anchored, bodies: Bodies, *, markersize: float, edge: float = -np.inf
-) -> Update:
+def _tie(ax: Axes, moving: Moving, tie: Anchored, *, markersize: float, edge: float = -np.inf) -> Update:
     """A link from the point that it holds to its anchor: solid where it pulls, dotted where it is slack, gone once it
     broke. An anchor beyond an x [m] is drawn there."""
-    body, held, centroid = held_by(case, tie)
+    held, number = moving.case.held_by(tie), tie.anchor_block
     anchor = tie.anchor_of(held)
-    number = tie.anchor_block
     if number is None and anchor[0] < edge:
         anchor = held + (anchor - held) * (held[0] - edge) / tie.length
-    pulls, broken = pulling(case, tie, bodies.t, bodies.poses)
+    pulls, broken = pulling(moving, tie)
+    points, ends = moving.placed(tie.block, held[None])[:, 0], moving.placed(number, anchor[None])[:, 0]
     (line,) = ax.plot([], [], color=tie.colour, linewidth=1.8, zorder=4, animated=True)
     (mark,) = ax.plot(
         *anchor[:, None], marker="s", markersize=markersize, color=tie.colour, zorder=4, animated=number is not None
     )
 
     def update(frame: int) -> None:
-        point = bodies.placed(frame, body, (held - centroid)[None])[0]
-        end = anchor
-        if isinstance(case, MasonryCase) and number is not None:
-            end = bodies.anchored(frame, case, number, anchor)
-            mark.set_data(end[:, None])
-        line.set_data([end[0], point[0]], [end[1], point[1]])
+        mark.set_data(ends[frame][:, None])
+        line.set_data(*np.transpose([ends[frame], points[frame]]))
         line.set_linestyle(tie.dashes if pulls[frame] else ":")
         line.set_visible(not broken[frame])
 
     return update
 
 
-def pulling(case: Case | MasonryCase, tie: Anchored, t: Array, poses: Array) -> tuple[Flags, Flags]:
+def pulling(moving: Moving, tie: Anchored) -> tuple[Flags, Flags]:
     """Whether a link acts at each frame, and whether it has broken.
 
     A tie acts where it is longer than when it was slack or last yielded, and what also pushes acts always.
     """
     law = tie.law
     if not law.holds:
-        return np.ones(len(poses), dtype=bool), np.zeros(len(poses), dtype=bool)
-    elongation = elongation_of(case, tie, t, poses)
+        return np.ones(len(moving.t), dtype=bool), np.zeros(len(moving.t), dtype=bool)
+    elongation = elongation_of(moving, tie)
     yielded = law.drawn(elongation)
     broken: Flags = yielded > law.ultimate
     return (elongation > yielded) & ~broken, broken

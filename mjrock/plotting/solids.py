@@ -11,13 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..geometry.frames import SPACE, frames_of
+from ..geometry.frames import SPACE
+from ..geometry.poses import displaced, rotations
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.compound import Compound, SolidBlock
-from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.support import Support
-from ..problem.wall.effect import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
+from ..result.bodies import Moving
 from ..result.response import Response
 from .bodies import interpolated, required_limits
 
@@ -41,27 +41,23 @@ class Solids:
     """Masonry in space and its motion.
 
     Args:
-        masonry: the blocks.
+        case: of the masonry, for its blocks, the masses that are added to them, and its supports.
         t: times [s], shape (n,), increasing.
         poses: displacement of each centroid from rest [m] and unit quaternion, w first, of each block that is not
             fixed, shape (n, bodies, 7).
         magnify: factor on the displacement of every point [-], 0 to 1e6; 1 is true to scale.
         camera: elevation and azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360; None is (18, 35).
-        effects: of the case. The pose of a block with added masses is that of their common centroid.
-        supports: fixed blocks that are moved.
         limits: lowest and highest x, y and z of the picture [m], three pairs; None shows the blocks, see `extent`.
 
     Raises:
         ValueError: for poses of another shape, or a value outside its range.
     """
 
-    masonry: Masonry
+    case: MasonryCase
     t: Array
     poses: Array
     magnify: float = 1.0
     camera: Sequence[float] | None = None
-    effects: tuple[Effect, ...] = ()
-    supports: tuple[Support, ...] = ()
     limits: Array | None = None
 
     def __post_init__(self) -> None:
@@ -84,8 +80,17 @@ class Solids:
         limits: ArrayLike | None = None,
     ) -> Solids:
         """The blocks of a response in space."""
-        case = response.case
-        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects, case.supports, limits)  # type: ignore[arg-type]
+        return cls(response.of_masonry, response.t, response.pose, magnify, camera, limits)  # type: ignore[arg-type]
+
+    @property
+    def masonry(self) -> Masonry:
+        """The blocks."""
+        return self.case.masonry
+
+    @property
+    def moving(self) -> Moving:
+        """Where the bodies are drawn."""
+        return Moving(self.case, self.t, self.poses, self.magnify)
 
     def at(self, times: Array) -> Solids:
         """The same blocks at other times, their poses interpolated linearly."""
@@ -115,7 +120,7 @@ class Solids:
         blocks = self.masonry.blocks
         lowest = min(float(blocks[i].corners[:, 2].min()) for i in self.masonry.free) + 1e-3
         below = [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
-        moved = {support.block for support in self.supports}
+        moved = {support.block for support in self.case.supports}
         return [low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)]
 
     @property
@@ -127,7 +132,7 @@ class Solids:
     @cached_property
     def rests(self) -> Array:
         """Centroid of each block that is shown, with its added masses, at rest [m], shape (shown, 3)."""
-        return laden(self.masonry, self.effects)[1][list(self.shown)]
+        return self.case.centroids[list(self.shown)]
 
     @cached_property
     def facets(self) -> Facets:
@@ -143,13 +148,6 @@ class Solids:
             row[: len(face)], row[len(face) :] = face, face[-1]
         return Facets(corners, body, part, counts)
 
-    def displaced(self, frame: int, block: int | None, point: Array) -> Array:
-        """Where a point of a block, given at rest [m], shape (3,), is drawn at a frame; one of the ground stays."""
-        if block not in self.shown:
-            return point
-        body = self.shown.index(block)
-        return np.asarray(self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0])
-
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
         return self._drawn(frame, self.facets.body, self.facets.corners)
@@ -161,10 +159,10 @@ class Solids:
         the farthest centroid is next.
         """
         bodies = np.repeat(np.arange(len(self.shown)), np.diff(self._first))
-        frames, rests = self._frames(frame)[bodies], self.rests[bodies]
-        turned = np.eye(3) + frames[:, 3:].reshape(-1, 3, 3)
+        poses, rests = self._posed(frame)[bodies], self.rests[bodies]
+        turned = rotations(poses)
         arms = np.array([part.centroid for block in self._blocks for part in block.parts]) - rests
-        nearness = (rests + frames[:, :3] + (turned @ arms[:, :, None])[:, :, 0]) @ self.eye
+        nearness = (rests + poses[:, :3] + (turned @ arms[:, :, None])[:, :, 0]) @ self.eye
         waits, hidden = np.zeros(len(nearness), dtype=int), [list[int]() for _ in nearness]
         for below, above, normal in self._pairs:
             behind, before = (below, above) if turned[below] @ normal @ self.eye > 0 else (above, below)
@@ -224,19 +222,15 @@ class Solids:
             pairs += [(first + joint.below, first + joint.above, joint.normal) for joint in joined]
         return pairs
 
-    def _frames(self, frame: int) -> Array:
-        """Displacement and R - 1 of each body at a frame, shape (shown, 12)."""
-        frames, free = np.zeros((len(self.shown), 12)), list(self.masonry.free)
-        moves = [i for i, block in enumerate(self.shown) if block in free]
-        frames[moves] = frames_of(np.ascontiguousarray(self.poses[frame]).ravel(), SPACE)
-        for support in self.supports:
-            frames[self.shown.index(self.masonry.names.index(support.block)), :3] = support.at(
-                self.t[frame : frame + 1]
-            )
-        return frames
+    def _posed(self, frame: int) -> Array:
+        """Pose of each block that is shown at a frame, shape (shown, 7)."""
+        poses = np.tile(np.eye(1, SPACE.nq, 3), (len(self.shown), 1))
+        poses[np.isin(self.shown, self.masonry.free)] = self.poses[frame]
+        for body, support in enumerate(map(self.case.support_of, self.shown)):
+            if support is not None:
+                poses[body, :3] = support.at(self.t[frame : frame + 1])
+        return poses
 
     def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
         """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
-        frames = self._frames(frame)[body]
-        moved = frames[:, None, :3] + points @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
-        return self.rests[body, None] + points + self.magnify * moved
+        return self.rests[body, None] + points + self.magnify * displaced(points, self._posed(frame)[body])

@@ -5,14 +5,13 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from ..problem.wall.case import Case
 from ..quantities import require_kind
 from ..result.response import Response
 from ..result.samples import sample_at
 from . import masonry, section
 from .arguments import anything, picture
 from .bodies import Bodies
-from .forces import Moving, forces_on, require_shown
+from .forces import forces_on, require_shown
 
 
 @picture(limits=anything)
@@ -42,13 +41,13 @@ def thrust(
         ValueError: for a time outside the run, or a value outside its range.
     """
     require_kind("response", response, Response)
-    if not isinstance(response.case, Case):
+    if response.joints is not None:
         return masonry.blocks(ax, response, at=at, forces="thrust", magnified=magnified, limits=limits)
     require_shown("forces", "thrust", response)
     sample = sample_at(response.t, at)
     bodies = Bodies.of(response, magnified, limits).at(response.t[sample : sample + 1])
-    updates = [section.blocks(ax, bodies), section.surroundings(ax, response.case, bodies)]
-    updates.append(forces_on(ax, response, Moving(bodies.t, bodies.poses, bodies.magnify), "thrust"))
+    updates = [section.blocks(ax, bodies), section.surroundings(ax, response.of_wall[0], bodies)]
+    updates.append(forces_on(ax, response, bodies.of_case(response.case), "thrust"))
     section.together(updates)(0)
     for artist in ax.get_children():
         artist.set_animated(False)

@@ -12,17 +12,14 @@ from matplotlib.figure import Figure
 
 from ..files import write_text
 from ..plotting.histories import history, required_labels, same_ground
-from ..plotting.masonry import blocks
-from ..plotting.sketch import sketch
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
-from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.masonry import Masonry
-from ..problem.wall.block import Block
+from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
 from . import content
+from .subject import Reported, reported
 
 LOOK = """
 @page { size: A4; margin: 18mm 16mm }
@@ -44,7 +41,7 @@ footer { margin-top: 2em; font-size: .8em; color: #666 }
 
 
 def report(
-    case: Case | MasonryCase,
+    case: AnyCase,
     responses: Response | Sequence[Response],
     path: str | Path,
     *,
@@ -94,24 +91,19 @@ def report(
     require_kind("contacts", contacts, Contacts, type(None))
     several = required_responses(case, responses)
     names = required_labels(several, labels) or [response.solver for response in several]
-    if isinstance(case, MasonryCase) and (e is not None or contacts is not None):
-        raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
-    what = "Wall" if isinstance(case, Case) else "Masonry"
+    case.require_own_joints(e, contacts)
+    subject = reported(case)
     inputs = {
-        what: content.of_wall(case) if isinstance(case, Case) else content.of_masonry(case),
+        subject.NAME: subject.inputs(),
         "Effects": content.of_effects(case),
         "Impacts and contacts": content.of_contacts(e, contacts),
     }
     further = [part for name, pieces in required_sections(sections).items() for part in section(name, pieces)]
     rests = required_basis(basis, {row[0] for rows in inputs.values() for row in rows})
     head = [f"<h1>{html.escape(title)}</h1>", *([f"<p>{html.escape(notes)}</p>"] if notes else [])]
-    parts = [*head, heading(f"The {what.lower()}"), *at_rest(case)]
-    if isinstance(case, Case):
-        careful = content.cautions(case, several, names)
-    else:
-        careful = content.masonry_cautions(several, names)
-    parts += [heading("What to be careful of"), listed(careful)]
-    parts += [heading("Results"), results(several, names), *histories(several, names), *further]
+    parts = [*head, heading(f"The {subject.NAME.lower()}"), picture(*subject.at_rest())]
+    parts += [heading("What to be careful of"), listed(subject.cautions(several, names))]
+    parts += [heading("Results"), results(subject, several, names), *histories(subject, several, names), *further]
     for name, rows in inputs.items():
         if rows:
             found = [(key, value, rests.get(key, "")) for key, value in rows]
@@ -120,13 +112,12 @@ def report(
     if motions:
         parts += [heading("Inputs: ground motions"), table(("direction", "name", "peak, duration, step"), motions)]
     parts += [heading("Versions"), table(("program", "version"), content.versions())]
-    rigid = "The wall is rigid and moves in one vertical plane." if what == "Wall" else "The blocks are rigid."
-    parts.append(f"<footer>{rigid} SI units; rotations in radians.</footer>")
+    parts.append(f"<footer>{subject.RIGID} SI units; rotations in radians.</footer>")
     write_text(path, page(title, parts))
     return path
 
 
-def required_responses(case: Case | MasonryCase, responses: object) -> list[Response]:
+def required_responses(case: AnyCase, responses: object) -> list[Response]:
     """At least one response, each of the wall or masonry of the case; TypeError or ValueError for any other."""
     given = [responses] if isinstance(responses, Response) else responses
     if not isinstance(given, Sequence) or isinstance(given, str):
@@ -135,11 +126,10 @@ def required_responses(case: Case | MasonryCase, responses: object) -> list[Resp
         raise ValueError("responses is empty; at least one response is needed")
     for i, response in enumerate(given):
         require_kind(f"responses[{i}]", response, Response)
-        own, asked = (one.block if isinstance(one, Case) else one.masonry for one in (response.case, case))
-        if own != asked:
-            said = [repr(one) if isinstance(one, Block) else "masonry" for one in (own, asked)]
-            other = "other " if said[0] == said[1] else ""
-            raise ValueError(f"responses[{i}] is of {said[0]}, and the case of {other}{said[1]}")
+        if response.case.built != case.built:
+            own, asked = response.case.said, case.said
+            other = "other " if own == asked else ""
+            raise ValueError(f"responses[{i}] is of {own}, and the case of {other}{asked}")
     return list(given)
 
 
@@ -178,15 +168,9 @@ def section(name: str, pieces: object) -> list[str]:
     return parts
 
 
-def results(responses: Sequence[Response], names: Sequence[str]) -> str:
+def results(subject: Reported, responses: Sequence[Response], names: Sequence[str]) -> str:
     """The tables of results, of ties, of forces that were kept, and the messages."""
-    columns: tuple[str, ...]
-    if isinstance(responses[0].case, Case):
-        columns = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts"
-        rows = content.of_results(responses, names)
-    else:
-        columns = "response", "outcome", "fallen", "largest rotation", "opening", "sliding"
-        rows = content.of_masonry_results(responses, names)
+    columns, rows = subject.COLUMNS, subject.results(responses, names)
     shared, own = content.settings(responses)
     made = f"<p>Solved with {html.escape(shared)}.</p>" if shared else ""
     if any(own):
@@ -202,22 +186,7 @@ def results(responses: Sequence[Response], names: Sequence[str]) -> str:
     return made + listed(content.of_messages(responses, names), "")
 
 
-def at_rest(case: Case | MasonryCase) -> list[str]:
-    """The sketch of a wall, or the blocks of masonry."""
-    if isinstance(case, Case):
-        return [picture(sketch(case), "Section and elevation, true to scale [m].")]
-    return [picture(drawn(case.masonry), "The blocks at rest, fixed ones in grey.")]
-
-
-def drawn(masonry: Masonry | Response) -> Figure:
-    """Masonry at rest, or as a response of it ends."""
-    in_space = masonry.in_space
-    figure = Figure(figsize=(6.3, 4.2), layout="constrained")
-    blocks(figure.add_subplot(projection="3d") if in_space else figure.subplots(), masonry)
-    return figure
-
-
-def histories(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
+def histories(subject: Reported, responses: Sequence[Response], names: Sequence[str]) -> list[str]:
     """A picture for each ground motion."""
     left, made = list(zip(responses, names, strict=True)), []
     while left:
@@ -228,8 +197,7 @@ def histories(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
         over_time = history([response for response, _ in own], labels=[name for _, name in own])
         made.append(picture(over_time, "No ground motion." if motion is None else f"Ground motion: {motion.name}."))
     for response, name in zip(responses, names, strict=True):
-        if not isinstance(response.case, Case):
-            made.append(picture(drawn(response), f"{name}: the blocks at {response.t[-1]:.4g} s."))
+        made += [picture(*end) for end in subject.at_end(response, name)]
     return made
 
 

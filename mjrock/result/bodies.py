@@ -8,14 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.frames import PLANE
-from ..geometry.hull import Faces, prism
-from ..geometry.poses import rotations
-from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.compound import AnyBlock
-from ..problem.masonry.effects import laden
+from ..geometry.hull import Faces
+from ..geometry.poses import displaced, rotated, rotations
+from ..problem.masonry.case import AnyCase
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.polygon import Polygon
-from ..problem.wall.case import Case
+from ..problem.wall.standing import JointFrames, in_space
 from ..quantities import Array, Integers, require_within
 
 SHORT = 1e-6
@@ -52,7 +49,7 @@ class Body(NamedTuple):
 
     def turned(self, vectors: Array) -> Array:
         """Vectors of the body at rest, shape (m, 3), as they are turned, shape (n, m, 3)."""
-        return np.asarray(vectors @ rotations(self.pose).swapaxes(1, 2))
+        return rotated(vectors, self.pose)
 
     def placed(self, about: Array) -> Array:
         """Where points are that are given about the centroid at rest [m], shape (m, 3), shape (n, m, 3)."""
@@ -63,6 +60,55 @@ class Body(NamedTuple):
         return self.velocity[:, None, :3] + np.cross(self.velocity[:, None, 3:], self.turned(about))
 
 
+class Moving(NamedTuple):
+    """Where the bodies of a case are: the one text for forces, ties and pictures.
+
+    Args:
+        case: of a wall or of masonry.
+        t: times [s], shape (n,).
+        pose: of a `Response` at these times.
+        magnify: factor on displacements, for pictures [-].
+    """
+
+    case: AnyCase
+    t: Array
+    pose: Array
+    magnify: float = 1.0
+
+    def displaced(self, block: int | None, points: Array) -> Array:
+        """Displacement from rest of points of a block, or of the ground [m], shape (n, m, d).
+
+        Args:
+            block: its number, None for the ground. A fixed block is where its support has moved it.
+            points: at rest [m], shape (m, d).
+        """
+        body, support = self.case.body_of(block), self.case.support_of(block)
+        if body is not None:
+            return displaced(points - self.case.rests[body], self.pose[:, body])
+        shift = np.zeros((len(self.t), points.shape[1])) if support is None else support.at(self.t)
+        return np.repeat(shift[:, None], len(points), axis=1)
+
+    def at(self, number: int) -> Moving:
+        """The same at one of the times."""
+        return self._replace(t=self.t[number : number + 1], pose=self.pose[number : number + 1])
+
+    def placed(self, block: int | None, points: Array) -> Array:
+        """Where these points are, or are drawn [m], shape (n, m, d)."""
+        return points + self.magnify * self.displaced(block, points)
+
+    def joints(self, frames: JointFrames) -> tuple[Array, Array]:
+        """Middles [m] and axes of joints where what is below them is, shapes (n, j, d) and (n, j, d, d)."""
+        d, on_body = frames.middle.shape[1], frames.below >= 0
+        middle, axes = (np.repeat(part[None], len(self.t), axis=0) for part in (frames.middle, frames.axes))
+        of = frames.below[on_body]
+        turned = rotated(frames.from_body[on_body], self.pose[:, of])
+        middle[:, on_body] = frames.rest[of] + self.pose[:, of, :d] + turned[:, :, 0]
+        axes[:, on_body] = turned[:, :, 1:]
+        for support in self.case.supports:
+            middle[:, frames.fixed == frames.blocks.index(support.block)] += support.at(self.t)[:, None]
+        return frames.middle + self.magnify * (middle - frames.middle) if self.magnify != 1 else middle, axes
+
+
 def frames_at(t: Array, fps: float) -> Integers:
     """Numbers of the samples that are the first in each frame, and of the last one. Their times differ as 32 bits."""
     rate = require_within("fps", fps, 1.0, 1e4, "1/s")
@@ -71,12 +117,7 @@ def frames_at(t: Array, fps: float) -> Integers:
     return np.asarray(kept[np.unique(t[kept].astype(np.float32), return_index=True)[1]])
 
 
-def in_space(vectors: Array) -> Array:
-    """Vectors of the plane x, z with y = 0, shape (..., 3); those of space as they are."""
-    return vectors if vectors.shape[-1] == 3 else np.insert(vectors, 1, 0.0, axis=-1)
-
-
-def bodies_of(case: Case | MasonryCase, t: Array, pose: Array, velocity: Array) -> list[Body]:
+def bodies_of(case: AnyCase, t: Array, pose: Array, velocity: Array) -> list[Body]:
     """All bodies, in the order of the blocks, or the wall and what it stands against.
 
     Args:
@@ -92,56 +133,17 @@ def bodies_of(case: Case | MasonryCase, t: Array, pose: Array, velocity: Array) 
     else:
         spin = (rotations(pose) @ velocity[..., 3:, None])[..., 0]
         velocity = np.concatenate([velocity[..., :3], spin], axis=-1)
-    still = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
-    if isinstance(case, Case):
-        return _wall(case, pose[:, 0], velocity[:, 0], still)
-    masonry, bodies = case.masonry, []
-    moved = {support.block: support for support in case.supports}
-    for i, (name, block, rest) in enumerate(
-        zip(masonry.names, masonry.blocks, in_space(laden(masonry, case.effects)[1]), strict=True)
-    ):
-        corners, faces = faces_of(block)
-        where, rate = still
-        if not block.fixed:
-            where, rate = (part[:, masonry.free.index(i)] for part in (pose, velocity))
-        elif name in moved:
-            where, rate, at = where.copy(), rate.copy(), moved[name].at
-            where[:, :3], rate[:, :3] = in_space(at(t)), in_space(at(t + SHORT) - at(t - SHORT)) / (2 * SHORT)
-        moves = not block.fixed or name in moved
-        bodies.append(Body(name, corners - rest, faces, rest, where, rate, block.fixed, moves))
-    return bodies
-
-
-def faces_of(block: AnyBlock) -> tuple[Array, Faces]:
-    """Corners of a block in space [m], shape (corners, 3), and its faces: those of each of its convex parts."""
-    corners, faces = list[Array](), list[tuple[int, ...]]()
-    for part in block.parts:
-        before = sum(map(len, corners))
-        own, rings = prism(part.corners, part.length) if isinstance(part, Polygon) else (part.corners, part.faces)
-        corners.append(own)
-        faces += [tuple(before + i for i in ring) for ring in rings]
-    return np.concatenate(corners), tuple(faces)
-
-
-def _wall(case: Case, pose: Array, velocity: Array, still: tuple[Array, Array]) -> list[Body]:
-    """The wall without its openings, a slab below it, and where it has a side stop one beside it."""
-    wall, top = case.wall, case.stop_top
-    b, length, rest = wall.b, wall.length, np.array([wall.centroid_offset, 0.0, wall.centroid_height])
-    outer = wall.outline[1:-1]
-    if wall.gable is not None:
-        z = np.sort(np.append(outer[:, 1], wall.front.eaves - rest[2]))
-        outer = np.column_stack([np.interp(z, outer[:, 1], outer[:, 0]), z])
-    inner = np.column_stack([np.full(len(outer), wall.outline[0, 0]), outer[:, 1]])
-    corners, n = prism(np.concatenate([outer, inner[::-1]]), length)[0], 2 * len(outer)
-    corners[:, 1] *= wall.front.long(corners[:, 2] + rest[2]) / length
-    ends = [(i, i + 1, n - 2 - i, n - 1 - i) for i in range(len(outer) - 1)]  # the outline of a profile is not convex
-    rim = [(i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n)]
-    faces = (*ends, *(tuple(n + i for i in end[::-1]) for end in ends), *rim)
-    bodies = [Body("wall", corners, faces, rest, pose, velocity, False, True)]
-    slabs = {"base": (-3 * b, 3 * b, -b, 0.0)} | ({} if top is None else {"side": (-3 * b, -b, 0.0, top)})
-    for name, (left, right, low, high) in slabs.items():
-        solid = prism(np.array([(left, low), (right, low), (right, high), (left, high)]), length)
-        bodies.append(Body(name, *solid, np.zeros(3), *still, True, False))
+    bodies = []
+    for solid in case.solids:
+        body, support = case.body_of(solid.block), case.support_of(solid.block)
+        where, rate = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
+        if body is not None:
+            where, rate = pose[:, body], velocity[:, body]
+        elif support is not None:
+            after, before = (in_space(support.at(t + step)) for step in (SHORT, -SHORT))
+            where[:, :3], rate[:, :3] = in_space(support.at(t)), (after - before) / (2 * SHORT)
+        moves = body is not None or support is not None
+        bodies.append(Body(solid.name, solid.corners, solid.faces, solid.rest, where, rate, solid.fixed, moves))
     return bodies
 
 

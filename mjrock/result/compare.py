@@ -44,11 +44,16 @@ class Comparison:
     def __repr__(self) -> str:
         pair = self.restitution[0] if len(self.restitution) else (math.nan, math.nan)
         said = ["none" if math.isnan(value) else f"{value:.4g}" for value in pair]
-        which = "impact 1 under ground motion" if self.reference.case.shaken else "rebound 1"
+        which = "impact 1 under ground motion" if self.case.shaken else "rebound 1"
         return (
             f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {which} {said[1]} for "
             f"{said[0]}, RMS of theta/alpha {self.rms:.3g}>"
         )
+
+    @property
+    def case(self) -> Case:
+        """The case that both answer."""
+        return self.reference.of_wall[0]
 
     @property
     def _both(self) -> tuple[Response, Response]:
@@ -62,7 +67,7 @@ class Comparison:
     @cached_property
     def pairs(self) -> Integers | None:
         """Numbers of the impacts that belong to each other, -1 for none, shape (n, 2); None on a base at rest."""
-        case = self.reference.case
+        case = self.case
         if not case.shaken:
             return None
         outer = case.restoring.outer
@@ -85,7 +90,7 @@ class Comparison:
     @property
     def energy_share(self) -> Array:
         """`energy_loss` as a share of the energy of release [-], shape (n, 2)."""
-        released = self.reference.case.release_energy
+        released = self.case.release_energy
         return self.energy_loss / (released if released > 0 else math.nan)
 
     @property
@@ -99,10 +104,10 @@ class Comparison:
 
         Under ground motion each is the largest rotation up to the next impact.
         """
-        alpha = self.reference.case.wall.alpha
+        alpha = self.case.wall.alpha
         if self.pairs is not None:
             return self._values(*(_largest_after(r) / alpha for r in self._both))
-        skip = 0 if self.reference.case.released_outwards else 1
+        skip = 0 if self.case.released_outwards else 1
         return _columns(*(r.peaks[skip:] / alpha for r in self._both))
 
     @property
@@ -167,7 +172,7 @@ class Comparison:
             lines.append(
                 f"Impacts are paired by time; those of less than {FAINT:.0%} of the overturning energy are out."
             )
-        if self.reference.case.shaken:
+        if self.case.shaken:
             lines.append("Under ground motion the restitution is that of single impacts, and none of free rocking.")
         lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
         for label, response in zip(labels, self._both, strict=True):
@@ -187,7 +192,7 @@ def compare(reference: Response, candidate: Response) -> Comparison:
     require_kind("reference", reference, Response)
     require_kind("candidate", candidate, Response)
     for name, response in (("reference", reference), ("candidate", candidate)):
-        if not isinstance(response.case, Case):
+        if response.rocking is None:
             raise TypeError(
                 f"{name} is that of masonry; responses of one wall are compared. `mjrock.plotting.history` takes both, "
                 "and their opening, sliding, fallen and peak are arrays of equal shapes"
@@ -196,7 +201,7 @@ def compare(reference: Response, candidate: Response) -> Comparison:
         raise ValueError(f"the responses answer different cases: {reference.case} and {candidate.case}")
     common = reference.t <= min(reference.t[-1], candidate.t[-1]) * (1 + 1e-12)
     difference = np.interp(reference.t[common], candidate.t, candidate.theta) - reference.theta[common]
-    rms = float(np.sqrt(np.mean(difference**2))) / reference.case.wall.alpha
+    rms = float(np.sqrt(np.mean(difference**2))) / reference.of_wall[0].wall.alpha
     return Comparison(reference, candidate, rms)
 
 

@@ -8,88 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.poses import rotations
-from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import laden
-from ..problem.masonry.joint_forces import axes_of
-from ..problem.masonry.lines import free_numbers
-from ..problem.wall.case import Case
-from ..quantities import Array, Integers, require_size
+from ..problem.masonry.case import AnyCase
+from ..problem.wall.standing import JointFrames
+from ..quantities import Array, require_size
+from .bodies import Moving
 from .ties import across
 
 ANCHORS = "anchors"
 """Name of the reaction of all links whose anchors are on no block, and of actuators."""
-
-
-class JointFrames(NamedTuple):
-    """Joints at rest, in the order of their names, and what they join.
-
-    Args:
-        names: of the j joints.
-        middle: of each [m], shape (j, d).
-        axes: unit vectors, the normal out of what is below and then those along the joint, shape (j, d, d).
-        below, above: numbers of the two bodies, -1 for what is fixed, shape (j,).
-        fixed: number of the fixed block below, -1 where what is below is free, shape (j,).
-        blocks: names of the fixed blocks.
-        rest: centroids of the bodies at rest [m], shape (bodies, d).
-    """
-
-    names: tuple[str, ...]
-    middle: Array
-    axes: Array
-    below: Integers
-    above: Integers
-    fixed: Integers
-    blocks: tuple[str, ...]
-    rest: Array
-
-    @classmethod
-    def of(cls, case: Case | MasonryCase) -> JointFrames:
-        """Those of masonry, or the base and the side stop of a wall."""
-        if isinstance(case, Case):
-            sides = 1 if case.stop_top is None else 2
-            middle = np.array([(0.0, 0.0), (-case.wall.b, 0.5 * (case.stop_top or 0.0))])[:sides]
-            axes = np.array([[(0.0, 1.0), (1.0, 0.0)], [(1.0, 0.0), (0.0, -1.0)]])[:sides]
-            names, numbers = ("base", "side")[:sides], np.arange(sides)
-            rest = np.array([[case.wall.centroid_offset, case.wall.centroid_height]])
-            return cls(names, middle, axes, 0 * numbers - 1, 0 * numbers, numbers, names, rest)
-        masonry = case.masonry
-        number, fixed = free_numbers(masonry.blocks), np.array([block.fixed for block in masonry.blocks])
-        below, above = np.array([(joint.below, joint.above) for joint in masonry.joints]).T
-        of_fixed = np.where(fixed, np.cumsum(fixed) - 1, -1)
-        return cls(
-            tuple(joint.name for joint in masonry.joints),
-            np.array([joint.middle for joint in masonry.joints]),
-            axes_of(masonry),
-            number[below],
-            number[above],
-            of_fixed[below],
-            tuple(name for name, held in zip(masonry.names, fixed, strict=True) if held),
-            laden(masonry, case.effects)[1][list(masonry.free)],
-        )
-
-    @property
-    def _from_body(self) -> Array:
-        """Of each joint on a body the vector from its centroid to the middle [m], and the axes, shape (j, 1 + d, d)."""
-        arm = self.middle - np.where(self.below[:, None] < 0, 0.0, self.rest[self.below])
-        return np.concatenate([arm[:, None], self.axes], axis=1)
-
-    def placed(self, case: Case | MasonryCase, t: Array, pose: Array) -> tuple[Array, Array]:
-        """Middles [m] and axes of the joints where what is below them is, shapes (n, j, d) and (n, j, d, d).
-
-        Args:
-            case: the case, for the supports that move.
-            t: times [s], shape (n,).
-            pose: of a `Response` at these times.
-        """
-        d, on_body = self.middle.shape[1], self.below >= 0
-        middle, axes = (np.repeat(part[None], len(t), axis=0) for part in (self.middle, self.axes))
-        of = self.below[on_body]
-        turned = np.matmul(self._from_body[on_body], np.swapaxes(rotations(pose)[:, of], 2, 3))
-        middle[:, on_body], axes[:, on_body] = self.rest[of] + pose[:, of, :d] + turned[:, :, 0], turned[:, :, 1:]
-        for support in case.supports if isinstance(case, MasonryCase) else ():
-            middle[:, self.fixed == self.blocks.index(support.block)] += support.at(t)[:, None]
-        return middle, axes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -198,10 +124,10 @@ class Gathered(NamedTuple):
     damage: Array | None = None
 
 
-def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered) -> Forces:
+def forces_of(case: AnyCase, frames: JointFrames, gathered: Gathered) -> Forces:
     """The forces of a run from what was gathered."""
     d = frames.middle.shape[1]
-    middle, axes = frames.placed(case, gathered.t, gathered.pose)
+    middle, axes = Moving(case, gathered.t, gathered.pose).joints(frames)
     force, about = gathered.loads[..., :d], gathered.loads[..., d:]
     along = np.matmul(axes, force[..., None])[..., 0]
     normal, shear = along[..., 0], along[..., 1:]
@@ -225,48 +151,45 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     return Forces(frames, *along_faces, dict(gathered.pulled), reactions, guides, damage)
 
 
-def guides_of(case: Case | MasonryCase, gathered: Gathered) -> dict[str, Array]:
+def guides_of(case: AnyCase, gathered: Gathered) -> dict[str, Array]:
     """What guides do to the blocks of actuators, see `Forces`: they balance all else that acts on them."""
     guides: dict[str, Array] = {}
-    if isinstance(case, Case) or gathered.guided is None:
-        return guides
-    d = 3 if case.masonry.in_space else 2
+    d = 3 if case.in_space else 2
     for i, actuator in enumerate(case.actuators.values()):
-        if actuator.block is None:
+        if actuator.block is None or gathered.guided is None:
             continue
-        name, upwards = case.masonry.names[actuator.block], -gathered.guided[:, i, d - 1]
+        name, upwards = case.blocks[actuator.block], -gathered.guided[:, i, d - 1]
         if actuator.guide.rising or (actuator.guide.turning and name not in guides):
             upwards = upwards if actuator.guide.rising else np.zeros_like(upwards)
             guides[name] = np.column_stack([upwards, -gathered.guided[:, i, d:]])
     return guides
 
 
-def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
+def add_links(case: AnyCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
     """Add what links do to the reactions of the blocks that they are anchored on, and to that of all anchors."""
+    moving, blocks = Moving(case, gathered.t, gathered.pose), case.blocks
     for name, pulled in gathered.pulled.items():
         if name not in case.links:
             continue  # of a device that only explicit steps know
         link = case.links[name]
-        way, anchor = across(case, link, gathered.t, gathered.pose), ANCHORS
-        if isinstance(case, MasonryCase) and link.anchor_block is not None:
-            if link.anchor_block in case.masonry.free:
-                continue
-            anchor = case.masonry.names[link.anchor_block]
+        if case.body_of(link.anchor_block) is not None:
+            continue
+        way, anchor = across(moving, link), ANCHORS if link.anchor_block is None else blocks[link.anchor_block]
         force = -(pulled / np.linalg.norm(way, axis=1))[:, None] * way
         reactions[anchor] = reactions.get(anchor, 0.0) + force
-    if isinstance(case, MasonryCase) and case.actuators and gathered.driven is not None:
+    if case.actuators and gathered.driven is not None:
         ways = np.array([actuator.direction for actuator in case.actuators.values()])
         reactions[ANCHORS] = reactions.get(ANCHORS, 0.0) + gathered.driven @ ways
 
 
-def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, int, int]:
+def required_room(case: AnyCase, samples: float) -> tuple[int, int, int, int]:
     """How many joints, fixed blocks, links and actuators a case has.
 
     Raises:
         ValueError: if their forces at so many samples do not fit into memory.
     """
-    frames = JointFrames.of(case)
-    d, driven = frames.middle.shape[1], 0 if isinstance(case, Case) else len(case.actuators)
+    frames = case.frames
+    d, driven = frames.middle.shape[1], len(case.actuators)
     counts = len(frames.names), len(frames.blocks), len(case.links), driven
     numbers = samples * (counts[0] * 4 * (d - 1) + counts[1] * d + counts[2] + driven * (1 if d == 2 else 3))
     require_size("the forces of this answer", numbers, "raise output_step, or leave the forces out")

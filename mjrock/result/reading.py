@@ -11,7 +11,6 @@ import numpy as np
 from ..geometry.poses import angles, tilts
 from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import laden
 from ..problem.wall.case import Case
 from ..quantities import Array, named
 from ..scene.scene import Scene, is_quiet
@@ -36,8 +35,9 @@ class Reading:
         outcome, message: how it ended.
         rocking: impacts and peaks of a wall.
         joints: openings, slidings and falls of masonry.
+        count: how many times come before the wall cannot come back, or before the first block falls.
         peak_times: times of the peaks of a wall [s].
-        slip: of the base of a wall at each time [m], shape (n,).
+        slip: of the base of a wall at each time over half its width [-], shape (n,).
         stats: numbers for the `stats` of the response.
     """
 
@@ -45,7 +45,8 @@ class Reading:
     message: str
     rocking: Rocking | None = None
     joints: JointMotion | None = None
-    peak_times: Array = field(default_factory=lambda: np.zeros(0))
+    count: int = 0
+    peak_times: Array | None = None
     slip: Array = field(default_factory=lambda: np.zeros(1))
     stats: dict[str, Any] = field(default_factory=dict)
 
@@ -72,8 +73,9 @@ def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion
     return Reading(
         *ending(case, t, theta, motion.energy, uplift.energy, motion.velocity[-1, 0]),
         rocking=Rocking(impacts, peaks),
+        count=case.returning(theta),
         peak_times=times,
-        slip=slip,
+        slip=slip / case.block.half_base,
         stats={"base_displacement": float(np.interp(case.duration, t, slip) - slip[0])},
     )
 
@@ -104,6 +106,7 @@ def masonry_reading(
         outcome,
         message + told,
         joints=JointMotion(opening, joints.sliding, fallen, {} if beside is None else beside.cracked),
+        count=int(np.searchsorted(t, next(iter(fallen.values()), np.inf))),
         stats={"deepest": joints.deepest},
     )
 
@@ -130,8 +133,7 @@ def _past_edges(
     case: MasonryCase, scene: Scene, t: Array, pose: Array, joints: JointRecord, fallen: dict[str, float]
 ) -> dict[str, float]:
     """How far the weight of each block that has not fallen has passed the edge of what it stands on [m]."""
-    centroids = laden(case.masonry, case.effects)[1]
-    past = past_support(case.masonry, centroids, joints, lambda some: slips(case, scene, t[some], pose[some]))
+    past = past_support(case.masonry, case.centroids, joints, lambda some: slips(case, scene, t[some], pose[some]))
     return {name: far for name, far in past.items() if name not in fallen}
 
 

@@ -7,16 +7,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from ..files import write_text
-from ..geometry.frames import SPACE
 from ..geometry.poses import angle_of, tilt_of
+from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Array, require_path
-from .bodies import bodies_of, frames_at, in_space, openings
+from ..problem.wall.standing import in_space
+from ..quantities import Array, require_path, require_within
+from .bodies import Moving, bodies_of, frames_at, openings
 from .compas import results_text
 from .ending import Outcome
 from .forces import Forces
@@ -24,7 +25,7 @@ from .gltf import write_gltf
 from .joints import JointMotion
 from .ledger import Ledger
 from .motion import Motion
-from .rocking import Impact, Rocking, displacement_at, farthest, restitution_of
+from .rocking import Impact, Rocking, farthest, restitution_of
 from .samples import sample_at
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
@@ -85,7 +86,7 @@ class Response:
         kept_forces: what `forces` and `reactions` give, or None where they were not asked for.
     """
 
-    case: Any  # Case or MasonryCase
+    case: AnyCase
     solver: str
     t: Array
     motion: Motion
@@ -127,7 +128,7 @@ class Response:
     @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
-        return self.rocking is None and self.pose.shape[2] == SPACE.nq
+        return self.case.in_space
 
     @property
     def tilt(self) -> Array:
@@ -200,7 +201,7 @@ class Response:
     @cached_property
     def ties(self) -> Mapping[str, TieMotion]:
         """Elongation, force and energy of each tie at the samples, by its name, see `TieMotion`."""
-        return motion_of_ties(self.case, self.t, self.pose, self.plastic)
+        return motion_of_ties(Moving(self.case, self.t, self.pose), self.plastic)
 
     @property
     def of_wall(self) -> tuple[Case, Rocking]:
@@ -209,12 +210,18 @@ class Response:
         Raises:
             AttributeError: for masonry.
         """
-        if self.rocking is None or not isinstance(self.case, Case):
+        if self.rocking is None:
             raise AttributeError(
                 "a response of masonry has opening, sliding and fallen of its joints; impacts, peaks and restitution "
                 "are those of one wall"
             )
-        return self.case, self.rocking
+        return cast(Case, self.case), self.rocking
+
+    @property
+    def of_masonry(self) -> MasonryCase:
+        """The case of masonry; an AttributeError says that a wall has no joints."""
+        _ = self.of_joints
+        return cast(MasonryCase, self.case)
 
     @property
     def of_joints(self) -> JointMotion:
@@ -239,7 +246,9 @@ class Response:
 
     def displacement(self, z: float) -> Array:
         """Horizontal displacement of the middle of a wall at the height z, from rest, seen from the base [m], (n,)."""
-        return displacement_at(self.of_wall[0], self.pose[:, 0], z)
+        height = 2 * self.of_wall[0].wall.h * (1 + 1e-12)
+        point = np.array([[0.0, require_within("height z", z, 0.0, height, "m")]])
+        return Moving(self.case, self.t, self.pose).displaced(0, point)[:, 0, 0]
 
     @property
     def opening(self) -> Array:
@@ -252,8 +261,7 @@ class Response:
 
         Of a mortared joint that has cracked it is the width of the crack.
         """
-        _ = self.of_joints
-        return openings(self.case.masonry, bodies_of(self.case, self.t, self.pose, self.velocity))
+        return openings(self.of_masonry.masonry, bodies_of(self.case, self.t, self.pose, self.velocity))
 
     @property
     def sliding(self) -> Array:
@@ -346,9 +354,8 @@ class Response:
             of = f" of {body}" if self.rocking is None else ""
             for j, (name, unit) in enumerate(coordinates):
                 columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
-        for field_name, name in (("motion", "horizontal"), ("vertical", "vertical"), ("transverse", "transverse")):
-            if (motion := getattr(self.case, field_name, None)) is not None:
-                columns[f"ground {name} [m/s2]"] = motion(self.t)
+        for name, motion in self.case.grounds.items():
+            columns[f"ground {'horizontal' if name == 'motion' else name} [m/s2]"] = motion(self.t)
         columns |= {f"force of {name} [N]": force for name, force in self.actuators.items()}
         if self.ledger is not None:
             columns |= self.ledger.columns()
@@ -409,12 +416,12 @@ class Response:
         bodies = bodies_of(self.case, t, pose, self.velocity[kept])
         if self.kept_forces is not None:
             forces, d = self.kept_forces, 3 if self.in_space else 2
-            middle, axes = forces.frames.placed(self.case, t, pose)
+            middle, axes = Moving(self.case, t, pose).joints(forces.frames)
             normal, shear = forces.normal[kept], forces.shear[kept].reshape(*middle.shape[:2], d - 1)
             along = np.concatenate([normal[..., None], shear], axis=-1)
             values = {"force": in_space((along[..., None] * axes).sum(axis=-2)), "normal": normal}
-            if self.rocking is None:
-                values["opening"] = openings(self.case.masonry, bodies)
+            if self.joints is not None:
+                values["opening"] = openings(self.of_masonry.masonry, bodies)
             write_series(folder, "joints", t, texts_of_joints(in_space(middle), values))
         return write_series(folder, "blocks", t, texts_of_bodies(bodies))
 
@@ -436,20 +443,19 @@ class Response:
             ValueError: for a wall, blocks in the plane or a `Compound`, or a time outside the run.
             OSError: if the file cannot be written.
         """
-        if self.rocking is not None or not self.in_space:
+        if not self.in_space:
             raise ValueError("case = a wall or blocks in the plane, which have no such file; take Polyhedron.prism")
-        self.case.masonry.convex_in_space("a COMPAS model")
+        case = self.of_masonry
+        case.masonry.convex_in_space("a COMPAS model")
         k = sample_at(self.t, at)
         bodies = bodies_of(self.case, self.t[[k]], self.pose[[k]], self.velocity[[k]])
-        text = results_text(self.case, bodies, float(self.t[k]), self.kept_forces, k)
+        text = results_text(case, bodies, float(self.t[k]), self.kept_forces, k)
         return write_text(require_path("path", path), text)
 
     @property
     def bodies(self) -> tuple[str, ...]:
         """Names of the bodies, in their order."""
-        if isinstance(self.case, Case):
-            return ("wall",)
-        return tuple(self.case.masonry.names[i] for i in self.case.masonry.free)
+        return self.case.bodies
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Response):
@@ -463,10 +469,9 @@ class Response:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        if isinstance(self.case, Case):
-            what = (
-                f"{len(self.impacts)} impacts, largest rotation {float(self.peak[0]) / self.case.wall.alpha:.3g} alpha"
-            )
+        if self.joints is None:
+            alpha = float(self.peak[0]) / self.of_wall[0].wall.alpha
+            what = f"{len(self.impacts)} impacts, largest rotation {alpha:.3g} alpha"
         else:
             what = f"{len(self.bodies)} blocks, largest opening {self.opening.max(initial=0):.3g} m, "
             what += f"{len(self.fallen)} fallen"

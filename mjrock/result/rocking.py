@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..problem.wall.case import Case
-from ..quantities import Array, require_within
+from ..quantities import Array
 
 
 class Impact(NamedTuple):
@@ -100,14 +100,3 @@ def farthest(case: Case, rocking: Rocking, theta: Array) -> tuple[float, float]:
         return max(peak, float(theta[-1])), max(inwards, 0.0)
     peak = max(peak, abs(float(theta[-1])))
     return (peak, max(inwards, 0.0)) if outwards >= inwards else (max(outwards, 0.0), peak)
-
-
-def displacement_at(case: Case, pose: Array, z: float) -> Array:
-    """Horizontal displacement of the middle of a wall at the height z above its base [m], shape (n,).
-
-    Poses are displacements x, z of the centroid [m] and rotations [rad], shape (n, 3). A ValueError says if the height
-    is not on the wall.
-    """
-    wall = case.wall
-    above = require_within("height z", z, 0.0, 2 * wall.h * (1 + 1e-12), "m") - wall.centroid_height
-    return np.asarray(pose[:, 0] + above * np.sin(pose[:, 2]) + wall.centroid_offset * (1 - np.cos(pose[:, 2])))

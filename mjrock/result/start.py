@@ -7,19 +7,16 @@ import math
 import numpy as np
 
 from ..geometry.frames import PLANE, SPACE
-from ..problem.masonry.case import MasonryCase
-from ..problem.wall.case import Case
-from ..quantities import GRAVITY, ON_ITS_FACE, require_array, require_within, shown
+from ..problem.masonry.case import AnyCase
+from ..quantities import require_array, require_within, shown
 from .response import End, State
 
 PARTS = ("pose", "velocity")
 UNIT = 1e-6
 """Largest difference of the length of a quaternion from one [-]."""
-HELD = 1e-3
-"""Largest speed that the guide of an actuator takes from a block at a start, over sqrt(g size) [-]."""
 
 
-def required_start(start: object, case: Case | MasonryCase) -> State:
+def required_start(start: object, case: AnyCase) -> State:
     """A start as pose and velocity of all bodies, of shape (bodies, 3), in space (bodies, 7) and (bodies, 6), finite.
 
     Raises:
@@ -33,29 +30,22 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
         start = tuple(start)
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
-    bodies = 1 if isinstance(case, Case) else len(case.masonry.free)
-    freedom = PLANE if isinstance(case, Case) or not case.masonry.in_space else SPACE
+    bodies, freedom = len(case.bodies), SPACE if case.in_space else PLANE
     pose, velocity = (
         require_array(f"start, {name}", part, (bodies, numbers))
         for name, part, numbers in zip(PARTS, start, (freedom.nq, freedom.nv), strict=True)
     )
-    if isinstance(case, Case):
-        require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
+    velocity = case.require_start(pose, velocity)
     for name, values in zip(PARTS, (pose, velocity), strict=True):
         require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, 1e3)
     if freedom is SPACE:
         size = np.linalg.norm(pose[:, 3:], axis=1)
         for length in size[np.abs(size - 1) > UNIT].tolist():
             require_within("start, length of a quaternion", length, 1 - UNIT, 1 + UNIT)
-    guiding = [one for one in case.actuators.values() if any(one.guide)] if isinstance(case, MasonryCase) else []
-    if isinstance(case, MasonryCase) and guiding:
-        smallest = min(case.masonry.blocks[one.block].size for one in guiding)
-        case.require_guided("start, velocity", velocity, HELD * math.sqrt(GRAVITY * smallest))
-        velocity = np.where(case.guided, 0.0, velocity)
     return pose, velocity
 
 
-def require_unbreakable(case: Case | MasonryCase) -> None:
+def require_unbreakable(case: AnyCase) -> None:
     """Raise ValueError for a tie that breaks, of which the text of a model, which a fixed step is, knows nothing."""
     for name, link in case.links.items():
         if link.law.ultimate < math.inf:

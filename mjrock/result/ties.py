@@ -10,12 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import laden, placed
-from ..problem.wall.case import Case
+from ..problem.masonry.case import AnyCase
 from ..problem.wall.effect import Anchored
 from ..quantities import Array
 from ..scene.scene import Scene
+from .bodies import Moving
 
 PLAUSIBLE = 0.05
 """Share of its length up to which a tie may yield before that is warned of [-]: the characteristic strain at the
@@ -73,15 +72,13 @@ class TieMotion:
         return float(np.nanmax(np.abs(self.elongation), initial=0.0))
 
 
-def motion_of_ties(
-    case: Case | MasonryCase, t: Array, pose: Array, plastic: Mapping[str, Plastic]
-) -> dict[str, TieMotion]:
-    """The ties of a case, of a wall or of masonry, at poses as of a `Response` and times t [s]."""
-    return {name: _motion(case, tie, t, pose, plastic.get(name)) for name, tie in case.springs.items()}
+def motion_of_ties(moving: Moving, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
+    """The ties of a case where its bodies are."""
+    return {name: _motion(moving, tie, plastic.get(name)) for name, tie in moving.case.springs.items()}
 
 
-def _motion(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
-    elongation, law = elongation_of(case, tie, t, pose), tie.law
+def _motion(moving: Moving, tie: Anchored, ended: Plastic | None) -> TieMotion:
+    elongation, law, t = elongation_of(moving, tie), tie.law, moving.t
     if law.push > 0:
         elongation = elongation - (0.0 if ended is None else ended.start)
         drawn = law.drawn(elongation)
@@ -98,52 +95,18 @@ def _motion(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array, ende
     return TieMotion(elongation, drawn, force, law.strength if spent else float(force.max()), broken)
 
 
-def elongation_of(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array) -> Array:
-    """How much longer than its slack length a tie is at poses as of a `Response` [m], negative where it is slack.
-
-    The times t [s] say where supports are, shape (n,).
-    """
-    return np.asarray(np.linalg.norm(across(case, tie, t, pose), axis=1) - tie.law.reach)
+def elongation_of(moving: Moving, tie: Anchored) -> Array:
+    """How much longer than its slack length a tie is where bodies are [m], negative where it is slack, shape (n,)."""
+    return np.asarray(np.linalg.norm(across(moving, tie), axis=1) - tie.law.reach)
 
 
-def across(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array) -> Array:
-    """From the anchor of a link to the point that it holds at poses as in `elongation_of` [m], shape (n, d)."""
-    held = held_by(case, tie)[1]
+def across(moving: Moving, tie: Anchored) -> Array:
+    """From the anchor of a link to the point that it holds where bodies are [m], shape (n, d)."""
+    held = moving.case.held_by(tie)
     anchor = tie.anchor_of(held)
-    between = held - anchor + _displaced(case, tie.block, held, t, pose)
-    if tie.anchor_block is not None:
-        between = between - _displaced(case, tie.anchor_block, anchor, t, pose)
-    return np.asarray(between)
-
-
-def _displaced(case: Case | MasonryCase, block: int, point: Array, t: Array, pose: Array) -> Array:
-    """Displacement of a point of a block from rest [m], shape (n, d); that of its support where the block is fixed."""
-    if isinstance(case, Case):
-        body, centroid = 0, np.array([case.wall.centroid_offset, case.wall.centroid_height])
-    elif block not in case.masonry.free:
-        name = case.masonry.names[block]
-        still = np.zeros((len(t), len(point)))
-        return next((support.at(t) for support in case.supports if support.block == name), still)
-    else:
-        body, centroid = case.masonry.free.index(block), laden(case.masonry, case.effects)[1][block]
-    moved, arm = pose[:, body], point - centroid
-    if len(arm) == 2:
-        sine, cosine = np.sin(moved[:, 2]), np.cos(moved[:, 2]) - 1
-        turned = np.column_stack([arm[0] * cosine + arm[1] * sine, arm[1] * cosine - arm[0] * sine])
-        return np.asarray(moved[:, :2] + turned)
-    w, v = moved[:, 3:4], moved[:, 4:]
-    # (R - 1) r = 2 w v x r + 2 v x (v x r)
-    turned = np.cross(v, np.broadcast_to(arm, v.shape))
-    return np.asarray(moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned))
-
-
-def held_by(case: Case | MasonryCase, tie: Anchored) -> tuple[int, Array, Array]:
-    """The body that a tie holds, the point where it does and the centroid of the body, at rest [m]."""
-    if isinstance(case, Case):
-        wall = case.wall
-        return 0, np.array([-case.block.b, tie.height]), np.array([wall.centroid_offset, wall.centroid_height])
-    masonry, held = case.masonry, np.array(placed(case.masonry, tie))
-    return masonry.free.index(tie.block), held, laden(masonry, case.effects)[1][tie.block]
+    ends = ((tie.block, held), (tie.anchor_block, anchor))
+    at_held, at_anchor = (moving.displaced(block, point[None])[:, 0] for block, point in ends)
+    return np.asarray(held - anchor + at_held - at_anchor)
 
 
 def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
@@ -159,7 +122,7 @@ def overdrawn(tie: Anchored, drawn: Plastic) -> bool:
     return tie.law.holds and tie.law.ultimate == math.inf and drawn.elongation > PLAUSIBLE * tie.span
 
 
-def warn_of_ties(case: Case | MasonryCase, plastic: Mapping[str, Plastic]) -> None:
+def warn_of_ties(case: AnyCase, plastic: Mapping[str, Plastic]) -> None:
     """Warn of ties without an `ultimate` that were drawn out beyond PLAUSIBLE of their length."""
     for name, drawn in plastic.items():
         length = case.links[name].span

@@ -16,7 +16,7 @@ from ..engine.simulation import simulate
 from ..files import write_arrays
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
-from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Implausible, keep, require_kind, shown, spelt
 from ..reference.compliant import solve_compliant
@@ -24,6 +24,7 @@ from ..result.response import Response
 from ..result.ties import Plastic
 from ..theory.analytical import solve_analytical
 from .campaign_task import Row
+from .subject import subject_of
 
 SOLVERS: dict[str, Callable[..., Response]] = {
     "analytical": solve_analytical,
@@ -31,40 +32,13 @@ SOLVERS: dict[str, Callable[..., Response]] = {
     "MuJoCo": simulate,
     "explicit": solve_explicit,
 }
-OF_MASONRY = ("MuJoCo", "explicit")
-"""The solvers that take masonry."""
 OPTIONS = {name: tuple(inspect.signature(solver).parameters)[2:] for name, solver in SOLVERS.items()}
 """The options of each solver."""
-WALL_COLUMNS = (
-    "solver",
-    "law",
-    "outcome",
-    "peak_over_alpha",
-    "peak_over_overturning",
-    "inwards_over_alpha",
-    "impacts",
-    "restitution_1",
-    "restitution_2",
-    "restitution_3",
-    "end_s",
-    "message",
-)
 TIE_COLUMNS = ("elongation_m", "force_N", "energy_J", "broken_s")
 """Columns of each tie, after its name: how far it has yielded, its largest force, what yielding and breaking took, and
 when it broke, empty where it did not."""
 ACTUATOR_COLUMNS = ("largest_force_N", "work_J")
 """Columns of each actuator, after its name: its largest force, and with a ledger what it has put in by the end."""
-MASONRY_COLUMNS = (
-    "solver",
-    "outcome",
-    "fallen",
-    "first_fall_s",
-    "largest_opening_m",
-    "largest_sliding_m",
-    "largest_rotation_rad",
-    "end_s",
-    "message",
-)
 
 
 @dataclass(frozen=True)
@@ -89,7 +63,7 @@ class Analysis:
         TypeError: for an argument of another type.
     """
 
-    case: Case | MasonryCase
+    case: AnyCase
     solver: str = "MuJoCo"
     e: Restitution | None = None
     contacts: Contacts | None = None
@@ -105,30 +79,17 @@ class Analysis:
             if not isinstance(value, Mapping):
                 raise TypeError(f"{name} = {shown(value)} is not a mapping of names to values")
             keep(self, **{name: dict(value)})
-        valid_solvers = tuple(SOLVERS) if isinstance(self.case, Case) else OF_MASONRY
-        if not isinstance(self.solver, str) or self.solver not in valid_solvers:
-            whom = "" if isinstance(self.case, Case) else ", which take masonry"
-            raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(valid_solvers)}{whom}")
-        if isinstance(self.case, Case):
-            self._require_wall(self.case)
-        elif self.e is not None or self.contacts is not None:
-            raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
+        subject = subject_of(self.case)
+        solvers, whom = subject.SOLVERS
+        if not isinstance(self.solver, str) or self.solver not in solvers:
+            raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(solvers)}{whom}")
+        subject.require(self.solver, self.e, self.contacts)
         valid = OPTIONS[self.solver]
         unknown = self.options.keys() - set(valid)
         if unknown:
             raise ValueError(
                 f"{self.solver} has no option {', '.join(sorted(map(str, unknown)))}; it has {', '.join(valid)}"
             )
-
-    def _require_wall(self, case: Case) -> None:
-        """Raise ValueError unless the wall has what its solver needs."""
-        needed = "e" if self.solver == "analytical" else "contacts"
-        if getattr(self, needed) is None:
-            raise ValueError(f"the solver {self.solver} needs {needed}")
-        if self.solver == "analytical" and self.e is not None and (doubt := self.e.doubt(case.wall, case.stop_top)):
-            warnings.warn(doubt, Implausible, stacklevel=4)
-        if self.contacts is not None and self.solver != "analytical":
-            self.contacts.require_fit(case.block, side_stop=case.one_sided)
 
     @property
     def COLUMNS(self) -> tuple[str, ...]:
@@ -137,25 +98,21 @@ class Analysis:
         if self.options.get("forces"):
             own += ("largest_reaction_N",)
         names = ACTUATOR_COLUMNS if self.options.get("ledger") else ACTUATOR_COLUMNS[:1]
-        if isinstance(self.case, Case):
-            return WALL_COLUMNS + own
-        return MASONRY_COLUMNS + own + tuple(f"{jack}_{name}" for jack in self.case.actuators for name in names)
+        own += tuple(f"{jack}_{name}" for jack in self.case.actuators for name in names)
+        return (*subject_of(self.case).COLUMNS, "end_s", "message", *own)
 
     @property
     def law(self) -> str:
         """The law of the damping, or "restitution" for the analytical solver; of masonry without a law "given"."""
-        if isinstance(self.case, MasonryCase):
-            given = self.case.masonry.law
-            return "given" if given is None else str(getattr(given, "name", spelt(given)))
-        return "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
+        return subject_of(self.case).law(self.solver, self.contacts)
 
     @property
     def PEAK(self) -> str:
         """The column that an incremental dynamic analysis gathers; it is infinite for what has overturned."""
-        return "peak_over_alpha" if isinstance(self.case, Case) else "largest_rotation_rad"
+        return subject_of(self.case).PEAK
 
     def __repr__(self) -> str:
-        by = "" if isinstance(self.case, MasonryCase) else f", {self.contacts}"
+        by = "" if self.contacts is None else f", {self.contacts}"
         by = f", e = {self.e}" if self.solver == "analytical" else by
         options = "".join(f", {name} = {value}" for name, value in self.options.items())
         return f"<Analysis by {self.solver} of {self.case!r}{by}{options}>"
@@ -173,17 +130,11 @@ class Analysis:
         response = self.solve()
         if history is not None:
             save_history(response, history)
-        values = self._of_wall(response) if isinstance(self.case, Case) else _of_masonry(response)
+        values = subject_of(self.case).values(response, self.law)
         ending = float(response.t[-1]), response.message
         forces = () if response.kept_forces is None else (response.forces.largest_reaction,)
         own = *_of_ties(response), *forces, *_of_actuators(response)
         return dict(zip(self.COLUMNS, (*values, *ending, *own), strict=True))
-
-    def _of_wall(self, response: Response) -> tuple[object, ...]:
-        """The columns of a wall but the last two."""
-        restitution = [float(value) for value in response.restitution[:3]] + [None] * 3
-        peaks = response.peak_over_alpha, response.peak_over_overturning, response.inwards_over_alpha
-        return self.solver, self.law, response.outcome.value, *peaks, len(response.impacts), *restitution[:3]
 
 
 def _of_ties(response: Response) -> Iterator[float | None]:
@@ -200,19 +151,6 @@ def _of_actuators(response: Response) -> Iterator[float]:
         yield float(force[np.abs(force).argmax()])
         if response.ledger is not None:
             yield float(response.ledger.actuators[name][-1])
-
-
-def _of_masonry(response: Response) -> tuple[object, ...]:
-    """The columns of masonry but the last two."""
-    return (
-        response.solver,
-        response.outcome.value,
-        len(response.fallen),
-        min(response.fallen.values(), default=None),
-        float(response.opening.max()),
-        float(response.sliding.max()),
-        math.inf if response.fallen else float(response.peak.max()),
-    )
 
 
 @dataclass(frozen=True, repr=False)

@@ -7,13 +7,12 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from ..problem.ground.motion import GroundMotion
-from ..problem.wall.case import Case
 from ..quantities import GRAVITY, Within, keep_declared, require_kind, shown
 from .analysis import Analysis
 from .campaign_task import Row
+from .subject import subject_of
 
 GROWTH = 1.25
 """Ratio of neighbouring scales while a bracket is searched [-]. A wall may stand again above a scale that overturns it:
@@ -130,8 +129,8 @@ class Capacity:
     def peak(self) -> float:
         """Largest horizontal acceleration of the case over g [-], 0 where there is none."""
         case = self.analysis.case
-        motion = case.motion or getattr(case, "transverse", None)
-        return motion.peak / GRAVITY if isinstance(motion, GroundMotion) else 0.0
+        motion = case.motion or case.transverse
+        return 0.0 if motion is None else motion.peak / GRAVITY
 
     @property
     def labels(self) -> Mapping[str, object]:
@@ -152,8 +151,7 @@ class Capacity:
         case = self.analysis.case
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=".* peaks at ", category=UserWarning)  # weak and strong are meant
-            grounds = {name: getattr(case, name, None) for name in ("motion", "vertical", "transverse")}
-            moved = {name: ground.scaled(scale) for name, ground in grounds.items() if ground is not None}
+            moved: dict[str, Any] = {name: ground.scaled(scale) for name, ground in case.grounds.items()}
             return replace(self.analysis, case=replace(case, **moved))
 
     def __call__(self, history: Path | None = None) -> Row:
@@ -181,8 +179,8 @@ class Capacity:
 
     def _said(self, low: float, high: float, least: float, above: float | None) -> str:
         """What is known, in words: the scales between which the outcome changes, and what was tried beside them."""
-        what = "wall overturns" if isinstance(self.analysis.case, Case) else "masonry falls"
-        message = f"The {what} at {high * self.peak:.4g} g and stands at {low * self.peak:.4g} g"
+        falls = subject_of(self.analysis.case).FALLS
+        message = f"The {falls} at {high * self.peak:.4g} g and stands at {low * self.peak:.4g} g"
         if self.below:
             down = f"{100 * self.spacing:.3g} % apart, down to {least * self.peak:.4g} g"
             message += f" and at all {self.below} lower intensities that were tried, {down}."

@@ -31,7 +31,7 @@ from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding
 from mjrock.geometry.frames import frames_of
 from mjrock.quantities import Array
-from mjrock.scene.of_case import course_of
+from mjrock.scene.masonry import masonry_course
 from scripts.shared import cli
 
 WIDTH, HEIGHT = 0.6, 4.2
@@ -132,7 +132,7 @@ def motion_of(answer: mr.MasonryResponse) -> Motion:
 def finely(case: mr.MasonryCase, timestep: float) -> Motion:
     """Fixed steps so short that not all of them are kept."""
     scene, every, done, ended = mr.masonry_scene(case), round(SAMPLE / timestep), 0, False
-    course = course_of(case, scene)
+    course = masonry_course(case, scene)
     setting = Setting.of(scene, course)
     peaks, samples = np.zeros(len(scene.bodies.names)), []
     with engine_of(scene) as engine:

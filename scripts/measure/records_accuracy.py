@@ -62,7 +62,7 @@ Solve = Callable[[mr.Case, mr.Contacts], mr.Response]
 
 def peak_of(response: mr.Response) -> float:
     """Largest rotation over alpha, 1 or more for a wall that overturns."""
-    return float(np.abs(response.theta).max() / response.case.block.alpha)
+    return float(np.abs(response.theta).max() / response.of_wall[0].block.alpha)
 
 
 def drawn(k_n: float, side_stop: bool, seed: int, duration: float) -> tuple[mr.Case, mr.Contacts]:

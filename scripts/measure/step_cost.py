@@ -82,7 +82,7 @@ def waited(name: str, whole: bool = False) -> list[object]:
     spent, stats = answer.stats["stepping_processor_time"], answer.stats
     setting_up = stats["processor_time"] - spent
     whole = setting_up + spent * asked / case.duration
-    blocks = len(answer.case.masonry.blocks)
+    blocks = len(answer.of_masonry.masonry.blocks)
     return [name, blocks, lines, f"{stats['timestep'] * 1e6:.1f}", f"{case.duration:g}", f"{spent:.1f}", f"{whole:.0f}"]
 
 

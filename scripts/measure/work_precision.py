@@ -36,7 +36,7 @@ from mjrock.result.history import rocking_history
 from mjrock.result.ledger import StepError
 from mjrock.result.response import Response
 from mjrock.result.rocking import Rocking, peak_energies, restitution_of
-from mjrock.scene.of_case import course_of
+from mjrock.scene.wall import wall_course
 from mjrock.theory.motion import RigidMotion
 from scripts.shared import cli
 from scripts.shared.paper import FIGURE_3, K_N
@@ -115,7 +115,7 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
             held = model.pair_solreffriction[:, 1] < 0
             model.pair_solreffriction[held, 1] = -d / (2 * h)
             model.opt.impratio = 1e7
-        course = course_of(case, scene)
+        course = wall_course(case, scene)
         engine.release(course)
         synchronised = integrator == "RK4"  # the others keep velocities half a step back, as our own steps do
         if synchronised:
@@ -217,22 +217,22 @@ def measure(
     repeats: int,
 ) -> Point:
     """Error over all references, median time of the first."""
-    rebounds = 2 if references[0][0].case.side_stop else 4
+    rebounds = 2 if references[0][0].of_wall[0].side_stop else 4
     e_errors, rms, residuals, steps = [], [], [], 0
     for reference, contacts in references:
         try:
-            response, _ = solve(reference.case, contacts, True)
+            response, _ = solve(reference.of_wall[0], contacts, True)
         except (mr.SimulationError, StepError):
             return Point(label, method, setting, 0, math.nan, math.nan, math.nan, math.nan)
         steps = response.stats.get("steps", response.stats.get("evaluations", 0))
-        wanted = restitution_of(*peak_energies(reference.case, reference.peaks))[:rebounds]
+        wanted = restitution_of(*peak_energies(reference.of_wall[0], reference.peaks))[:rebounds]
         found = np.append(response.restitution, np.full(rebounds, np.nan))[: len(wanted)]
         e_errors.append(float(np.max(np.abs(np.nan_to_num(found / wanted - 1, nan=1.0)))))
         rms.append(mr.compare(reference, response).rms)
         residual = response.energy_residual
         if residual is not None:
-            residuals.append(float(np.abs(residual).max()) / reference.case.release_energy)
-    case, contacts = references[0][0].case, references[0][1]
+            residuals.append(float(np.abs(residual).max()) / reference.of_wall[0].release_energy)
+    case, contacts = references[0][0].of_wall[0], references[0][1]
     seconds = [solve(case, contacts, False)[1]]
     seconds += [solve(case, contacts, False)[1] for _ in range(repeats - 1) if seconds[0] < 1]
     errors = max(e_errors), max(rms), max(residuals, default=math.nan)
@@ -322,7 +322,7 @@ def walls_study(count: int) -> str:
 
         def error(run: Response, exact: Response = exact) -> float:
             pairs = [(i.energy_after, j.energy_after) for i, j in zip(exact.impacts[:2], run.impacts[:2], strict=False)]
-            released: float = exact.case.release_energy
+            released: float = exact.of_wall[0].release_energy
             if len(run.impacts) < min(2, len(exact.impacts)):
                 return 1.0
             return max([abs(a - b) / released for a, b in pairs] + [mr.compare(exact, run).rms])

@@ -19,7 +19,7 @@ def at_two_times(answer: mr.Response, words: dict[str, int], camera: tuple[float
     figure = Figure(figsize=(9.6, 4.0), layout=ConstrainedLayoutEngine(rect=ROOM, wspace=0.08))
     for i, (word, sample) in enumerate(words.items()):
         ax = figure.add_subplot(1, 2, i + 1, projection="3d")
-        plotting.blocks(ax, answer.case.masonry, answer.pose[sample], camera=camera)
+        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[sample], camera=camera)
         ax.zaxis.labelpad = CLOSE
         ax.set_title(f"{word}, $t$ = {answer.t[sample]:.2f} s", fontsize=9)
     return figure

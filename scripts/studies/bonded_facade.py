@@ -68,8 +68,8 @@ def drawn(answers: dict[str, mr.Response]) -> Figure:
     figure = Figure(figsize=(4.2 * len(answers), 3.0), layout=ConstrainedLayoutEngine(rect=(0.03, 0.0, 0.94, 1.0)))
     for i, (name, answer) in enumerate(answers.items()):
         ax = figure.add_subplot(1, len(answers), i + 1, projection="3d")
-        plotting.blocks(ax, answer.case.masonry, answer.pose[-1], camera=CAMERA, limits=SEEN)
-        ax.set_title(f"{name}: {len(answer.fallen)} of {len(answer.case.masonry.free)} fallen", fontsize=9)
+        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[-1], camera=CAMERA, limits=SEEN)
+        ax.set_title(f"{name}: {len(answer.fallen)} of {len(answer.of_masonry.masonry.free)} fallen", fontsize=9)
     return figure
 
 

@@ -136,7 +136,7 @@ def creep(duration: float, rest: float) -> tuple[float, float]:
     """The largest speed in the heap of a wall after its fall [m/s], and the largest way of a block in a time after it
     [m]."""
     fallen = mr.solve_explicit(case_of(Run("wall of 36 units", 1.0, 1.5, duration)), output_step=0.02)
-    quiet = mr.solve_explicit(mr.MasonryCase(fallen.case.masonry, rest), output_step=0.05, start=fallen.end)
+    quiet = mr.solve_explicit(mr.MasonryCase(fallen.of_masonry.masonry, rest), output_step=0.05, start=fallen.end)
     return fastest(fallen, fallen.velocity[-1]), fastest(quiet, quiet.pose[-1] - quiet.pose[0])
 
 

@@ -91,7 +91,7 @@ def drawn(shares: dict[float, list[float]], stiffnesses: Sequence[float], answer
     figure = Figure(figsize=(9.0, 4.2), layout="constrained")
     solid = figure.add_subplot(1, 2, 1, projection="3d")
     at = int(argrelmax(answer.tilt[:, 0], order=60)[0][0])
-    plotting.blocks(solid, answer.case.masonry, answer.pose[at], camera=(12.0, -40.0))
+    plotting.blocks(solid, answer.of_masonry.masonry, answer.pose[at], camera=(12.0, -40.0))
     ax = figure.add_subplot(1, 2, 2)
     for (retardation, values), (colour, marker, line) in zip(shares.items(), STYLES, strict=False):
         label = f"c/k = {1e3 * retardation:g} ms"

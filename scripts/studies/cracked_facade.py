@@ -185,7 +185,7 @@ def drawn(found: Sequence[Found], motions: Sequence[mr.GroundMotion]) -> Figure:
         pga = JUST_STANDS * float(least[most, 2])
         answer = solved(2, sides, motions[most], pga)
         at = int(np.abs(answer.theta[:, 1] - answer.theta[:, 0]).argmax())
-        plotting.blocks(ax, answer.case.masonry, answer.pose[at])
+        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[at])
         ax.set_title(f"{sides}, {found[most].motion},\n{pga:.2g} g, {answer.t[at]:.1f} s", fontsize=9)
         ax.set_ylim(-1.0, 9.6)
         ax.set_xlim(-2.0, 2.0)

@@ -43,9 +43,9 @@ def contacts_on(k_n: float) -> mr.Contacts:
 
 def tie_force(response: mr.Response) -> NDArray[np.float64]:
     """Force of the tie [N], shape (n,), from the rotation of the rigid wall."""
-    (pull,) = response.case.pulls
+    (pull,) = response.of_wall[0].pulls
     theta = np.maximum(response.theta, 0.0)
-    plastic = yielded(response.case.pulls, theta)[:, 0]
+    plastic = yielded(response.of_wall[0].pulls, theta)[:, 0]
     force: NDArray[np.float64] = pull.stiffness * np.maximum(pulled(pull, theta, 1.0)[0] - plastic, 0.0)
     return force
 

@@ -31,7 +31,7 @@ def heap(length: float, height: float, duration: float) -> mr.Response:
 
 def drawn(answer: mr.Response) -> Figure:
     """The wall at some times of its fall, seen from the ground."""
-    masonry = answer.case.masonry
+    masonry = answer.of_masonry.masonry
     length, height = np.concatenate([masonry.blocks[i].corners for i in masonry.free]).max(axis=0)
     limits = [(-0.3 * length, 3.1 * length), (-0.5, height + 0.4)]
     figure = Figure(figsize=(13, 1.9), layout="constrained")

@@ -111,7 +111,7 @@ def drawn(measured: dict[float, float], answers: dict[float, mr.MasonryResponse]
         ax = figure.add_subplot(grid[0, i])
         far = np.hypot(answer.pose[:, :, 0], answer.pose[:, :, 1]).max(axis=1)
         at = int((far > SHOWN).argmax()) or len(far) - 1
-        plotting.blocks(ax, answer.case.masonry, answer.pose[at])
+        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[at])
         ax.set_xlim(-0.3, 2.0)
         ax.set_ylim(-0.15, 2.0)
         ax.set_title(rf"$\mu$ = {friction:g}, {measured[friction]:.3f} $g$", fontsize=10)

@@ -9,7 +9,7 @@ from explicit_blocks import explicit
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
-from mjrock.scene.of_case import course_of
+from mjrock.scene.masonry import masonry_course
 
 PULSE = mr.GroundMotion.sine(2.0, 0.7)
 CUBE = mr.Masonry([GROUND, box(-0.5, 0.5, 0, 1, name="cube")], k_n=1e9, friction=0.5, xi=0.05)
@@ -66,7 +66,7 @@ def against(masonry, duration, motion, h, timestep=None):
     """Largest differences of peak rotation and of rotation to rigid blocks with rigid friction, over the peaks."""
     case = mr.MasonryCase(masonry, duration, motion)
     scene = mr.masonry_scene(case)
-    t, pose = explicit(scene, course_of(case, scene), h, round(1e-3 / h))
+    t, pose = explicit(scene, masonry_course(case, scene), h, round(1e-3 / h))
     run = mr.solve_explicit(case, timestep=timestep)
     theta = np.column_stack([np.interp(t, run.t, angle) for angle in run.theta.T])
     peaks = np.abs(pose[:, :, 2]).max(axis=0)

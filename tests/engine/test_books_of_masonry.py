@@ -8,8 +8,9 @@ from masonry_blocks import GROUND, box, tilted
 
 import mjrock as mr
 from mjrock.engine import stepping
-from mjrock.engine.run_warnings import warn_of_masonry
+from mjrock.engine.run_warnings import warn_of_gain
 from mjrock.result.ledger import Ledger
+from mjrock.result.problem import MasonryProblem
 
 
 @pytest.mark.parametrize("slope", [0.02, 0.06, 0.2, 0.34])
@@ -55,6 +56,7 @@ def test_a_ledger_that_does_not_close_is_warned_of(share, warns):
     t = np.linspace(0.0, 1.0, 5)
     ledger = Ledger(t, 0 * t, 0 * t, 100.0 + 100.0 * share * t, {}, 0 * t, 0 * t)
     assert ledger.largest == pytest.approx(100.0, rel=0.02)
-    response, run = SimpleNamespace(ledger=ledger, fallen={}), SimpleNamespace(gain=None)
+    response = SimpleNamespace(ledger=ledger, joints=None, motion=None)
+    run = SimpleNamespace(gain=None, scale=0.0, problem=MasonryProblem(None))
     with pytest.warns(UserWarning, match="does not close: .*; a remedy") if warns else np.errstate():
-        warn_of_masonry(response, run, "a remedy")
+        warn_of_gain(response, run, "a remedy")

@@ -11,7 +11,7 @@ from scenes import stock_takes
 
 import mjrock as mr
 from mjrock.geometry.kinematics import gaps
-from mjrock.scene.of_case import course_of
+from mjrock.scene.masonry import masonry_course
 
 PULSE = mr.GroundMotion.sine(2.0, 0.7)
 STRONG = mr.GroundMotion.sine(3.0, 0.9)
@@ -27,7 +27,7 @@ def against_explicit(masonry, duration, motion, accuracy, h=2e-6, vertical=None)
     case = mr.MasonryCase(masonry, duration, motion, vertical=vertical)
     answer = mr.simulate(case, accuracy=accuracy)
     scene = mr.masonry_scene(case)
-    t, pose = explicit(scene, course_of(case, scene), h, round(1e-3 / h))
+    t, pose = explicit(scene, masonry_course(case, scene), h, round(1e-3 / h))
     theta = pose[: len(answer.t), :, 2]
     assert t[: len(answer.t)] == pytest.approx(answer.t, abs=1e-9)
     peaks = np.abs(theta).max(axis=0)

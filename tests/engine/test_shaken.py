@@ -9,7 +9,7 @@ from mjrock.engine.pace import Pace, approached
 from mjrock.engine.stepping import fitted_steps
 from mjrock.method import METHOD
 from mjrock.scene.ground import Shaking, ground_velocity
-from mjrock.scene.of_case import course_of, scene_of
+from mjrock.scene.wall import wall_course
 from scripts.measure import records_accuracy
 
 WALL = mr.Block(0.3, 2.1)
@@ -25,8 +25,8 @@ def test_a_wall_on_ice_stays_where_it_is(accuracy):
     contacts = mr.Contacts.from_damping(WALL, k_base=5e8, xi_base=0.05, friction=0.0)
     record = mr.GroundMotion.synthetic(peak=3.0, duration=2.0, seed=5)
     case = mr.Case(WALL, 0.0, 2.0, side_stop=False, motion=record)
-    scene = scene_of(case, contacts)
-    course = course_of(case, scene)
+    scene = mr.scene_of(case, contacts)
+    course = wall_course(case, scene)
     with engine_of(scene) as engine:
         engine.place(course)
         steps = fitted_steps(engine, scene, course, accuracy).record
@@ -38,8 +38,8 @@ def test_a_wall_on_ice_stays_where_it_is(accuracy):
 
 def test_touches_are_approached(two_sided, contacts):
     """A step on moving ground ends before a touch that is not near, and meets one that is."""
-    scene = scene_of(two_sided, contacts)
-    pace = Pace.of(scene, course_of(two_sided, scene), 1e-3)
+    scene = mr.scene_of(two_sided, contacts)
+    pace = Pace.of(scene, wall_course(two_sided, scene), 1e-3)
     near = METHOD.near * pace.short
     assert approached(pace, 1.0, 10 * near) == (METHOD.approach * (10 * near), 0.0)
     assert approached(pace, 5 * near, 10 * near) == (5 * near, 0.0)

@@ -9,7 +9,7 @@ from masonry_blocks import box
 
 import mjrock as mr
 from mjrock.engine import model as engine_model
-from mjrock.scene.of_case import course_of
+from mjrock.scene.wall import wall_course
 
 WALL = mr.Block.from_size(0.6, 4.2)
 LEVEL = mr.Polygon([(-19, -1), (19, -1), (19, 0), (-19, 0)], fixed=True)
@@ -73,7 +73,7 @@ def rubbing(friction, side_friction):
 def exact(friction, side_friction):
     case, contacts = rubbing(friction, side_friction)
     scene = mr.wall_scene(case, contacts)
-    return rebounds(WALL, explicit(scene, course_of(case, scene), 2e-6, 100)[1][:, 0, 2])
+    return rebounds(WALL, explicit(scene, wall_course(case, scene), 2e-6, 100)[1][:, 0, 2])
 
 
 @pytest.mark.parametrize(("friction", "side_friction"), [(0.8, 0.6), (0.8, 0.0), (3.0, 0.6), (0.5, 0.3)])
@@ -100,7 +100,7 @@ def test_a_facade_that_rubs_under_a_record(seed):
     motion = mr.GroundMotion.synthetic(peak=3.4, duration=6.0, seed=seed)
     case = mr.Case(wall, 0.0, 6.0, motion=motion)
     scene = mr.wall_scene(case, contacts)
-    _, pose = explicit(scene, course_of(case, scene), 2e-6, 500)
+    _, pose = explicit(scene, wall_course(case, scene), 2e-6, 500)
     peak = np.abs(pose[:, 0, 2]).max()
     assert 0.1 * wall.alpha < peak < wall.alpha
     assert np.abs(mr.simulate(case, contacts, accuracy=1e-4).theta).max() == pytest.approx(peak, rel=5e-3)

@@ -12,7 +12,7 @@ from mjrock.engine.pace import short_step
 from mjrock.engine.stepping import fitted_steps
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
-from mjrock.scene.of_case import course_of
+from mjrock.scene.wall import wall_course
 from scripts.shared.paper import FIGURE_3, K_N
 
 
@@ -61,7 +61,7 @@ def test_touch_phase_scatter_is_gone(contacts):
 def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
     """Half a short step before the first pose in a new contact, the gap closes."""
     scene = mr.wall_scene(one_sided, contacts)
-    released, h = course_of(one_sided, scene), short_step(scene, 1e-3)
+    released, h = wall_course(one_sided, scene), short_step(scene, 1e-3)
     with engine_of(scene) as engine:
         engine.place(released)
         steps = fitted_steps(engine, scene, released, 1e-3)

@@ -12,16 +12,16 @@ from mjrock.geometry.frames import PLANE, frames_of, rotation_change
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
 from mjrock.problem.wall.restoring_moment import pose_of
 from mjrock.problem.wall.ties_on_wall import pulled
-from mjrock.scene.of_case import course_of, scene_of
 from mjrock.scene.parts import Links
 from mjrock.scene.rest import settled
+from mjrock.scene.wall import wall_course
 from scripts.shared.paper import K_N
 
 
 def course_and_scene(case, contacts):
     """The course of a case, and its scene."""
-    scene = scene_of(case, contacts)
-    return course_of(case, scene), scene
+    scene = mr.scene_of(case, contacts)
+    return wall_course(case, scene), scene
 
 
 def poses(rng, count, bodies):

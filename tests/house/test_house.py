@@ -76,6 +76,14 @@ def test_no_circle():
             del waits[name]
 
 
+def test_the_engine_takes_scenes_and_knows_no_blocks():
+    """What it needs of a wall or of masonry is in the scene."""
+    paths = [path for path in MODULES if path.relative_to(ROOT).parts[0] == "engine"]
+    blocks = {"problem.wall.block", "problem.masonry.masonry"}
+    assert [f"{path.name} imports {target}" for path in paths for target in blocks & set(imports(path)[0])] == []
+    assert len(paths) > 20
+
+
 def test_functions_are_short():
     offenders = []
     for path in MODULES:
@@ -117,6 +125,17 @@ def test_nothing_is_solved_as_tests_are_collected():
     assert [f"{path} calls {name}" for path, name in calls if SOLVES.fullmatch(name)] == []
     text = "X = [lambda: mr.simulate(case)]\nfor x in f(mr.push()): pass\ndef g(): mr.solve_explicit(1)\n"
     assert [name for name in called_at_import(ast.parse(text)) if SOLVES.fullmatch(name)] == ["push"]
+
+
+def test_few_ask_whether_a_case_is_of_a_wall_or_of_masonry():
+    """A case answers for itself. It is asked which it is at the doors alone, where a class for it is chosen."""
+    kinds, doors = {"Case", "MasonryCase", "Masonry"}, []
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text())):
+            asks = isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("isinstance", "issubclass")
+            if asks and {one.id for one in ast.walk(node.args[1]) if isinstance(one, ast.Name)} & kinds:
+                doors.append(f"{path.relative_to(ROOT)}:{node.lineno}")
+    assert 1 < len(doors) <= 8, doors
 
 
 def test_no_name_stands_twice_in_the_explicit_steps():

@@ -137,7 +137,7 @@ def test_a_tie_that_has_yielded_is_slack_before_it_is_back():
     case = mr.Case(WALL, 0.0, 1.0, effects=(tie,))
     theta = np.array([0.0, 2e-4, 5e-3, 4e-3, 4.9e-3, 6e-3])
     bodies = Bodies(np.arange(6.0), (WALL.outline,), np.array([[0.0, 2.1]]), WALL.pose(theta)[:, None])
-    assert section.pulling(case, tie, bodies.t, bodies.poses)[0].tolist() == [False, True, True, False, True, True]
+    assert section.pulling(bodies.of_case(case), tie)[0].tolist() == [False, True, True, False, True, True]
 
 
 def test_any_bodies_can_be_drawn(tmp_path):

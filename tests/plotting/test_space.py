@@ -38,16 +38,17 @@ def test_blocks_are_drawn_where_a_pose_has_brought_them():
     """A quarter turn about x brings the corner (1/2, 1/2, 1/2) of the front block to (1/2, -1/2, 1/2)."""
     pose = REST.copy()
     pose[0] = [3.0, 1.0, 0.5, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0]
-    solids = Solids(MASONRY, np.zeros(1), pose[None], 2.0)
-    at_rest = np.array([1.0, 0.5, 1.0])
+    solids = Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), pose[None], 2.0)
+    at_rest, moving = np.array([1.0, 0.5, 1.0]), solids.moving
+    drawn = moving.placed(1, at_rest[None])[0, 0]
     np.testing.assert_allclose(
-        solids.displaced(0, 1, at_rest),
+        drawn,
         at_rest + 2 * np.array([3.0, 1.0, 0.5]) + 2 * np.array([0, -1.0, 0]),
         atol=1e-12,
     )
     corners = solids.corners(0)[solids.facets.body == 0].reshape(-1, 3)
-    assert np.abs(corners - solids.displaced(0, 1, at_rest)).sum(axis=1).min() < 1e-12
-    np.testing.assert_array_equal(solids.displaced(0, None, at_rest), at_rest)
+    assert np.abs(corners - drawn).sum(axis=1).min() < 1e-12
+    np.testing.assert_array_equal(moving.placed(None, at_rest[None])[0, 0], at_rest)
 
 
 def test_a_picture_has_the_faces_that_are_seen_and_the_same_scale_along_every_axis():
@@ -64,13 +65,15 @@ def test_a_picture_has_the_faces_that_are_seen_and_the_same_scale_along_every_ax
 
 @pytest.mark.parametrize(("azimuth", "last"), [(35.0, 0), (-145.0, 1)])
 def test_the_nearer_of_two_blocks_hides_the_other(azimuth, last):
-    assert Solids(MASONRY, np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0)[-1] == last
+    assert Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0)[-1] == last
 
 
 def test_a_low_block_before_a_high_one_is_drawn_later_though_its_centroid_is_farther():
     high = mr.Polyhedron.box((1, 1, 9), (-0.5, 0, 4.5))
     low = mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5))
-    solids = Solids(mr.Masonry((GROUND, low, high), xi=0), np.zeros(1), REST[None], camera=(60.0, 0.0))
+    solids = Solids(
+        mr.MasonryCase(mr.Masonry((GROUND, low, high), xi=0), 1.0), np.zeros(1), REST[None], camera=(60.0, 0.0)
+    )
     assert (solids.rests @ solids.eye)[0] < (solids.rests @ solids.eye)[1]
     assert solids.order(0).tolist() == [1, 0]
 
@@ -82,9 +85,9 @@ def test_a_block_within_a_frame_hides_its_far_leg_and_is_hidden_by_the_near_one(
     within = mr.Polyhedron.box((1, 0.8, 1), (0, 0, 0.5))
     masonry = mr.Masonry((GROUND, frame, within), xi=0)
     for azimuth, order in ((0.0, [0, 3, 1]), (180.0, [1, 3, 0])):
-        drawn = Solids(masonry, np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0).tolist()
+        drawn = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0).tolist()
         assert [part for part in drawn if part != 2] == order
-    top = Solids(masonry, np.zeros(1), REST[None], camera=(20.0, 0.0)).order(0)[-1]
+    top = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), REST[None], camera=(20.0, 0.0)).order(0)[-1]
     assert top == 2
 
 
@@ -146,7 +149,7 @@ def test_what_takes_the_plane_alone_says_so(one_sided, e, tmp_path):
 
 
 def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
-    solids = Solids(MASONRY, np.zeros(1), moved(place=(500.0, 0.0, 2.0))[None])
+    solids = Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), moved(place=(500.0, 0.0, 2.0))[None])
     low, high = solids.extent()
     np.testing.assert_allclose(low, [-1.0, -0.5, 0.0], atol=1e-12)
     np.testing.assert_allclose(high, [3.0, 0.5, 3.0], atol=1e-12)
@@ -154,7 +157,7 @@ def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
 
 def test_a_moving_picture_fills_its_figure():
     case = mr.MasonryCase(MASONRY, 1.0)
-    figure, _ = animation.scene(Solids(MASONRY, np.zeros(1), REST[None]), [], case)
+    figure, _ = animation.scene(Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), REST[None]), [], case)
     ax = figure.axes[0]
     width, height = np.ptp(np.concatenate([path.vertices for c in ax.collections for path in c.get_paths()]), axis=0)
     drawn = np.ptp(ax.transData.transform([(0, 0), (width, height)]), axis=0) / figure.bbox.size

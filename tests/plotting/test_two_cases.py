@@ -9,13 +9,17 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
+from mjrock.plotting.perspective import Faces
 from mjrock.plotting.section import tie_texts
+from mjrock.result.bodies import bodies_of
 from mjrock.result.compare import paired, taken_by
 from mjrock.result.rocking import Impact
 
 WALL = mr.Block.from_size(thickness=0.6, height=4.2)
 E = mr.Restitution.from_geometry(WALL)
 MOTION = mr.GroundMotion.synthetic(4.0, 3.0, seed=2)
+SLAB = [(-1.0, -0.2), (1.0, -0.2), (1.0, 0.0), (-1.0, 0.0)]
+TALL = [(-0.2, 0.0), (0.2, 0.0), (0.2, 1.0), (-0.2, 1.0)]
 TIE = mr.Tie(height=4.0, stiffness=2e6, slack=1e-3, strength=3e3, ultimate=0.002)
 
 
@@ -39,9 +43,7 @@ def test_a_wall_with_and_without_a_tie():
 
 
 def test_masonry_has_a_panel_with_the_force_of_its_ties():
-    ground = mr.Polygon([(-1.0, -0.2), (1.0, -0.2), (1.0, 0.0), (-1.0, 0.0)], fixed=True)
-    block = mr.Polygon([(-0.2, 0.0), (0.2, 0.0), (0.2, 1.0), (-0.2, 1.0)])
-    masonry = mr.Masonry([ground, block], k_n=1e9)
+    masonry = mr.Masonry([mr.Polygon(SLAB, fixed=True), mr.Polygon(TALL)], k_n=1e9)
     effects = mr.Tie(height=0.8, stiffness=1e6, slack=0.0, strength=3e3, block=1)
     answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.05, velocity=[(0.3, 0.0, 0.0)], effects=effects))
     ties = plotting.history(answer).axes[-1]
@@ -49,6 +51,25 @@ def test_masonry_has_a_panel_with_the_force_of_its_ties():
     assert ties.get_legend_handles_labels()[1] == [
         f"tie_0: drawn out by {1e3 * answer.ties['tie_0'].plastic[-1]:.3g} mm"
     ]
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_blocks_with_an_added_mass_turn_about_their_common_centroid(in_space):
+    """As in a film: the pose is that of the centroid of the block and its mass."""
+    blocks = [mr.Polygon(corners, fixed=fixed) for corners, fixed in ((SLAB, True), (TALL, False))]
+    at = {"at": (0.2, 0.0, 0.9)} if in_space else {"height": 0.9, "offset": 0.2}
+    heavy = mr.AddedMass(mass=2000.0, block=1, **at)
+    masonry = mr.Masonry([mr.Polyhedron.prism(one) for one in blocks] if in_space else blocks, k_n=1e9)
+    case = mr.MasonryCase(masonry, 0.2, velocity=[np.eye(6)[0]] if in_space else [(1.0, 0.0, 0.0)], effects=heavy)
+    answer = mr.solve_explicit(case)
+    assert answer.peak[0] > 0.02
+    (block,) = (body for body in bodies_of(case, answer.t, answer.pose, answer.velocity) if not body.fixed)
+    expected, ax = block.placed(block.corners)[-1], plotting.blocks(answer)
+    if in_space:
+        (drawn,) = (np.concatenate(child.corners) for child in ax.collections if isinstance(child, Faces))
+    else:
+        expected, drawn = expected[:, [0, 2]], ax.patches[1].get_xy()
+    assert np.linalg.norm(drawn[:, None] - expected, axis=2).min(axis=1).max() < 1e-12
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result.forces import JointFrames
+from mjrock.result.bodies import Moving
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def test_the_joint_on_the_lowest_free_block_moves_and_turns_with_it():
     block = mr.Block.from_size(thickness=0.5, height=0.8, length=1.0, density=2000.0)
     case = mr.MasonryCase(mr.Masonry.stack([block, block], 1e9), 1.0)
     x, z, turn = 0.1, 0.2, 0.3
-    middle, axes = JointFrames.of(case).placed(case, np.zeros(1), np.array([[(x, z, turn), (0.0, 0.0, 0.0)]]))
+    middle, axes = Moving(case, np.zeros(1), np.array([[(x, z, turn), (0.0, 0.0, 0.0)]])).joints(case.frames)
     np.testing.assert_allclose(middle[0, 0], (0.0, 0.0), atol=1e-12)
     np.testing.assert_allclose(middle[0, 1], (x + 0.4 * np.sin(turn), 0.4 + z + 0.4 * np.cos(turn)), atol=1e-12)
     np.testing.assert_allclose(axes[0, 1, 0], (np.sin(turn), np.cos(turn)), atol=1e-12)

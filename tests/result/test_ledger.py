@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine import run_warnings
 from mjrock.geometry.kinematics import gaps
+from mjrock.result import problem
 from mjrock.result.ledger import StepError, require_no_gain
 from scripts.shared.paper import FIGURE_3, K_N
 
@@ -52,7 +52,7 @@ def test_released_into_strong_dashpots():
 
 def test_one_that_does_not_close_says_so(one_sided, contacts, monkeypatch):
     mr.simulate(one_sided, contacts, ledger=True)  # silent: warnings are errors here
-    monkeypatch.setattr(run_warnings, "OPEN", -1.0)
+    monkeypatch.setattr(problem, "OPEN", -1.0)
     with pytest.warns(UserWarning, match=r"does not close: .* have no account; lower accuracy = 0.001") as said:
         mr.simulate(one_sided, contacts, ledger=True)
     assert said[0].filename == __file__  # it points at the call

@@ -10,7 +10,7 @@ from masonry_blocks import GROUND, box, columns, tilted
 import mjrock as mr
 from mjrock.engine.model import released_mjcf
 from mjrock.quantities import GRAVITY
-from mjrock.scene.of_case import course_of, scene_of
+from mjrock.scene.masonry import masonry_course
 
 FLOOR = mr.Polyhedron.box((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground")
 STRAY = mr.Polyhedron.box((0.5, 0.4, 0.3), (0.1, 0.05, 0.75), name="upper")
@@ -175,8 +175,8 @@ def test_the_engine_has_the_same_forces(build):
     case = mr.MasonryCase(masonry, 0.05, velocity=velocity)
     with pytest.warns(UserWarning, match="contacts that slide are pressed apart"):
         answer = mr.simulate(case, timestep=h, output_step=h, forces=True)
-    scene = scene_of(case, None)
-    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, course_of(case, scene), h))
+    scene = mr.scene_of(case, None)
+    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, masonry_course(case, scene), h))
     data, force = mujoco.MjData(model), np.zeros(6)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     for reaction in total(answer)[:-1]:

@@ -7,7 +7,7 @@ import pytest
 from explicit_blocks import explicit
 
 import mjrock as mr
-from mjrock.scene.of_case import course_of
+from mjrock.scene.wall import wall_course
 from scripts.shared.paper import FIGURE_3, K_N
 
 
@@ -29,7 +29,7 @@ def test_restitution_with_a_base_that_slides(friction, side):
     )
     case = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 1.2)
     scene = mr.wall_scene(case, contacts)
-    _, pose = explicit(scene, course_of(case, scene), 1e-6, 200)
+    _, pose = explicit(scene, wall_course(case, scene), 1e-6, 200)
     wanted = energies_left(case, pose[:, 0, 2])[0]
     assert wanted < 0.40  # a base that holds gives 0.443
     found = mr.simulate(case, contacts, ledger=True, accuracy=1e-4)

@@ -16,7 +16,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.problem.masonry.pile import Pile
-from mjrock.scene.of_case import course_of
+from mjrock.scene.masonry import masonry_course
 from mjrock.theory.impact import as_one
 
 
@@ -47,7 +47,7 @@ def test_two_solvers_agree_on_what_a_stack_loses(blocks, matched, expected):
     case = mr.MasonryCase(masonry, 1.75 * swing, velocity=velocity)
     answer = mr.simulate(case, accuracy=1e-5)
     scene = mr.masonry_scene(case)
-    _, poses = explicit(scene, course_of(case, scene))
+    _, poses = explicit(scene, masonry_course(case, scene))
     found, reference = lost(pile, answer.pose), lost(pile, poses)
     assert found == pytest.approx(reference, abs=1e-3)
     assert found == pytest.approx(expected, abs=1e-3)

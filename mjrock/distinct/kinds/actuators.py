@@ -10,8 +10,7 @@ from scipy.sparse import csr_array
 from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, increase, plus, read, scaled, spun
 from ...linear import entries
-from ...problem.masonry.case import MasonryCase
-from ...problem.masonry.lines import free_numbers
+from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
@@ -20,7 +19,7 @@ from ..rows import Row, Rows
 from ..supports import Supports, move_supports, moving, places, surges
 from ..system import Books, System
 from ..turning import rotation_change, rotations
-from .link import AnyCase, Kind, Named
+from .link import Kind, Named
 
 
 class Histories(NamedTuple):
@@ -45,10 +44,10 @@ class Actuators(Kind, Histories):
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a case of masonry, which count displacements from the pose of rest."""
         d = bodies["rest"].shape[1]
-        if not isinstance(case, MasonryCase) or not case.actuators:
+        if not case.actuators:
             return (), cls(cls.table(d, 0), moving((), 1))
-        number, actuators = free_numbers(case.masonry.blocks), tuple(case.actuators.values())
-        held = np.array([GROUND if each.block is None else number[each.block] for each in actuators])
+        actuators = tuple(case.actuators.values())
+        held = np.array([GROUND if each.block is None else case.body_of(each.block) for each in actuators])
         way, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
         at = np.array([each.way if each.at is None else each.at for each in actuators])
         at = np.where(single, at - bodies["rest"][held], 0.0)

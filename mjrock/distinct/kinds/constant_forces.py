@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from ...compiled import inlined
 from ...geometry.vectors import dot, plus, read
+from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
 from ..contact import add_force
 from ..rows import Row, Rows
 from ..system import Books, System
 from ..turning import rotation_change
-from .link import AnyCase, Kind, Named, Table
+from .link import Kind, Named, Table
 
 
 class ConstantForces(Kind, Table):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from ...compiled import inlined
+from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
 from ..rows import Rows
 from ..system import Books, System
-from .link import AnyCase, Kind, Named, Table, book_support, lengthening, pull, push_apart
+from .link import Kind, Named, Table, book_support, lengthening, pull, push_apart
 
 
 class Dampers(Kind, Table):

@@ -17,8 +17,7 @@ from scipy.sparse import csr_array
 from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, vector
 from ...linear import rates_of
-from ...problem.masonry.case import MasonryCase
-from ...problem.wall.case import Case
+from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
@@ -27,7 +26,6 @@ from ..rows import Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
 from ..turning import rotation_change
 
-AnyCase = Case | MasonryCase
 Named = tuple[tuple[str, ...], Any]
 """The names of links, and the links."""
 

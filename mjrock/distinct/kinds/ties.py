@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 from ...compiled import inlined
+from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
 from ..rows import Row, Rows
 from ..system import Books, System
-from .link import AnyCase, Kind, Named, Table, book_support, lengthening, pull, push_apart
+from .link import Kind, Named, Table, book_support, lengthening, pull, push_apart
 
 
 class Ties(Kind, Table):

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import (
+    GRAVITY,
     Array,
     Flags,
     Implausible,
@@ -22,18 +25,25 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from ..wall.case import Case
-from ..wall.effect import Effect
+from ..wall.effect import Anchored, Effect
 from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import require_in_plane
+from ..wall.standing import JointFrames, Solid
 from .actuator import Actuator
-from .effects import numbered, require_anchored, require_in_space, require_pushing
+from .bond import Bond
+from .effects import laden, numbered, placed, require_anchored, require_in_space, require_pushing
+from .joints import Joint
+from .joints_in_space import SpaceJoint
 from .masonry import Masonry
 from .plausible import doubts
-from .support import supports_of
+from .standing import joints_of, solids_of
+from .support import Support, supports_of
 from .tilt import tilt_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
+HELD = 1e-3
+"""Largest speed that the guide of an actuator takes from a block at a start, over sqrt(g size) [-]."""
 COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled", "tilt")
 """What two equal cases share, beside the velocity."""
 
@@ -72,6 +82,10 @@ class MasonryCase(Carrying):
     Warns:
         Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.
     """
+
+    stop_top: ClassVar[None] = None
+    is_still: ClassVar[bool] = False
+    rocks_on_moving_ground: ClassVar[bool] = False
 
     masonry: Masonry
     duration: float
@@ -144,6 +158,106 @@ class MasonryCase(Carrying):
         keep(self, effects=tuple(numbers))
 
     @property
+    def joints(self) -> tuple[Joint | SpaceJoint, ...]:
+        """The joints of the masonry."""
+        return self.masonry.joints
+
+    @property
+    def bonds(self) -> tuple[Bond | None, ...]:
+        """The bond of each joint, None where it is dry."""
+        return self.masonry.bonds
+
+    def require_dry(self, what: str) -> None:
+        """Raise a ValueError that says what takes dry joints, where some have a bond."""
+        self.masonry.require_dry(what)
+
+    @property
+    def built(self) -> Masonry:
+        """What stands: the masonry without its effects."""
+        return self.masonry
+
+    @property
+    def said(self) -> str:
+        """The same in words."""
+        return "masonry"
+
+    def require_own_joints(self, *given: object) -> None:
+        """Raise a ValueError where restitution or contacts are given beside the case, which has its own."""
+        if any(one is not None for one in given):
+            raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
+
+    @property
+    def in_space(self) -> bool:
+        """Whether the blocks are in space."""
+        return self.masonry.in_space
+
+    @property
+    def blocks(self) -> tuple[str, ...]:
+        """Names of all blocks, in their order."""
+        return self.masonry.names
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of the blocks that are not fixed, in their order."""
+        return tuple(self.masonry.names[i] for i in self.masonry.free)
+
+    @cached_property
+    def centroids(self) -> Array:
+        """Centroid of each block with its added masses at rest [m], shape (blocks, d)."""
+        return laden(self.masonry, self.effects)[1]
+
+    @cached_property
+    def rests(self) -> Array:
+        """The same of the blocks that are not fixed, shape (bodies, d)."""
+        return self.centroids[list(self.masonry.free)]
+
+    @property
+    def outlines(self) -> tuple[Array, ...]:
+        """Corners of the blocks that are not fixed about their centroids [m]."""
+        return tuple(self.masonry.blocks[i].corners - self.centroids[i] for i in self.masonry.free)
+
+    @property
+    def fixed(self) -> dict[int, Array]:
+        """Corners of each fixed block [m], by its number."""
+        return {i: block.corners for i, block in enumerate(self.masonry.blocks) if block.fixed}
+
+    @property
+    def solids(self) -> list[Solid]:
+        """The blocks at rest."""
+        return solids_of(self.masonry, self.centroids)
+
+    @property
+    def frames(self) -> JointFrames:
+        """The joints at rest."""
+        return joints_of(self.masonry, self.centroids)
+
+    def held_by(self, link: Anchored) -> Array:
+        """The point that a link holds, at rest [m], shape (d,)."""
+        return np.array(placed(self.masonry, link))
+
+    def body_of(self, block: int | None) -> int | None:
+        """Number of the body of a block among those that are not fixed; None of what is fixed, or of no block."""
+        return self.masonry.free.index(block) if block in self.masonry.free else None
+
+    def support_of(self, block: int | None) -> Support | None:
+        """What moves a fixed block, None where nothing does."""
+        moved = {self.masonry.names.index(support.block): support for support in self.supports}
+        return None if block is None else moved.get(block)
+
+    def require_start(self, pose: Array, velocity: Array) -> Array:
+        """The velocity of a start [m/s, rad/s], shape (bodies, nv), without what guides take from it.
+
+        Raises:
+            ValueError: if a block moves as its guide does not allow by more than a thousandth of sqrt(g size).
+        """
+        guiding = [one.block for one in self.actuators.values() if any(one.guide)]
+        if not guiding:
+            return velocity
+        smallest = min(self.masonry.blocks[block].size for block in guiding)
+        self.require_guided("start, velocity", velocity, HELD * math.sqrt(GRAVITY * smallest))
+        return np.where(self.guided, 0.0, velocity)
+
+    @property
     def actuators(self) -> dict[str, Actuator]:
         """The actuators by name: `actuator_0` and so on."""
         return {f"{Actuator.label}_{i}": actuator for i, actuator in enumerate(self.each(Actuator))}
@@ -196,6 +310,10 @@ class MasonryCase(Carrying):
 
     def __hash__(self) -> int:
         return hash(tuple(getattr(self, name) for name in COMPARED))
+
+
+AnyCase = Case | MasonryCase
+"""A case of a wall or of masonry. What both answer alike is asked of either, without asking which it is."""
 
 
 def require_wall(name: str, value: object, instead: str) -> None:

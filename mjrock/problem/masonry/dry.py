@@ -9,6 +9,9 @@ from typing import Annotated, Any
 from ...quantities import Within, keep_declared, require_kind
 from .bond import Bond
 
+Properties = dict[str, Any]
+"""What a joint has, by the keywords of `Masonry`."""
+
 
 @dataclass(frozen=True, repr=False)
 class Dry:
@@ -49,7 +52,7 @@ class Dry:
         keep_declared(self)
 
     @property
-    def properties(self) -> dict[str, Any]:
+    def properties(self) -> Properties:
         """The keywords of `Masonry` that stand for it."""
         return {**vars(self), "bond": None}
 
@@ -86,6 +89,6 @@ class Mortar:
         self.bond.require_fit("the joint", dry.k_n, math.inf if dry.k_s is None else dry.k_s, dry.friction, dry.points)
 
     @property
-    def properties(self) -> dict[str, Any]:
+    def properties(self) -> Properties:
         """The keywords of `Masonry` that stand for it."""
         return {**self.dry.properties, "bond": self.bond}

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from ...quantities import Array, declared, require_kind
 from .bond import Bond
-from .dry import Dry
+from .dry import Dry, Properties
 from .of_joint import AnyJoint, OfBond, OfJoint, asked
 
 WITHOUT = {"k_s": np.inf, "frequency": np.nan}
@@ -36,7 +36,7 @@ class JointTable(NamedTuple):
     bonds: tuple[Bond | None, ...]
 
     @classmethod
-    def of(cls, joints: Sequence[AnyJoint], given: Mapping[str, Any]) -> JointTable:
+    def of(cls, joints: Sequence[AnyJoint], given: Properties) -> JointTable:
         """The table of joints from their properties, a number or a function of the joint each.
 
         Raises:

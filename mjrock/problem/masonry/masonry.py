@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self, Unpack
+from typing import Self, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,6 +43,7 @@ from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, gro
 from .compas_files import compas_text, read_compas
 from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
+from .dry import Properties
 from .dxf_files import OfLayer, polygons_of, read_dxf
 from .joint_table import JointTable
 from .joints import Joint, joints_in_plane, names_of
@@ -962,7 +963,7 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
     return tuple(blocks)
 
 
-def _halved(halves: Bond | None, options: JointOptions) -> dict[str, Any]:
+def _halved(halves: Bond | None, options: JointOptions) -> Properties:
     """Keywords of masonry whose units are divided by a bond, or not."""
     require_kind("halves", halves, Bond, type(None))
     given = one_by_one(options)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from ...quantities import Within, declared, require_kind, shown
 from .bond import Bond
-from .dry import Dry, Mortar
+from .dry import Dry, Mortar, Properties
 from .joints import Joint
 from .joints_in_space import SpaceJoint
 
@@ -46,7 +46,7 @@ def required_points(given: int | FunctionOfJoint[int], joints: Sequence[AnyJoint
     return int(within.checked("points", first[1]))
 
 
-def properties_of(joints: AnyJoints | None, given: Mapping[str, Any]) -> dict[str, Any]:
+def properties_of(joints: AnyJoints | None, given: Properties) -> Properties:
     """The properties of joints by name, a number or a function of the joint each.
 
     Args:
@@ -78,9 +78,9 @@ class Choice:
     """A function of the joint that gives what it is, which is asked once of each joint."""
 
     function: FunctionOfJoint[Dry | Mortar]
-    known: dict[AnyJoint, dict[str, Any]] = field(default_factory=dict, compare=False, repr=False)
+    known: dict[AnyJoint, Properties] = field(default_factory=dict, compare=False, repr=False)
 
-    def __call__(self, joint: AnyJoint) -> dict[str, Any]:
+    def __call__(self, joint: AnyJoint) -> Properties:
         """The properties of a joint by name."""
         if joint not in self.known:
             chosen = asked("joints", self.function, joint)

@@ -6,9 +6,10 @@ import difflib
 import inspect
 from collections.abc import Callable
 from functools import wraps
-from typing import Any, TypedDict, TypeVar
+from typing import TypedDict, TypeVar
 
 from ..damping.contacts import AnyLaw
+from .dry import Properties
 from .of_joint import PROPERTIES, AnyJoints, OfBond, OfJoint, properties_of
 
 Class = TypeVar("Class", bound=type)
@@ -37,9 +38,9 @@ class JointOptions(OtherOptions, total=False):
     k_n: OfJoint | None
 
 
-def one_by_one(options: JointOptions) -> dict[str, Any]:
+def one_by_one(options: JointOptions) -> Properties:
     """The keywords with the properties of joints one by one in the place of `joints`."""
-    given = dict[str, Any](options)
+    given = Properties(options)
     properties = {name: given.pop(name, None) for name in PROPERTIES}
     return properties_of(given.pop("joints", None), properties) | given
 
@@ -54,14 +55,14 @@ def keywords_checked(kind: Class) -> Class:
     return kind
 
 
-def _checked(function: Callable[..., Any], said: str) -> Callable[..., Any]:
+def _checked(function: Callable[..., object], said: str) -> Callable[..., object]:
     parameters = list(inspect.signature(function).parameters.values())[1:]
     known = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD]
     if len(known) < len(parameters):
         known += [name for name in JointOptions.__annotations__ if name not in known]
 
     @wraps(function)
-    def checked(*given: Any, **options: Any) -> Any:
+    def checked(*given: object, **options: object) -> object:
         for each in sorted(options.keys() - set(known)):
             near = difflib.get_close_matches(each, known, 2)
             remedy = f"did you mean {' or '.join(near)}?" if near else f"the valid keywords are {', '.join(known)}"

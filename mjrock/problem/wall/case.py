@@ -6,6 +6,7 @@ import math
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar, Never
 
 import numpy as np
 
@@ -22,11 +23,12 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from .block import Block
-from .effect import Effect
+from .effect import Anchored, Effect
 from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
 from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
+from .standing import JointFrames, Solid, joints_of_wall, solids_of_wall
 from .ties_on_wall import TiePull, limits, stored, taken, yielded
 
 
@@ -53,6 +55,17 @@ class Case(Carrying):
     Warns:
         Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.
     """
+
+    transverse: ClassVar[None] = None
+    supports: ClassVar[tuple[()]] = ()
+    actuators: ClassVar[dict[str, Never]] = {}
+    settled: ClassVar[bool] = True
+    joints: ClassVar[tuple[()]] = ()
+    bonds: ClassVar[tuple[()]] = ()
+    in_space: ClassVar[bool] = False
+    bodies: ClassVar[tuple[str, ...]] = ("wall",)
+    blocks: ClassVar[tuple[str, ...]] = ("wall",)
+    fixed: ClassVar[dict[int, Array]] = {}
 
     block: Block
     theta0: float
@@ -132,6 +145,47 @@ class Case(Carrying):
         masses = self.each(AddedMass)
         return replace(self.block, masses=self.block.masses + masses) if masses else self.block
 
+    @cached_property
+    def centroids(self) -> Array:
+        """Centroid of the wall with its added masses at rest, x and z [m], shape (1, 2)."""
+        return np.array([[self.wall.centroid_offset, self.wall.centroid_height]])
+
+    @property
+    def rests(self) -> Array:
+        """Centroid of each body at rest [m]: of the wall alone."""
+        return self.centroids
+
+    @property
+    def outlines(self) -> tuple[Array, ...]:
+        """Corners of the wall about its centroid [m]."""
+        return (self.wall.outline,)
+
+    @property
+    def solids(self) -> list[Solid]:
+        """The wall and what it stands on and against, at rest."""
+        return solids_of_wall(self.wall, self.stop_top)
+
+    @property
+    def frames(self) -> JointFrames:
+        """Its base and its side stop as joints, at rest."""
+        return joints_of_wall(self.wall, self.stop_top, self.rests)
+
+    def held_by(self, link: Anchored) -> Array:
+        """The point that a link holds, at rest [m], shape (2,)."""
+        return np.array([-self.block.b, link.height])
+
+    def body_of(self, block: int | None) -> int | None:
+        """Number of the body of a block: 0 of the wall, None of what does not move."""
+        return block
+
+    def support_of(self, block: int | None) -> None:
+        """What moves a fixed block: nothing does."""
+
+    def require_start(self, pose: Array, velocity: Array) -> Array:
+        """The velocity of a start [m/s, rad/s], shape (1, 3); ValueError for a rotation beyond 90 degrees."""
+        require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
+        return velocity
+
     @property
     def one_sided(self) -> bool:
         """Whether there is a side stop."""
@@ -194,6 +248,29 @@ class Case(Carrying):
     def shaken(self) -> bool:
         """Whether the base moves."""
         return self.motion is not None or self.vertical is not None
+
+    rocks_on_moving_ground = shaken
+
+    @property
+    def is_still(self) -> bool:
+        """Whether nothing moves the wall."""
+        return not (self.theta0 or self.omega0 or self.shaken)
+
+    def require_dry(self, what: str) -> None:
+        """Raise a ValueError where joints have a bond, which those of a wall have not."""
+
+    @property
+    def built(self) -> Block:
+        """What stands: the wall without its effects."""
+        return self.block
+
+    @property
+    def said(self) -> str:
+        """The same in words."""
+        return repr(self.block)
+
+    def require_own_joints(self, *given: object) -> None:
+        """Raise a ValueError where joints have what is given beside the case, which those of a wall have not."""
 
     @property
     def lopsided(self) -> bool:

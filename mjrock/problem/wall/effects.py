@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, TypeVar
 
 from ...quantities import Within, keep, keep_declared, shown
+from ..ground.motion import GroundMotion
 from .damper import Damper
 from .effect import Anchored, Effect
 from .friction_damper import FrictionDamper
@@ -202,6 +203,12 @@ class Carrying:
     """What carries effects."""
 
     effects: tuple[Effect, ...]
+
+    @property
+    def grounds(self) -> dict[str, GroundMotion]:
+        """The motions of the ground, by name: "motion", "vertical" and "transverse", those that there are."""
+        moved = {name: getattr(self, name) for name in ("motion", "vertical", "transverse")}
+        return {name: motion for name, motion in moved.items() if motion is not None}
 
     def each(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The effects of one kind, in their order."""

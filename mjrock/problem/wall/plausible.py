@@ -67,7 +67,7 @@ def warn_of_low_stop(case: Any) -> None:
 
 def warn_if_still(case: Any, *, forces: bool = False) -> None:
     """Warn of a run of a wall that nothing moves, unless it is asked for the forces at rest."""
-    if not (case.theta0 or case.omega0 or case.shaken or forces):
+    if case.is_still and not forces:
         warnings.warn(
             "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run is one of "
             "rest; give the case a release or a motion",
