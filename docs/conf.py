@@ -108,6 +108,13 @@ def plain(app: object, what: str, name: str, obj: object, options: object, lines
     lines[:] = text.split("\n")
 
 
+def without_ranges(
+    app: object, what: str, name: str, obj: object, options: object, signature: str | None, returns: str | None
+) -> tuple[str | None, str | None]:
+    """A signature without the declared ranges of its numbers, which the text has."""
+    return signature and re.sub(r"(?:\w+\.)*Annotated\[(.+?), Within\([^()]*\)\]", r"\1", signature), returns
+
+
 def compile_loops() -> None:
     """Simulate a wall once, so that no example shows the line that is printed while loops are compiled."""
     wall = mjrock.Block.from_size(thickness=0.6, height=4.2)
@@ -134,5 +141,6 @@ write_live_view()
 
 
 def setup(app: object) -> None:
-    """Read docstrings as plain text, before napoleon does."""
+    """Read docstrings as plain text, before napoleon does, and signatures without ranges."""
     app.connect("autodoc-process-docstring", plain, priority=100)  # type: ignore[attr-defined]
+    app.connect("autodoc-process-signature", without_ranges)  # type: ignore[attr-defined]

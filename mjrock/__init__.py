@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .anymodel.notes import ContactWarning
     from .distinct.explicit import solve_explicit
     from .engine.model import SimulationError
-    from .engine.simulation import automatic_timestep, simulate
+    from .engine.simulation import simulate
     from .engine.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
     from .problem.damping.contacts import Contacts
@@ -45,16 +45,16 @@ if TYPE_CHECKING:
     from .problem.ground.record_sets import RecordSet, records_in, scaled_together
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.actuator import Actuator
-    from .problem.masonry.bond import BONDS, Bond
+    from .problem.masonry.blocks.compound import Compound
+    from .problem.masonry.blocks.joints import Joint
+    from .problem.masonry.blocks.joints_in_space import SpaceJoint
+    from .problem.masonry.blocks.polygon import Polygon
+    from .problem.masonry.blocks.polyhedron import Polyhedron
     from .problem.masonry.case import MasonryCase
-    from .problem.masonry.collapse import Collapse
-    from .problem.masonry.compound import Compound
-    from .problem.masonry.dry import Dry, Mortar
-    from .problem.masonry.joints import Joint
-    from .problem.masonry.joints_in_space import SpaceJoint
+    from .problem.masonry.laws.bond import BONDS, Bond
+    from .problem.masonry.laws.dry import Dry, Mortar
+    from .problem.masonry.limit.collapse import Collapse
     from .problem.masonry.masonry import Masonry
-    from .problem.masonry.polygon import Polygon
-    from .problem.masonry.polyhedron import Polyhedron
     from .problem.wall.block import Block
     from .problem.wall.case import Case
     from .problem.wall.damper import Damper
@@ -71,26 +71,27 @@ if TYPE_CHECKING:
     from .result.problem import scene_of
     from .result.response import MasonryResponse, Response
     from .result.rocking import Impact
+    from .scene.fixed_step import automatic_timestep
     from .scene.masonry import masonry_scene
     from .scene.scene import Scene
     from .scene.wall import wall_scene
     from .study.analysis import Analysis, MasonryAnalysis
-    from .study.calibration import Plan, calibrate
-    from .study.campaign import campaign, results
-    from .study.capacities import PairedRatio, fit_capacities, lost, paired_ratio
-    from .study.capacity import Capacity
-    from .study.contacts_by_matching import as_theory, matched_contacts
-    from .study.fragility import Fragility, fit_fragility
-    from .study.grid import Grid
-    from .study.ida import ida, overturning_intensity
-    from .study.limit_analysis import collapse_multiplier
-    from .study.masonry_by_matching import matched_masonry
-    from .study.mechanism import MechanismCheck, mechanism_check
-    from .study.push import Push, push
-    from .study.pushover import pushover
-    from .study.rocking_spectrum import RockingSpectrum, rocking_spectrum
+    from .study.campaign.campaign import campaign, results
+    from .study.campaign.grid import Grid
+    from .study.campaign.store import Store
+    from .study.intensity.capacities import PairedRatio, fit_capacities, lost, paired_ratio
+    from .study.intensity.capacity import Capacity
+    from .study.intensity.fragility import Fragility, fit_fragility
+    from .study.intensity.ida import ida, overturning_intensity
+    from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
+    from .study.loading.limit_analysis import collapse_multiplier
+    from .study.loading.mechanism import MechanismCheck, mechanism_check
+    from .study.loading.push import Push, push
+    from .study.loading.pushover import pushover
+    from .study.matching.calibration import Plan, calibrate
+    from .study.matching.contacts import as_theory, matched_contacts
+    from .study.matching.masonry import matched_masonry
     from .study.sensitivity import Sensitivity, sensitivity
-    from .study.store import Store
     from .theory.analytical import solve_analytical
     from .theory.impact import RigidImpact, rigid_impact
 

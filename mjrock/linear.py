@@ -11,9 +11,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.linalg import null_space
+import scipy  # which imports its parts when they are named
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from .quantities import Array, Integers
 
@@ -120,7 +119,9 @@ class _Balance:
 
 def _factors(matrix: csc_array) -> Any:
     """Factors of a symmetric matrix with the pivots on its diagonal."""
-    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return scipy.sparse.linalg.splu(
+        matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
 
 
 def lowest_mode(matrix: csr_array, most: float) -> tuple[float, Array]:
@@ -130,7 +131,9 @@ def lowest_mode(matrix: csr_array, most: float) -> tuple[float, Array]:
         values, modes = np.linalg.eigh(matrix.toarray())
     else:
         start = np.random.default_rng(0).random(n)
-        values, modes = eigsh(csc_array(matrix), 1, sigma=-2 * most, which="LM", tol=SEARCHED, v0=start)
+        values, modes = scipy.sparse.linalg.eigsh(
+            csc_array(matrix), 1, sigma=-2 * most, which="LM", tol=SEARCHED, v0=start
+        )
     return float(values[0]), modes[:, 0]
 
 
@@ -138,7 +141,7 @@ def loose(rows: csr_array) -> Array:
     """Motions at which no row has a rate, shape (unknowns, motions): a basis, of many unknowns random mixtures."""
     n = rows.shape[1]
     if n <= FEW:
-        return null_space(rows.toarray(), rcond=DEPENDENT)  # type: ignore[no-any-return]
+        return scipy.linalg.null_space(rows.toarray(), rcond=DEPENDENT)  # type: ignore[no-any-return]
     gram = csc_array(rows.T @ rows)
     shift = SHIFT * float(gram.diagonal().max())
     factors = _factors(csc_array(gram + shift * eye_array(n)))
@@ -155,7 +158,7 @@ def highest_square(stiffness: csr_array, masses: Array) -> float:
     if len(masses) <= FEW:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(masses))
-    return float(eigsh(matrix, 1, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False)[0])
+    return float(scipy.sparse.linalg.eigsh(matrix, 1, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False)[0])
 
 
 def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: float) -> float:
@@ -175,11 +178,13 @@ def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: f
     if highest == 0:
         return 0.0
     balance = _Balance(csr_array(stiffness + SHIFT * highest * eye_array(n)), grip, 0.0)
-    inverse = LinearOperator((n, n), lambda x: balance(x)[0], dtype=float)
+    inverse = scipy.sparse.linalg.LinearOperator((n, n), lambda x: balance(x)[0], dtype=float)
     start, count = inverse @ np.random.default_rng(0).random(n), 1
     while count < n // 2:
         # the inverse of the shifted squares is largest for the lowest of them
-        inverses = eigsh(inverse, count, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False)
+        inverses = scipy.sparse.linalg.eigsh(
+            inverse, count, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False
+        )
         squares = np.sort(1 / inverses) - SHIFT * highest
         resisted = squares[squares > 0.5 * SHIFT * highest]
         if resisted.size:
@@ -190,7 +195,7 @@ def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: f
 
 def _lowest_in_full(stiffness: csr_array, grip: csr_array, rigid: float) -> float:
     """As `lowest_square`, of unit masses, by all squares of frequencies."""
-    free = null_space(grip.toarray(), rcond=DEPENDENT)
+    free = scipy.linalg.null_space(grip.toarray(), rcond=DEPENDENT)
     squares = np.linalg.eigvalsh(free.T @ (stiffness @ free)) if free.shape[1] else np.zeros(0)
     squares = squares[squares > rigid * max(squares, default=0.0)]
     return float(squares[0]) if squares.size else 0.0

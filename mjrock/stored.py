@@ -21,7 +21,7 @@ SLOW = {
     "mjrock.engine.loop.fitted_loop": ("steps in MuJoCo that fit the motion", 20),
     "mjrock.engine.loop.fixed_loop": ("steps in MuJoCo of one length", 10),
     "mjrock.distinct.loop.advance": ("explicit steps", 12),
-    "mjrock.distinct.finder.find": ("contacts of explicit steps where blocks are", 5),
+    "mjrock.distinct.search.finder.find": ("contacts of explicit steps where blocks are", 5),
 }
 """Loops whose compilation takes seconds: what they do, and how many [s], on one core that has nothing else to do
 (`scripts/measure/speed.py`). All others take two seconds or less."""

@@ -36,8 +36,12 @@ OTHERS = (
     "scene/rest.py",
     "result/history.py",
     "reference/equations.py",
-    *(f"problem/masonry/{name}.py" for name in ("bond", "compound", "effects", "support", "surface", "tilt")),
-    "distinct/encounters.py",
+    *(
+        f"problem/masonry/{name}.py"
+        for name in ("laws/bond", "blocks/compound", "effects", "support", "blocks/surface")
+    ),
+    "problem/masonry/tilt.py",
+    "distinct/search/encounters.py",
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
@@ -45,7 +49,7 @@ TOOLS = (
     *("filters", "meeting", "others"),
 )
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
-STEPS = ("contact", "faces", "friction", "loop", "turning")
+STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
 LINKS = (
     "distinct/links.py",
@@ -53,7 +57,9 @@ LINKS = (
     *(f"distinct/kinds/{name}.py" for name in ("link", "ties", "dampers", "actuators", "constant_forces")),
 )
 """Modules of the links of explicit steps."""
-FINDING = ("clipping", "finder", "handover", "looking", "overlap", "pair_law", "solids")
+FINDING = tuple(
+    f"search/{name}" for name in ("clipping", "finder", "handover", "looking", "overlap", "pair_law", "solids")
+)
 """Modules that find where blocks meet."""
 OWN = {
     **{
@@ -71,28 +77,28 @@ OWN = {
     "scene/masses.py": ("scene_in_space",),
     "geometry/poses.py": ("scene_in_space",),
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
-    "distinct/touches.py": ("touches_inside_a_step", "books_close"),
+    "distinct/contacts/touches.py": ("touches_inside_a_step", "books_close"),
     **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py")},
     **{f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion") for kind in ("wall", "masonry")},
     "result/forces.py": ("joint_frames", "forces"),
     "distinct/slowing.py": ("push",),
-    "distinct/bonds.py": ("bonds", "bonded_masonry"),
-    "problem/masonry/bond_law.py": ("bond_law", "bonds", "bonded_masonry"),
-    "problem/masonry/bond.py": ("bond_law", "bonds", "first_cracks", "masonry_inputs"),
-    "problem/masonry/compound.py": ("compound", "compound_blocks"),
+    "distinct/contacts/bonds.py": ("bonds", "bonded_masonry"),
+    "problem/masonry/laws/bond_law.py": ("bond_law", "bonds", "bonded_masonry"),
+    "problem/masonry/laws/bond.py": ("bond_law", "bonds", "first_cracks", "masonry_inputs"),
+    "problem/masonry/blocks/compound.py": ("compound", "compound_blocks"),
     "problem/ground/record_sets.py": ("record_sets",),
     "problem/masonry/effects.py": ("masonry_effects", "actuator_inputs", "links_between_blocks"),
-    "problem/masonry/limit_state.py": ("collapse_without_dilatancy",),
+    "problem/masonry/limit/limit_state.py": ("collapse_without_dilatancy",),
     "problem/masonry/lines.py": ("masonry", "alike"),
     "problem/masonry/support.py": ("supports", "links_on_supports", "supports_that_moved"),
-    "problem/masonry/surface.py": ("compound", "compound_blocks"),
+    "problem/masonry/blocks/surface.py": ("compound", "compound_blocks"),
     "problem/masonry/tilt.py": ("tilt", "tilting"),
     "problem/masonry/actuator.py": ("actuators",),
     **{name: ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit") for name in LINKS},
-    "distinct/encounters.py": ("encounters", "encounters_in_space", "alike"),
+    "distinct/search/encounters.py": ("encounters", "encounters_in_space", "alike"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
-    "problem/masonry/joint_forces.py": ("collapse_without_dilatancy",),
-    "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
+    "problem/masonry/limit/joint_forces.py": ("collapse_without_dilatancy",),
+    "problem/masonry/laws/joint_law.py": ("joint_law", "explicit", "encounters"),
     "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
     "result/fallen.py": ("fallen",),
@@ -102,42 +108,42 @@ OWN = {
     "engine/run.py": ("marks", "end_of_run", "ledger", "books_of_masonry"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),
-    "problem/masonry/polygon.py": ("polygon",),
-    "problem/masonry/vaults.py": ("vaults",),
+    "problem/masonry/blocks/polygon.py": ("polygon",),
+    "problem/masonry/builders/vaults.py": ("vaults",),
     "problem/wall/section.py": ("section",),
     "problem/wall/tie.py": ("tie_of_bar",),
     "problem/wall/ties_on_wall.py": ("effects", "pushover"),
-    "study/masonry_by_matching.py": ("matched_masonry",),
-    "study/pushover.py": ("pushover",),
+    "study/matching/masonry.py": ("matched_masonry",),
+    "study/loading/pushover.py": ("pushover",),
     "theory/arcs.py": ("arcs", "free", "analytical", "effects"),
     "theory/impact.py": ("impact",),
     "theory/law.py": ("arcs", "free", "analytical"),
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 BY_HAND: dict[str, tuple[str, ...]] = {
-    "distinct/bonds.py": ("bonds_of_lines",),
-    "distinct/clipping.py": ("clipping",),
-    "distinct/contact.py": ("contact_lines",),
-    "distinct/faces.py": ("outlines",),
-    "distinct/finder.py": ("finder",),
-    "distinct/friction.py": ("friction_of_lines",),
+    "distinct/contacts/bonds.py": ("bonds_of_lines",),
+    "distinct/search/clipping.py": ("clipping",),
+    "distinct/contacts/contact.py": ("contact_lines",),
+    "distinct/contacts/faces.py": ("outlines",),
+    "distinct/search/finder.py": ("finder",),
+    "distinct/contacts/friction.py": ("friction_of_lines",),
     "distinct/gathering.py": ("forces_of_lines",),
-    "distinct/handover.py": ("handing_over",),
+    "distinct/search/handover.py": ("handing_over",),
     "distinct/impacts.py": ("impacts",),
     **{name: ("pulls_of_links",) for name in LINKS},
-    "distinct/looking.py": ("looking",),
+    "distinct/search/looking.py": ("looking",),
     "distinct/loop.py": ("loop_of_steps",),
-    "distinct/overlap.py": ("overlap_of_blocks",),
-    "distinct/pair_law.py": ("pair_law",),
+    "distinct/search/overlap.py": ("overlap_of_blocks",),
+    "distinct/search/pair_law.py": ("pair_law",),
     "distinct/slowing.py": ("slowing",),
-    "distinct/softening.py": ("softening",),
-    "distinct/solids.py": ("solids", "finder", "handing_over", "overlap_of_blocks"),
-    "distinct/touches.py": ("touches_of_lines", "another_law"),
+    "distinct/search/softening.py": ("softening",),
+    "distinct/search/solids.py": ("solids", "finder", "handing_over", "overlap_of_blocks"),
+    "distinct/contacts/touches.py": ("touches_of_lines", "another_law"),
     "distinct/turning.py": ("turning",),
     "geometry/vectors.py": ("contact_lines", "friction_of_lines", "clipping", "pulls_of_links"),
     "problem/masonry/actuator.py": ("actuator_inputs",),
-    "problem/masonry/bond_law.py": ("bond_law", "bonds_of_lines"),
-    "problem/masonry/joint_law.py": ("joint_law", "contact_lines", "looking", "touches_of_lines", "handing_over"),
+    "problem/masonry/laws/bond_law.py": ("bond_law", "bonds_of_lines"),
+    "problem/masonry/laws/joint_law.py": ("joint_law", "contact_lines", "looking", "touches_of_lines", "handing_over"),
     "scene/rest.py": ("search_for_rest", "potential", "scene_in_space"),
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
@@ -183,6 +189,11 @@ EQUIVALENT = {
     ),
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "forces.py: if not kinds.released_on[i] if n == 0 else now.gap > 0:": "at a gap of zero nothing presses",
+    **{
+        "compound.py: reaching = [part for part in self.polygons if np.ptp(np.clip(part.corners[:, 1] - z, "
+        f"{bounds})) > 0]": "what reaches a height to a nanometre does to two"
+        for bounds in ("-2e-09, 1e-9", "-1e-9, 2e-09")
+    },
     "encounters.py: fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -2)": "any negative number stands for a body",
     **{
         f"limit_state.py: if turn % EVERY {which}:": "other turns are as good to start from as every third one"

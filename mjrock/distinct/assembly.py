@@ -14,7 +14,7 @@ from ..problem.masonry.support import Support
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene
-from .faces import edges_of, margins, outlines_of_joints
+from .contacts.faces import edges_of, margins, outlines_of_joints
 from .kinds.link import put_on_supports
 from .rows import Rows, joined, kinds, rows
 from .supports import moving
@@ -38,7 +38,7 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
 
 
 def lines_of(scene: Scene) -> Rows:
-    """The contact lines of a scene, whose faces have no end and which stick rigidly."""
+    """The contact lines of a scene, whose faces have no end."""
     places = scene.places
     return rows(
         kinds(scene.bodies.rest.shape[1]).line,
@@ -54,14 +54,14 @@ def lines_of(scene: Scene) -> Rows:
         normal=places.normal,
         k=scene.contacts.k,
         c=scene.contacts.c,
-        k_s=np.inf,
+        k_s=scene.contacts.k_s,
         friction=scene.contacts.friction,
         margin=np.inf,
     )
 
 
 def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
-    """Give lines the shear stiffness of their joint and the ends of its two faces. Returns the edges of all faces."""
+    """Give lines their dashpots along the two faces of their joint and the ends of these. Returns the edges of all."""
     of, number = scene.contacts.joint, free_numbers(masonry.blocks)
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
@@ -78,7 +78,6 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
     lines["first"], lines["last"] = ends[of, np.where(above, 0, 1)].T
     lines["own_first"], lines["own_last"] = ends[of, np.where(above, 1, 0)].T
     lines["margin"] = margins(lines, edges)
-    lines["k_s"] = masonry.joint_shear[of] * lines["k"] / masonry.joint_stiffness[of]
     sprung = np.isfinite(lines["k_s"])
     lines["c_s"][sprung] = lines["c"][sprung] * lines["k_s"][sprung] / lines["k"][sprung]
     return edges

@@ -22,8 +22,8 @@ from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.explicit_step import warn_if_tiny
 from .following import Stepping, follow, warn_if_long
-from .overlap import checked_overlap
 from .reading import Run, response_of
+from .search.overlap import checked_overlap
 from .setup import carried_on, setup_of, slowed
 from .system import Books, Samples
 

@@ -14,10 +14,10 @@ from tqdm import tqdm
 from ..quantities import Array
 from ..result.samples import intervals
 from ..scene.explicit_step import stepping_seconds
-from .encounters import Encounters
 from .loop import Clock, advance
 from .memory import Memory, remember
 from .rows import ENDLESS, unsound
+from .search.encounters import Encounters
 from .setup import Setup
 from .system import Books, Samples, System
 
@@ -74,9 +74,9 @@ class Stepping(NamedTuple):
                 f"timestep = {timestep:.3g} s is not stable; the valid range is up to {setup.limit:.3g} s, which the "
                 "stiffest contacts and the strongest dashpots allow"
             )
-        every = max(1, round(min(output_step, setup.spacing) / timestep))
-        last = max(1, round(duration / timestep))
-        return cls(timestep, every, max(1, round(output_step / (timestep * every))), last, last * timestep)
+        steps, last = max(1, round(output_step / timestep)), max(1, round(duration / timestep))
+        stride = min(steps, intervals(steps * timestep, setup.spacing))
+        return cls(timestep, round(steps / stride), stride, last, last * timestep)
 
     @property
     def look(self) -> int:

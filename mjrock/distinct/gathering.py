@@ -11,11 +11,11 @@ import math
 from ..compiled import inlined
 from ..geometry.vectors import Vector, increase, moment, plus, put, read, scaled
 from ..quantities import Array
-from .contact import meeting, where_friction_rubs
-from .friction import as_vector, last_friction
+from .contacts.contact import meeting, where_friction_rubs
+from .contacts.friction import as_vector, last_friction
+from .contacts.touches import was_open
 from .rows import Row
 from .system import Samples, System
-from .touches import was_open
 
 
 @inlined

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..problem.masonry.joint_law import largest_stiffness
+from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
 from .system import System
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import scipy
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, vstack
-from scipy.sparse.linalg import eigsh
 
 from ..linear import rates_of
-from ..problem.masonry.joint_law import largest_stiffness
-from ..problem.masonry.joints_in_space import axes_across
+from ..problem.masonry.blocks.joints_in_space import axes_across
+from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
 from ..scene.explicit_step import stable_step
 from .rows import Rows
@@ -57,7 +57,7 @@ def highest(rates: csr_array, weights: Array, root: Any) -> float:
     if len(acting) <= 20:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(acting))
-    largest = eigsh(matrix, 1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)[0]
+    largest = scipy.sparse.linalg.eigsh(matrix, 1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)[0]
     return 1.01 * float(largest)  # an allowance for the tolerance
 
 

@@ -24,19 +24,19 @@ from ..geometry.vectors import (
     scaled,
     spin_components,
 )
-from ..problem.masonry.joint_law import stored, stored_along
+from ..problem.masonry.laws.joint_law import stored, stored_along
 from ..quantities import GRAVITY, Array
 from ..scene.ground import Ground, mean_acceleration
-from .bonds import bonded_energy, hold_bonds
-from .contact import press_lines, settle_touches
-from .friction import book_rubbing, stick
+from .contacts.bonds import bonded_energy, hold_bonds
+from .contacts.contact import press_lines, settle_touches
+from .contacts.friction import book_rubbing, stick
+from .contacts.touches import in_transit, was_open
 from .gathering import keep_burden, keep_forces
 from .links import act_all, hold_all
 from .rows import Rows
 from .slowing import oppose, slow_down
 from .supports import move_supports
 from .system import Books, Samples, System
-from .touches import in_transit, was_open
 from .turning import (
     apply_inverse_inertia,
     in_body,

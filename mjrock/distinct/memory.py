@@ -12,8 +12,8 @@ from ..geometry.vectors import Vector
 from ..quantities import Array
 from ..result.response import End
 from .assembly import copied, guided_as
-from .encounters import Met
 from .loop import Clock, accelerated
+from .search.encounters import Met
 from .supports import places
 from .system import System
 

@@ -15,15 +15,16 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers
 from ..result.forces import Forces, Gathered, forces_of
-from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
+from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
 from ..result.problem import problem_of
 from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
 from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
+from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
-from .bonds import cracked
+from .contacts.bonds import cracked
 from .following import Followed
 from .kinds.ties import Ties
 from .rows import Row, Rows

@@ -22,12 +22,12 @@ from ..scene.explicit_step import SHARE
 from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
 from ..scene.scene import Scene
 from .assembly import copied, guide, moved_by, started, system_of, take_grips
-from .bonds import bonded
-from .encounters import Encounters
+from .contacts.bonds import bonded
 from .impacts import Impacts
 from .limit import longest_step
 from .links import links_of
 from .memory import Memory, memory_of, recalled
+from .search.encounters import Encounters
 from .system import System
 
 SHORT = 0.25

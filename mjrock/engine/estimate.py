@@ -8,8 +8,6 @@ import warnings
 import numpy as np
 
 from ..geometry.frames import PLANE
-from ..problem.masonry.case import AnyCase
-from ..problem.masonry.masonry import Masonry
 from ..scene.explicit_step import SHARE, stable_step, stepping_seconds
 from ..scene.scene import Scene
 
@@ -32,14 +30,14 @@ WORTH_SAYING = 3.0
 """How many times faster explicit steps must be than the middle of what fitted steps may take to be spoken of [-]."""
 
 
-def explicit_seconds(scene: Scene, masonry: Masonry | AnyCase) -> float:
+def explicit_seconds(scene: Scene) -> float:
     """Time of a second by explicit steps [s], from the highest frequency and the strongest dashpot."""
-    ratio, contacts = masonry.joint_shear / masonry.joint_stiffness, scene.contacts
-    sprung = bool(np.isfinite(ratio).any())
-    stiffer = float(np.max(ratio[np.isfinite(ratio)], initial=1.0))  # of the springs along normal and face
-    stiffness = stiffer * scene.highest_frequency**2
+    contacts, in_space = scene.contacts, scene.freedom != PLANE
+    ratio = np.asarray(contacts.k_s) / contacts.k  # of the springs along the face and the normal
+    sprung = np.isfinite(ratio)
+    stiffness = float(np.max(ratio[sprung], initial=1.0)) * scene.highest_frequency**2
     step = SHARE * stable_step(stiffness, stiffness * float((contacts.c / contacts.k).max()))
-    return stepping_seconds(1 / step, len(contacts.k), sprung=sprung, in_space=scene.freedom != PLANE)
+    return stepping_seconds(1 / step, len(contacts.k), sprung=bool(sprung.any()), in_space=in_space)
 
 
 def fitted_seconds(scene: Scene) -> tuple[float, float]:
@@ -57,12 +55,12 @@ def interpreted_seconds(scene: Scene, duration: float, timestep: float | None) -
     return INTERPRETED * duration * math.sqrt(weak * strong)
 
 
-def warn_if_slow(scene: Scene, masonry: Masonry | AnyCase) -> None:
+def warn_if_slow(scene: Scene) -> None:
     """Warn of masonry of many blocks that explicit steps would follow in a fraction of the time."""
     blocks = len(scene.bodies.names)
     if blocks <= FEW:
         return
-    explicit, (least, most) = explicit_seconds(scene, masonry), fitted_seconds(scene)
+    explicit, (least, most) = explicit_seconds(scene), fitted_seconds(scene)
     if WORTH_SAYING * explicit <= math.sqrt(least * most):
         warnings.warn(
             f"explicit steps would take some {explicit:.2g} s for a simulated second of these {blocks} "

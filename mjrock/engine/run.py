@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,13 +10,14 @@ import numpy as np
 
 from ..geometry.kinematics import gaps
 from ..quantities import Array, Integers
-from ..result.ledger import ENERGY_GAIN, StepError, require_no_gain
+from ..result.ledger import StepError, require_no_gain
 from ..result.motion import SampledMotion
 from ..result.problem import Problem
 from ..result.reading import Reading
 from ..result.response import Response
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.course import Course
+from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from ..scene.structure import breaks
 from .energy_work import ground_work, ledger
@@ -29,11 +29,6 @@ MARKS = 1000
 """Times in a run of masonry between which no energy may appear."""
 SLIDING = 4.0
 """omega h up to which a fixed step follows masonry that slides, omega the highest contact frequency [-]."""
-
-
-def sound_timestep(frequency: float) -> float:
-    """`automatic_timestep` for the highest frequency of the closed contacts [rad/s]."""
-    return 2 * math.sqrt(ENERGY_GAIN) / frequency
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,11 +10,12 @@ from ..method import METHOD
 from ..problem.masonry.case import AnyCase
 from ..result.ledger import warn_if_open
 from ..result.response import Response
+from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from .energy_work import contact_work
 from .points import points_of
 from .record import Steps
-from .run import EngineRun, sound_timestep
+from .run import EngineRun
 
 SCATTER = 0.1
 """Standard deviation of |e| at a fixed step against a side stop, over omega h, relative [-]: a touch lies anywhere in a
@@ -44,12 +45,15 @@ def require_still(case: AnyCase) -> None:
         raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")
 
 
-def warn_if_sheared(case: AnyCase) -> None:
+def warn_if_sheared(scene: Scene) -> None:
     """Warn where joints have a shear stiffness, which MuJoCo's friction does not have."""
-    if np.isfinite(case.joint_shear).any():
+    contacts = scene.contacts
+    sprung = np.isfinite(contacts.k_s)
+    if sprung.any():
+        least = (np.asarray(contacts.k_s) / contacts.area)[sprung].min()
         warnings.warn(
-            f"k_s = {case.joint_shear.min():.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick "
-            "rigidly up to their friction",
+            f"k_s = {least:.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick rigidly up to their "
+            "friction",
             stacklevel=3,
         )
 

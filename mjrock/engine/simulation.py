@@ -9,7 +9,6 @@ from ..method import METHOD, Method
 from ..patience import expect, first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
-from ..problem.wall.block import Block
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
@@ -22,12 +21,13 @@ from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
+from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
-from .run import EngineRun, explained, sound_timestep
+from .run import EngineRun, explained
 from .run_warnings import (
     require_still,
     warn_if_coarse,
@@ -115,21 +115,6 @@ class Options:
         return f"lower accuracy = {self.accuracy:g}" if self.timestep is None else "take a shorter timestep"
 
 
-def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
-    """The step [s] at which a touch misplaces no more than ENERGY_GAIN of the energy that it meets.
-
-    A point that touches inside a step of length h is met up to h/2 too early or too late, and its spring then stores up
-    to k (v h/2)^2 / 2 that the motion has not paid. Against the kinetic energy m v^2 / 2 behind the point that is
-    (omega h / 2)^2, with omega the frequency of the contact. So omega h = 2 sqrt(ENERGY_GAIN), omega the highest
-    frequency of the wall with every contact closed: about a hundred steps in the shortest contact period.
-    """
-    require_kind("wall", wall, Block)
-    require_kind("contacts", contacts, Contacts)
-    require_flag("side_stop", side_stop)
-    contacts.require_fit(wall, side_stop=side_stop)
-    return sound_timestep(contacts.highest_frequency(wall, side_stop=side_stop))
-
-
 def simulate(
     case: AnyCase,
     contacts: Contacts | None = None,
@@ -192,7 +177,6 @@ def simulate(
     accuracy = default_accuracy(case) if accuracy is None else accuracy
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
     require_still(case)
-    warn_if_sheared(case)
     if contacts is not None and contacts.base.friction is None:
         warn_of_low_stop(case)
     if start is None:
@@ -204,12 +188,13 @@ def simulate(
     state = None if start is None else required_start(start, case)
     with first_answer(simulate, **given):
         scene = problem.scene(method)
+        warn_if_sheared(scene)
         course = problem.course(scene)
         if state is not None:
             course = course.continued(*state)
         expect(interpreted_seconds(scene, course.duration, options.timestep))
         if options.timestep is None:
-            warn_if_slow(scene, case)
+            warn_if_slow(scene)
             run, settings = fitted(problem, scene, course, options)
         else:
             warn_if_coarse(scene, options.timestep)

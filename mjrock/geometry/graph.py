@@ -1,4 +1,4 @@
-"""What hangs together. SciPy's graphs take long to import, which is done when something is asked of them."""
+"""What hangs together. SciPy imports its graphs, which takes long, when they are named."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from ..quantities import Integers
@@ -18,9 +19,7 @@ def components(pairs: ArrayLike, count: int) -> Integers:
         pairs: the two nodes of each edge, shape (edges, 2).
         count: number of nodes.
     """
-    from scipy.sparse.csgraph import connected_components
-
-    return np.asarray(connected_components(_graph(pairs, count), directed=False)[1])
+    return np.asarray(scipy.sparse.csgraph.connected_components(_graph(pairs, count), directed=False)[1])
 
 
 def nearest_roots(pairs: ArrayLike, count: int, roots: Sequence[int]) -> Integers:
@@ -31,14 +30,12 @@ def nearest_roots(pairs: ArrayLike, count: int, roots: Sequence[int]) -> Integer
         count: number of nodes.
         roots: the nodes from which edges are counted.
     """
-    from scipy.sparse.csgraph import dijkstra
-
-    found = dijkstra(_graph(pairs, count), directed=False, indices=roots, min_only=True, return_predecessors=True)
+    found = scipy.sparse.csgraph.dijkstra(
+        _graph(pairs, count), directed=False, indices=roots, min_only=True, return_predecessors=True
+    )
     return np.asarray(found[2])
 
 
 def _graph(pairs: ArrayLike, count: int) -> Any:
-    from scipy.sparse import coo_array
-
     rows, columns = np.reshape(np.asarray(pairs, dtype=np.int64), (-1, 2)).T
-    return coo_array((np.ones(len(rows)), (rows, columns)), shape=(count, count))
+    return scipy.sparse.coo_array((np.ones(len(rows)), (rows, columns)), shape=(count, count))

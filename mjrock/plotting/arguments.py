@@ -27,7 +27,7 @@ from ..quantities import (
     shown,
 )
 from ..result.response import Response
-from ..study.fragility import Fragility
+from ..study.intensity.fragility import Fragility
 
 P = ParamSpec("P")
 Picture = TypeVar("Picture", bound=Callable[..., Any])

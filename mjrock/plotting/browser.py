@@ -10,8 +10,8 @@ import numpy as np
 
 from ..files import write_text
 from ..geometry.poses import rotations
-from ..problem.masonry.joints import Joint
-from ..problem.masonry.joints_in_space import SpaceJoint
+from ..problem.masonry.blocks.joints import Joint
+from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.wall.standing import in_space
 from ..quantities import Array, Integers, require_path
 from ..result.bodies import Moving, bodies_of, frames_at

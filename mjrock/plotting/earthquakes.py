@@ -18,7 +18,7 @@ from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
 from ..quantities import GRAVITY
-from ..study.fragility import Fragility
+from ..study.intensity.fragility import Fragility
 from .arguments import equal_rows, finite_row, kind, listed, mapping, picture, row, table
 from .style import STYLES, folded, legend_below
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
-from ..problem.masonry.joints import Joint
+from ..problem.masonry.blocks.joints import Joint
 from ..quantities import Array, Integers, shown
 from ..result.bodies import Moving
 from ..result.response import Response

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from ..problem.masonry.collapse import Collapse
-from ..problem.masonry.joints import Joint
+from ..problem.masonry.blocks.joints import Joint
+from ..problem.masonry.limit.collapse import Collapse
 from ..quantities import require_flag, require_kind, require_within
 from .arguments import picture
 from .masonry import blocks

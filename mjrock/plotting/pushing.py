@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from ..quantities import named
-from ..study.push import Push
-from ..study.pushover import PushoverCurve
+from ..study.loading.push import Push
+from ..study.loading.pushover import PushoverCurve
 from .arguments import equal_rows, kind, mapping, picture
 from .style import folded
 

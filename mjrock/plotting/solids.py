@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from ..geometry.frames import SPACE
 from ..geometry.poses import displaced, rotations
+from ..problem.masonry.blocks.compound import Compound, SolidBlock
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.compound import Compound, SolidBlock
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.bodies import Moving

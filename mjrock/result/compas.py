@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from ..geometry.poses import rotations
+from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.compas_files import guid_of, held, model_guid
-from ..problem.masonry.joints_in_space import SpaceJoint
+from ..problem.masonry.files.compas import guid_of, held, model_guid
 from ..quantities import Array
 from .bodies import Body
 from .forces import Forces

@@ -11,9 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..quantities import Array, require_reals, shown
-
-ENERGY_GAIN = 1e-3
-"""Most energy that may appear from nowhere, over the energy there was [-]."""
+from ..scene.fixed_step import ENERGY_GAIN
 
 
 class StepError(RuntimeError):

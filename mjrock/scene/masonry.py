@@ -7,13 +7,13 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..problem.masonry.blocks.compound import AnyBlock
+from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.effects import applied, laden, placed
+from ..problem.masonry.limit.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.polyhedron import Polyhedron
-from ..problem.masonry.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.tilt import motions_of_tilt
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of

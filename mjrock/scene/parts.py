@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
-from ..problem.masonry.bond import Bond, strengths
+from ..problem.masonry.laws.bond import Bond, strengths
 from ..problem.wall.effect import LinkLaw
 from ..quantities import Array, Flags, Integers, frozen
 from .checks import GROUND, keep_array, require_inertia, require_others

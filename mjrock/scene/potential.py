@@ -36,7 +36,7 @@ from ..geometry.kinematics import (
 from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
 from ..linear import entries, sprung
-from ..problem.masonry.joint_law import resting
+from ..problem.masonry.laws.joint_law import resting
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .structure import Structure, force_energy, weight_energy
 

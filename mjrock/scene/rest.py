@@ -12,13 +12,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from scipy.sparse import csc_array, csr_array, diags_array, vstack
-from scipy.sparse.linalg import splu
 
 from ..geometry.kinematics import AppliedForces, Places, gaps
 from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung
-from ..problem.masonry.joint_law import Law, shear_limit
+from ..problem.masonry.laws.joint_law import Law, shear_limit
 from ..quantities import GRAVITY, Array, Flags
 from .parts import ContactPoints
 from .potential import Potential
@@ -221,7 +221,7 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
         stiffness = sprung(rates, np.where(closed, k, LEANING * k)) + shear_stiffness(grips, share)
         scaled = scales @ stiffness @ scales
         lent = np.full(len(size), loose * float(scaled.diagonal().max()))
-        motion = splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
+        motion = scipy.sparse.linalg.splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
         pose = lowering(potential, pose, motion, sliders)
         openings = potential.openings(pose)
         closed = potential.closed(openings)

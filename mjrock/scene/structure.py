@@ -11,7 +11,7 @@ from ..compiled import compiled, inlined
 from ..geometry.frames import Freedom, take_frames
 from ..geometry.kinematics import AppliedForces, Places, Ties, depth, displacement, slack, stretch
 from ..geometry.vectors import dot, vector
-from ..problem.masonry.joint_law import Law, stored
+from ..problem.masonry.laws.joint_law import Law, stored
 from ..quantities import GRAVITY, Array, Integers, frozen
 from .masses import coupling
 

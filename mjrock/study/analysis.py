@@ -23,7 +23,7 @@ from ..reference.compliant import solve_compliant
 from ..result.response import Response
 from ..result.ties import Plastic
 from ..theory.analytical import solve_analytical
-from .campaign_task import Row
+from .campaign.task import Row
 from .subject import subject_of
 
 SOLVERS: dict[str, Callable[..., Response]] = {

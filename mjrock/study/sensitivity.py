@@ -15,9 +15,9 @@ import numpy as np
 
 from ..quantities import require_flag, require_kind, require_path, require_size, require_text, shown
 from ..result.table import aligned, csv_text
-from .campaign import completed
-from .campaign_task import Row, Task
-from .grid import label_of, labelled
+from .campaign.campaign import completed
+from .campaign.grid import label_of, labelled
+from .campaign.task import Row, Task
 
 UNITS = {"peak_over_alpha": "alpha", "g": "g", "m": "m", "s": "s", "rad": "rad", "N": "N", "J": "J"}
 """Units of a measure, by the name of its column or by the end of that name."""

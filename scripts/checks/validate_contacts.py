@@ -21,7 +21,7 @@ import numpy as np
 from tqdm import tqdm
 
 import mjrock as mr
-from mjrock.study.match import Combination, combinations
+from mjrock.study.matching.match import Combination, combinations
 from scripts.shared import cli
 
 SEED = 2001

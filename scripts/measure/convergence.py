@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.study.match import combinations
+from mjrock.study.matching.match import combinations
 from scripts.shared import cli
 from scripts.shared.paper import FIGURE_3, K_N
 

@@ -17,10 +17,10 @@ import numpy as np
 from mjrock import Restitution, Store, plotting
 from mjrock.problem.damping.forms import PowerLaw
 from mjrock.problem.damping.law import HIGHEST, LEAST
-from mjrock.study.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
-from mjrock.study.campaign import completed
-from mjrock.study.match import K_N_RANGE, REFERENCE, Combination, Match
-from mjrock.study.regression import Regression, coefficients, r_squared, regress
+from mjrock.study.campaign.campaign import completed
+from mjrock.study.matching.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
+from mjrock.study.matching.match import K_N_RANGE, REFERENCE, Combination, Match
+from mjrock.study.matching.regression import Regression, coefficients, r_squared, regress
 from scripts.shared import cli
 
 LAYOUTS = {"CALIBRATED": 2, "CALIBRATED_BED": 16}

@@ -20,10 +20,10 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.damping.forms import Groups
 from mjrock.problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
-from mjrock.study.calibration import Plan
-from mjrock.study.campaign import completed
-from mjrock.study.match import Combination, Match, combinations
-from mjrock.study.regression import regress, well_matched
+from mjrock.study.campaign.campaign import completed
+from mjrock.study.matching.calibration import Plan
+from mjrock.study.matching.match import Combination, Match, combinations
+from mjrock.study.matching.regression import regress, well_matched
 from scripts.shared import cli
 from scripts.shared.paper import K_N, TABLE_2
 

@@ -19,7 +19,7 @@ from scipy.stats import binomtest, wilcoxon
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.study.campaign import completed
+from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 
 WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]

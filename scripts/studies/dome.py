@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.masonry.statics import falling
+from mjrock.problem.masonry.limit.statics import falling
 from mjrock.quantities import Array
 from scripts.shared import cli
 from scripts.shared.models_in_space import IN_SPACE

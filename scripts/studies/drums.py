@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.study.campaign import completed
+from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 
 COLUMN = mr.Block.from_size(thickness=0.75, height=6.0, length=0.75, density=2500.0)

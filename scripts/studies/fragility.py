@@ -19,8 +19,8 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.study.campaign import completed
-from mjrock.study.fragility import fit_fragility
+from mjrock.study.campaign.campaign import completed
+from mjrock.study.intensity.fragility import fit_fragility
 from scripts.shared import cli, suite
 from scripts.shared.paper import FIGURE_3, K_N
 

@@ -21,7 +21,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.masonry.statics import falling
+from mjrock.problem.masonry.limit.statics import falling
 from scripts.shared import cli
 
 THICKNESS, HEIGHT, UNIT = 0.6, 3.0, (0.4, 0.3)

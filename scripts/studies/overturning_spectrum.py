@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.study.campaign import completed
+from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 from scripts.shared.paper import FIGURE_3
 

@@ -23,7 +23,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.masonry.statics import falling
+from mjrock.problem.masonry.limit.statics import falling
 from scripts.shared import cli
 
 LENGTH, HEIGHT, UNIT = 1.5, 1.75, (0.5, 0.25)

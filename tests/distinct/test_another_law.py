@@ -7,14 +7,16 @@ import numpy as np
 import pytest
 from by_hand import system
 
-from mjrock.distinct import handover, loop, touches
-from mjrock.distinct.handover import Lines
+from mjrock.distinct import loop
+from mjrock.distinct.contacts import touches
 from mjrock.distinct.impacts import Impacts
 from mjrock.distinct.loop import Clock
 from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.search import handover
+from mjrock.distinct.search.handover import Lines
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, Samples
-from mjrock.problem.masonry import joint_law
+from mjrock.problem.masonry.laws import joint_law
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 K, DEEPEST = 4e5, 0.02

@@ -8,7 +8,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.distinct import explicit, following
-from mjrock.distinct.encounters import Encounters
+from mjrock.distinct.search.encounters import Encounters
 
 TABLE = box(-1.0, 1.0, 1.0, 1.5, fixed=True, name="table")
 STANDS = box(3.0, 3.2, 0.0, 0.2, name="stands")

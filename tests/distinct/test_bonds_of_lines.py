@@ -9,10 +9,10 @@ from by_hand import about, books, matrix, system
 from test_contact_lines import ALONG, BOTH, FACES, NORMAL, met, put_line
 
 import mjrock as mr
-from mjrock.distinct import bonds, contact, friction
+from mjrock.distinct.contacts import bonds, contact, friction
 from mjrock.distinct.rows import rows
 from mjrock.distinct.setup import setup_of
-from mjrock.problem.masonry.bond_law import bonded_limit, crush, tear, wear
+from mjrock.problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
 
 H, K, C, K_SHEAR, C_SHEAR = 1e-3, 1e6, 40.0, 4e5, 20.0
 TENSION, COHESION, TORN, WORN = 1e3, 2e3, 300.0, 500.0

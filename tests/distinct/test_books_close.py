@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct import encounters
 from mjrock.distinct.reading import require_sound
 from mjrock.distinct.rows import rows
+from mjrock.distinct.search import encounters
 from mjrock.distinct.system import ENERGY
 
 SOFT = {"k_n": 2e5, "friction": 0.5, "xi": 0.0}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from by_hand import about, books, energy, matrix, system, velocity_at
 
-from mjrock.distinct import contact, friction, touches
-from mjrock.distinct.contact import Meeting
+from mjrock.distinct.contacts import contact, friction, touches
+from mjrock.distinct.contacts.contact import Meeting
 from mjrock.distinct.rows import POINT
 
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}

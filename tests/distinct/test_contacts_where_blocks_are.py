@@ -6,8 +6,8 @@ from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.finder import Finder
-from mjrock.distinct.solids import Poses
+from mjrock.distinct.search.finder import Finder
+from mjrock.distinct.search.solids import Poses
 
 BOX = mr.Polyhedron.box
 STILL = (0,) * 6

@@ -9,7 +9,7 @@ from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.encounters import Encounters, in_shear
+from mjrock.distinct.search.encounters import Encounters, in_shear
 
 TABLE = box(-1, 0, 0, 1, name="table")
 

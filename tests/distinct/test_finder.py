@@ -10,11 +10,11 @@ from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct import finder
-from mjrock.distinct.clipping import PLACE
-from mjrock.distinct.finder import Finder, Found, Near
 from mjrock.distinct.rows import rows
-from mjrock.distinct.solids import Poses, Solids
+from mjrock.distinct.search import finder
+from mjrock.distinct.search.clipping import PLACE
+from mjrock.distinct.search.finder import Finder, Found, Near
+from mjrock.distinct.search.solids import Poses, Solids
 
 BOX = mr.Polyhedron.box
 LOWER, UPPER = BOX((2.0, 3.0, 1.0), (0.0, 0.0, -0.5)), BOX((1.0, 0.5, 0.4), (0.2, 0.1, 0.2))

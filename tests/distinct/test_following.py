@@ -6,6 +6,7 @@ import signal
 import threading
 import time
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from masonry_blocks import columns
 
 import mjrock as mr
 from mjrock.distinct import following
+from mjrock.distinct.following import Stepping
 
 SLOW = mr.Masonry.facade(length=0.8, height=0.4, depth=0.4, unit=(0.4, 0.2), k_n=1e12, frequency=1.0)
 """Its dashpots ask for steps of less than a nanosecond: hours for a simulated second, minutes for a sample."""
@@ -79,3 +81,19 @@ def test_the_estimate_is_near_what_it_takes(monkeypatch):
     (said,) = (str(one.message) for one in caught)
     estimate = float(said.removeprefix("explicit steps would take some ").split(" s:")[0])
     assert 0.2 < estimate / run.stats["stepping_processor_time"] < 5
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_step_that_is_given_again_gives_the_same_samples(seed):
+    """Samples are then as far apart as they were, though more are kept in between. Of any other step they are within
+    half a step of each that is kept."""
+    rng = np.random.default_rng(seed)
+    duration, output, spacing, limit = 10 ** rng.uniform((-1, -2, -3, -5), (1, -1, -1.5, -3))
+    setup = SimpleNamespace(course=SimpleNamespace(duration=duration), limit=limit, share=0.3, spacing=spacing)
+    first = Stepping.of(setup, None, output)
+    again = Stepping.of(setup, first.h, first.every * first.stride * first.h)
+    assert (again.every, again.stride, again.last) == (first.every, first.stride, first.last)
+    other = Stepping.of(setup, 0.77 * first.h, output)
+    apart = other.every * other.stride * other.h
+    assert other.every * other.h < spacing + 0.5 * other.h
+    assert abs(apart - output) < 0.51 * (other.stride + 1) * other.h

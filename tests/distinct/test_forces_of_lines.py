@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from by_hand import about, books, matrix, system
 
-from mjrock.distinct import contact, gathering
+from mjrock.distinct import gathering
+from mjrock.distinct.contacts import contact
 from mjrock.distinct.system import Samples
 
 BOTH = pytest.mark.parametrize("d", [2, 3])

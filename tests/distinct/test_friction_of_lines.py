@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from by_hand import MOVING, about, energy, matrix, system, velocity_at
 
-from mjrock.distinct import friction
+from mjrock.distinct.contacts import friction
 from mjrock.distinct.system import Books
 from mjrock.geometry.vectors import tangent, tangents
 

@@ -8,10 +8,10 @@ from by_hand import columns
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct import clipping, grid
-from mjrock.distinct.finder import Finder
 from mjrock.distinct.rows import rows
-from mjrock.distinct.solids import Poses, Solids
+from mjrock.distinct.search import clipping, grid
+from mjrock.distinct.search.finder import Finder
+from mjrock.distinct.search.solids import Poses, Solids
 from mjrock.geometry import convex
 
 BOX = mr.Polyhedron.box

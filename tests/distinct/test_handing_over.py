@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from by_hand import ANGLES, PLACE, REST, TURNS, matrix, system
 
-from mjrock.distinct import contact, handover
-from mjrock.distinct.finder import Found
-from mjrock.distinct.handover import Blocks, Lines, Pairs, Place
+from mjrock.distinct.contacts import contact
 from mjrock.distinct.rows import POINT, kinds, rows
-from mjrock.distinct.solids import Poses
+from mjrock.distinct.search import handover
+from mjrock.distinct.search.finder import Found
+from mjrock.distinct.search.handover import Blocks, Lines, Pairs, Place
+from mjrock.distinct.search.solids import Poses
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 MOVED = np.array([0.21, -0.32, 0.23])

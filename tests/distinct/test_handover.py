@@ -5,10 +5,10 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.finder import Found
-from mjrock.distinct.handover import Lines, press
-from mjrock.distinct.pair_law import least_among
 from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.search.finder import Found
+from mjrock.distinct.search.handover import Lines, press
+from mjrock.distinct.search.pair_law import least_among
 
 
 @pytest.mark.parametrize("guided", ["translation", "upright", None])

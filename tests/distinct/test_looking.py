@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from by_hand import PLACE, SPIN, VELOCITY, matrix, system
 
-from mjrock.distinct import looking
-from mjrock.distinct.finder import Found
-from mjrock.distinct.handover import Blocks
-from mjrock.distinct.looking import Motion, Reach, Seen, Wear
-from mjrock.distinct.solids import Poses
+from mjrock.distinct.search import looking
+from mjrock.distinct.search.finder import Found
+from mjrock.distinct.search.handover import Blocks
+from mjrock.distinct.search.looking import Motion, Reach, Seen, Wear
+from mjrock.distinct.search.solids import Poses
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 LOOK = 5e-3
@@ -299,9 +299,28 @@ def test_springs_hold_what_they_store(d):
         looking.take_turn(body)
     whole.lines["k"] = [1e5, 2e5, 4e5]
     depth = np.full(2, 9.0)
-    energy = looking.held.py_func(whole, np.array([2, 1]), depth)
+    energy, _ = looking.held.py_func(whole, np.array([2, 1]), depth)
     assert energy == pytest.approx(0.5 * 4e5 * 1e-6, rel=1e-9)
     np.testing.assert_allclose(depth, [0.001, 0.0], rtol=1e-9)
-    energy = looking.held.py_func(whole, np.array([0, 2]), depth)
+    energy, _ = looking.held.py_func(whole, np.array([0, 2]), depth)
     assert energy == pytest.approx(0.5 * 1e5 * 9e-6 + 0.5 * 4e5 * 1e-6, rel=1e-9)
     np.testing.assert_allclose(depth, [0.003, 0.001], rtol=1e-9)
+
+
+@pytest.mark.parametrize("face", [-1, 0])
+def test_springs_give_what_they_hold_less_a_moment_later(face):
+    """A central difference of the energy, with the bodies moved along their velocities. An open line gives nothing."""
+    whole, _ = worn(2, [(0, -0.003, 0.02), (0, 0.002, 0.0), (0, -0.001, 0.0)], [1.0], (face,))
+    whole.lines["k"], moment = [1e5, 2e5, 4e5], 1e-6
+    place, angle = np.array(whole.bodies["place"]), np.array(whole.bodies["angle"])
+
+    def at(time):
+        whole.bodies["place"] = place + time * np.array(whole.bodies["velocity"])
+        whole.bodies["angle"] = angle + time * np.array(whole.bodies["spin"])[:, 0]
+        for body in whole.bodies:
+            looking.take_turn(body)
+        return looking.held.py_func(whole, np.arange(3), np.empty(3))
+
+    gives = (at(-moment)[0] - at(moment)[0]) / (2 * moment)
+    assert abs(gives) > 10.0
+    assert at(0.0)[1] == pytest.approx(gives, rel=1e-6)

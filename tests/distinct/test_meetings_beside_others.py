@@ -9,8 +9,8 @@ from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.encounters import Encounters
-from mjrock.distinct.looking import PASSED
+from mjrock.distinct.search.encounters import Encounters
+from mjrock.distinct.search.looking import PASSED
 
 SPEEDS = np.linspace(0.4, 4.0, 20)
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct import faces
-from mjrock.distinct.faces import Outline
+from mjrock.distinct.contacts import faces
+from mjrock.distinct.contacts.faces import Outline
 from mjrock.distinct.rows import kinds, rows
 
 TURN = 0.3

@@ -6,8 +6,8 @@ from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct.overlap import common_volume, what_keeps_apart
-from mjrock.distinct.solids import Solids
+from mjrock.distinct.search.overlap import common_volume, what_keeps_apart
+from mjrock.distinct.search.solids import Solids
 
 
 def solids_about(blocks, centroids):

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mjrock.distinct import pair_law
 from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.search import pair_law
 
 WIDTHS = [0.2, 0.5, 0.4]
 ENDS = [(0, 1), (1, 2), (1, 2)]

@@ -14,7 +14,7 @@ from everyday import among
 from masonry_blocks import box
 
 import mjrock as mr
-from mjrock.distinct import encounters
+from mjrock.distinct.search import encounters
 
 RADIUS = 0.3
 SIDES = range(5, 25)

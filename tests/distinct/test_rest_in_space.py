@@ -9,7 +9,7 @@ from space_blocks import block
 
 import mjrock as mr
 from mjrock.distinct.setup import standing
-from mjrock.problem.masonry.statics import falling
+from mjrock.problem.masonry.limit.statics import falling
 from mjrock.quantities import named
 
 UNIT = (0.4, 0.2)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mjrock.distinct.rows import kinds, rows
-from mjrock.distinct.softening import Sides, shares_within, unsoftened
+from mjrock.distinct.search.softening import Sides, shares_within, unsoftened
 
 
 def places(rng, bodies, count, d):

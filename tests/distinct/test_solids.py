@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct.solids import Solids, inside_of, solid_of
+from mjrock.distinct.search.solids import Solids, inside_of, solid_of
 from mjrock.geometry.hull import area_vector
 
 SIDES = {

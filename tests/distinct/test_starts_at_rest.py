@@ -7,7 +7,7 @@ import pytest
 from masonry_blocks import box
 
 import mjrock as mr
-from mjrock.distinct import encounters
+from mjrock.distinct.search import encounters
 
 SLOPE = 0.3
 K_N = 1e7

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from mjrock.distinct import touches
+from mjrock.distinct.contacts import touches
 from mjrock.distinct.rows import kinds, rows
 
 H, K, C = 0.01, 3e4, 40.0

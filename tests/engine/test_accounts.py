@@ -13,6 +13,7 @@ from mjrock.engine.energy_work import ledger
 from mjrock.engine.model import released_mjcf
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
+from mjrock.scene.fixed_step import ENERGY_GAIN
 from mjrock.scene.wall import wall_scene
 
 SQUAT = mr.Block.from_size(2.0, 2.0)
@@ -151,7 +152,7 @@ def test_on_ice_a_pushed_block_has_the_energy_that_was_put_in(monkeypatch):
             links=scene.links, accounts=lambda q, v, sign=sign: [sign * p for p in scene.accounts(q, v)]
         )
         balance = honest(mirrored, steps, sign * work, everywhere)
-        engine_run.require_no_gain(steps.windows.t, balance, most / engine_run.ENERGY_GAIN)
+        engine_run.require_no_gain(steps.windows.t, balance, most / ENERGY_GAIN)
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])
@@ -173,7 +174,7 @@ def test_how_much_energy_may_appear(share, monkeypatch, two_sided, contacts):
         (still, ice, 0.0),
     ):
         most += at_rest(case.wall, made_of)
-        gain = share * engine_run.ENERGY_GAIN * most
+        gain = share * ENERGY_GAIN * most
 
         def growing(scene, steps, work, marks, gain=gain):
             """The balance of a run in which nothing changes the energy but the ground, and some more that appears."""
@@ -187,5 +188,5 @@ def test_how_much_energy_may_appear(share, monkeypatch, two_sided, contacts):
         if share < 1:
             mr.simulate(case, made_of, 1e-3)
         else:
-            with pytest.raises(mr.SimulationError, match=f"{share * engine_run.ENERGY_GAIN:.2%} of the energy"):
+            with pytest.raises(mr.SimulationError, match=f"{share * ENERGY_GAIN:.2%} of the energy"):
                 mr.simulate(case, made_of, 1e-3)

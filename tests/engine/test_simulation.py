@@ -13,6 +13,7 @@ from mjrock.engine import run as engine_run
 from mjrock.engine.model import Engine
 from mjrock.method import METHOD
 from mjrock.result.ledger import StepError
+from mjrock.scene.fixed_step import ENERGY_GAIN
 from mjrock.scene.wall import inner_friction
 from scripts.shared.paper import K_N
 
@@ -129,10 +130,10 @@ def test_gain_from_peak_to_peak_is_what_counts(two_sided, contacts, energy, mark
     windows = SimpleNamespace(t=2.0 * np.arange(len(energy)), pose=pose, velocity=np.zeros_like(pose))
     balance = engine_run.balance(scene, SimpleNamespace(windows=windows), np.zeros(len(energy)), np.array(marks))
     run = windows.t[marks], balance
-    engine_run.require_no_gain(*run, 1.001 * gain / engine_run.ENERGY_GAIN)
+    engine_run.require_no_gain(*run, 1.001 * gain / ENERGY_GAIN)
     if gain > 0:
         with pytest.raises(StepError, match=rf"^{gain:g} J, 0\.10% of the energy there was, appeared") as caught:
-            engine_run.require_no_gain(*run, 0.999 * gain / engine_run.ENERGY_GAIN)
+            engine_run.require_no_gain(*run, 0.999 * gain / ENERGY_GAIN)
         assert caught.value.t == when
 
 

@@ -129,13 +129,13 @@ def test_the_stamp_of_a_module_is_that_of_what_it_imports(tmp_path):
         return {name: stored.stamp(copy / name) for name in names}
 
     assert edited("distinct/loop.py") == {"distinct/loop.py"}
-    assert edited("distinct/contact.py") == {"distinct/loop.py"}
+    assert edited("distinct/contacts/contact.py") == {"distinct/loop.py"}
     assert edited("theory/arcs.py") == {"theory/arcs.py"}
     assert edited("engine/loop.py") == {"engine/loop.py"}
     assert edited("engine/pace.py") == {"engine/loop.py"}
     assert "engine/loop.py" in edited("geometry/frames.py")  # which it reaches by others
     assert edited("compiled.py") == {"engine/loop.py", "theory/arcs.py", "distinct/loop.py"}
-    assert edited("distinct/encounters.py") <= {"distinct/loop.py"}
+    assert edited("distinct/search/encounters.py") <= {"distinct/loop.py"}
 
 
 @pytest.mark.slow

@@ -27,6 +27,8 @@ FLOORS = (
     ("__main__",),
 )
 """From the ground up. Rooms of one floor do not import each other."""
+FOLDERS = ("blocks", "laws", "builders", "files")
+"""Folders of masonry from the ground up. They know nothing of the modules beside them."""
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_MUJOCO = ("geometry", "problem", "scene", "result", "theory", "reference", "distinct")
 LONGEST_FUNCTION, MOST_ARGUMENTS = 60, 7
@@ -65,6 +67,16 @@ def test_imports_run_down():
     assert offenders == []
 
 
+def test_folders_of_masonry_stand_on_each_other():
+    offenders = []
+    for height, folder in enumerate(FOLDERS):
+        for path in sorted((ROOT / "problem" / "masonry" / folder).glob("*.py")):
+            within = [name for name in imports(path)[0] if name.startswith("problem.masonry.")]
+            below = tuple(f"problem.masonry.{name}." for name in FOLDERS[: height + 1])
+            offenders += [f"{folder}/{path.stem} imports {name}" for name in within if not name.startswith(below)]
+    assert offenders == []
+
+
 def test_no_circle():
     """Modules can be put into a row in which each imports only those before it."""
     names = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in MODULES}
@@ -74,6 +86,14 @@ def test_no_circle():
         assert free, f"these import each other: {sorted(waits)}"
         for name in free:
             del waits[name]
+
+
+def test_the_engine_takes_scenes_and_knows_no_blocks():
+    """What it needs of a wall or of masonry is in the scene."""
+    paths = [path for path in MODULES if path.relative_to(ROOT).parts[0] == "engine"]
+    blocks = {"problem.wall.block", "problem.masonry.masonry"}
+    assert [f"{path.name} imports {target}" for path in paths for target in blocks & set(imports(path)[0])] == []
+    assert len(paths) > 20
 
 
 def test_functions_are_short():

@@ -13,7 +13,7 @@ def test_importing_the_package_imports_no_matplotlib():
 import sys
 import mjrock as mr
 assert not [name for name in sys.modules if name.startswith(("matplotlib", "pandas", "dask"))]
-from mjrock.study.fragility import fit_fragility
+from mjrock.study.intensity.fragility import fit_fragility
 assert "matplotlib" not in sys.modules
 assert mr.plotting.rotation.__module__ == "mjrock.plotting.histories"
 from mjrock import plotting

@@ -18,7 +18,7 @@ from offenders import not_refused
 import mjrock as mr
 from mjrock.plotting import bodies
 from mjrock.quantities import shown
-from mjrock.study.ida import IncrementalAnalysis
+from mjrock.study.intensity.ida import IncrementalAnalysis
 
 WALL = mr.Block(0.5, 2.0)
 E = mr.Restitution(0.75, -0.5)

@@ -34,7 +34,7 @@ if __name__ == "__main__":
 
     import mjrock.engine.loop
     import mjrock.theory.arcs
-    from mjrock.study.fragility import fit_fragility
+    from mjrock.study.intensity.fragility import fit_fragility
 
     installed = Path(mr.__file__).resolve()
     mr.campaign(mr.Grid(build, scale=[0.2, 0.4]), "walls.sqlite")

@@ -97,10 +97,10 @@ def test_what_is_not_the_same_is_told():
 
 
 def test_an_error_that_is_not_named_is_told(monkeypatch):
-    def fail(self):
+    def fail(self, *args, **options):
         raise IndexError("list index out of range")
 
-    monkeypatch.setattr(Masonry, "__post_init__", fail)
+    monkeypatch.setattr(Masonry, "__init__", fail)
     assert "IndexError" in judge(0)["unnamed"]
 
 
@@ -127,6 +127,17 @@ def test_the_page_has_the_table_of_the_code():
     for name, row in INVARIANCES.items():
         title = row.run.__doc__.splitlines()[0]
         assert f"| `{name}` | {title} | {row.bounds} | {row.reason} |" in text
+
+
+@pytest.mark.parametrize("seed", [10018, 10024])
+def test_the_books_close_where_springs_of_a_find_press_less(seed):
+    """A block and an L that slide while they press hard, at joints that are handed over. What the loss of force does to
+    the half of the step before it is booked with the energy; without it 0.5 to 1 % of the energy is missing."""
+    scene = draw(seed)
+    with overheard():
+        ledger = solve(scene, ledger=True, output_step=scene["duration"] / 80).ledger
+    assert sum(account[-1] for account in ledger.ends.values()) > 4e-3 * ledger.largest
+    assert np.abs(ledger.residual).max() < 2e-3 * ledger.largest
 
 
 def test_a_force_that_is_left_out_is_told():

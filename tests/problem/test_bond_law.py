@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry.bond_law import BRITTLE, bonded_limit, crush, tear, wear
+from mjrock.problem.masonry.laws.bond_law import BRITTLE, bonded_limit, crush, tear, wear
 
 K, TENSION, TORN = 1e8, 2e3, 1e4
 """Stiffness [N/m], strength [N], and rate at which a crack softens [1/m]: f_t / G_I."""

@@ -7,7 +7,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.problem.masonry.effects import applied
-from mjrock.problem.masonry.statics import falling, friction_lacking, slippery
+from mjrock.problem.masonry.limit.statics import falling, friction_lacking, slippery
 
 box = mr.Polyhedron.box
 GROUND = box((8, 8, 1), (0, 0, -0.5), fixed=True, name="ground")

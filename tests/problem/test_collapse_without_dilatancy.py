@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 import mjrock as mr
-from mjrock.problem.masonry.limit_state import Programme, states_without_dilatancy
-from mjrock.problem.masonry.statics import Pulls, weight_of
+from mjrock.problem.masonry.limit.limit_state import Programme, states_without_dilatancy
+from mjrock.problem.masonry.limit.statics import Pulls, weight_of
 from scripts.checks import limit_analysis as study
 
 B, H = 0.4, 1.6

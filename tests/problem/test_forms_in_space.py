@@ -10,7 +10,7 @@ import pytest
 from everyday import slow
 
 import mjrock as mr
-from mjrock.problem.masonry.statics import falling
+from mjrock.problem.masonry.limit.statics import falling
 
 UNIT = (0.4, 0.2)
 

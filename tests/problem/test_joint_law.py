@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry import joint_law
-from mjrock.problem.masonry.joint_law import Law, normal_force, resting, shear_limit, stored, stored_along
+from mjrock.problem.masonry.laws import joint_law
+from mjrock.problem.masonry.laws.joint_law import Law, normal_force, resting, shear_limit, stored, stored_along
 
 LAW = Law(k=100.0, c=2.0, k_s=50.0, friction=0.6)
 
@@ -46,7 +46,7 @@ def test_limit_analysis_has_the_friction_of_the_law(monkeypatch):
     block = mr.Masonry.stack([mr.Block(0.5, 0.5)], k_n=1e9, friction=0.3)
     assert mr.collapse_multiplier(block).multiplier == pytest.approx(0.3, rel=1e-6)
     half = lambda row, push: 0.5 * row.friction * push  # noqa: E731
-    monkeypatch.setattr("mjrock.problem.masonry.statics.shear_limit", half)
+    monkeypatch.setattr("mjrock.problem.masonry.limit.statics.shear_limit", half)
     assert mr.collapse_multiplier(block).multiplier == pytest.approx(0.15, rel=1e-6)
     assert shear_limit is joint_law.shear_limit
     assert shear_limit(LAW, 10.0) == pytest.approx(6.0)

@@ -10,8 +10,8 @@ from masonry_blocks import GROUND, box, columns
 import mjrock as mr
 from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import gap
-from mjrock.problem.masonry import joints
-from mjrock.problem.masonry.joints import neighbours
+from mjrock.problem.masonry.blocks import joints
+from mjrock.problem.masonry.blocks.joints import neighbours
 from mjrock.problem.masonry.lines import rates
 from mjrock.scene.masonry import standing_masonry
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study import ida
+from mjrock.study.intensity import ida
 
 WALL = mr.Block.from_size(0.9, 12.0, 10.0, 1900.0)
 E = mr.Restitution.from_geometry(WALL)

@@ -8,7 +8,7 @@ import pytest
 from masonry_blocks import bracket, tilted
 
 import mjrock as mr
-from mjrock.problem.masonry.statics import falling
+from mjrock.problem.masonry.limit.statics import falling
 
 ARCH = mr.Masonry.arch(radius=5.0, thickness=1.0, voussoirs=9, friction=1.5, xi=0)
 

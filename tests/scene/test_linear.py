@@ -6,8 +6,8 @@ from scipy.sparse import csr_array
 
 import mjrock as mr
 from mjrock import linear
+from mjrock.problem.masonry.limit.statics import slippery
 from mjrock.problem.masonry.lines import lowest_frequency
-from mjrock.problem.masonry.statics import slippery
 from mjrock.scene.masonry import standing_masonry
 from mjrock.scene.rest import UnsettledError
 from scripts.studies import two_storeys

@@ -12,9 +12,9 @@ from masonry_blocks import GROUND, box, bracket, columns, tilted
 from scenes import unbalanced
 
 import mjrock as mr
-from mjrock.problem.masonry import polyhedron
+from mjrock.problem.masonry.blocks import polyhedron
 from mjrock.problem.masonry.effects import applied
-from mjrock.problem.masonry.statics import falling, friction_lacking, nudged
+from mjrock.problem.masonry.limit.statics import falling, friction_lacking, nudged
 from mjrock.scene.masonry import require_standing, standing_masonry
 from scripts.studies import two_storeys
 

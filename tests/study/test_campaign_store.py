@@ -12,12 +12,12 @@ import pytest
 from campaign_tasks import Square
 
 import mjrock as mr
-from mjrock.study.store import Store
+from mjrock.study.campaign.store import Store
 
 TAKER = """
 import os, sys, time
 from pathlib import Path
-from mjrock.study.store import Store
+from mjrock.study.campaign.store import Store
 folder = Path(sys.argv[1])
 folder.joinpath(f"ready {os.getpid()}").touch()
 while len(list(folder.glob("ready *"))) < 3:
@@ -53,7 +53,7 @@ def test_the_lock_is_exclusive(tmp_path):
 
 HOLDER = """
 import sys, time
-from mjrock.study.store import Store
+from mjrock.study.campaign.store import Store
 store = Store(sys.argv[1], writing=True)
 print("held", flush=True)
 time.sleep(60)

@@ -14,7 +14,7 @@ from campaign_tasks import Misbehave, Square
 from test_campaign import ENVIRONMENT, children, gone
 
 import mjrock as mr
-from mjrock.study import progress
+from mjrock.study.campaign import progress
 from scripts.shared import cli
 
 KINDS = ["", "exit", "interrupt", "generator", "columns", "list", "last"]

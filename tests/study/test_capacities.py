@@ -8,8 +8,8 @@ from scipy.stats import binom, chi2, norm
 from scipy.stats import t as student
 
 import mjrock as mr
-from mjrock.study.fragility import _penalised
-from mjrock.study.ida import IncrementalAnalysis
+from mjrock.study.intensity.fragility import _penalised
+from mjrock.study.intensity.ida import IncrementalAnalysis
 from scripts.studies import fragility_coverage
 
 RNG = np.random.default_rng(3)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from mjrock.study.fragility import fit_fragility, resampled
+from mjrock.study.intensity.fragility import fit_fragility, resampled
 
 
 def drawn(n, seed=0, median=0.4, dispersion=0.35):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study import ida as module
+from mjrock.study.intensity import ida as module
 
 
 @pytest.fixture(scope="module")

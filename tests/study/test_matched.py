@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study import contacts_by_matching, pushover
+from mjrock.study.loading import pushover
+from mjrock.study.matching import contacts as contacts_by_matching
 from scripts.shared.paper import FIGURE_3, K_N
 
 E = mr.Restitution.from_geometry(FIGURE_3)

@@ -10,10 +10,10 @@ from everyday import slow
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
-from mjrock.problem.masonry.of_joint import ByKind, ByName
+from mjrock.problem.masonry.laws.of_joint import ByKind, ByName
 from mjrock.problem.masonry.pile import Pile
-from mjrock.study.fingerprint import fingerprint
-from mjrock.study.masonry_by_matching import STRONG, excess, peaks, rebound, restitutions, strong
+from mjrock.study.campaign.fingerprint import fingerprint
+from mjrock.study.matching.masonry import STRONG, excess, peaks, rebound, restitutions, strong
 from mjrock.theory.impact import as_one
 
 HOLDS = 10.0

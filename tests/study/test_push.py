@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
-from mjrock.study.push import warn_if_fast
+from mjrock.study.loading.push import warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 
@@ -276,7 +276,7 @@ def test_it_stops_where_the_force_has_fallen():
     assert push.force[-1] == pytest.approx(0.7 * push.peak, rel=0.05)
 
 
-@pytest.mark.parametrize(("friction", "multiplier"), [(0.2, 0.2), (0.9, B / H)])
+@pytest.mark.parametrize(("friction", "multiplier"), [(0.2, 0.2), slow((0.9, B / H))])
 def test_a_force_that_grows_finds_the_multiplier_of_collapse(friction, multiplier):
     masonry = panel(friction, k_n=1e10)
     push = mr.push(masonry, -1, 0.01)

@@ -10,7 +10,7 @@ from everyday import among, slow
 
 import mjrock as mr
 from mjrock.reference.equations import Wall
-from mjrock.study.pushover import tilted
+from mjrock.study.loading.pushover import tilted
 
 B, H, L, RHO, G = 0.3, 2.1, 1.5, 2000.0, 9.81
 WEIGHT = 4 * B * H * L * RHO * G

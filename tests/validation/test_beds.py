@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study.match import Combination
+from mjrock.study.matching.match import Combination
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
-from ..contact import add_force
+from ..contacts.contact import add_force
 from ..rows import Row, Rows
 from ..supports import Supports, move_supports, moving, places, surges
 from ..system import Books, System

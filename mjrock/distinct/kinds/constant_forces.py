@@ -6,7 +6,7 @@ from ...compiled import inlined
 from ...geometry.vectors import dot, plus, read
 from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
-from ..contact import add_force
+from ..contacts.contact import add_force
 from ..rows import Row, Rows
 from ..system import Books, System
 from ..turning import rotation_change

@@ -21,7 +21,7 @@ from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
-from ..contact import add_force
+from ..contacts.contact import add_force
 from ..rows import Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
 from ..turning import rotation_change

@@ -30,10 +30,10 @@ from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import require_in_plane
 from ..wall.standing import JointFrames, Solid
 from .actuator import Actuator
-from .bond import Bond
+from .blocks.joints import Joint
+from .blocks.joints_in_space import SpaceJoint
 from .effects import laden, numbered, placed, require_anchored, require_in_space, require_pushing
-from .joints import Joint
-from .joints_in_space import SpaceJoint
+from .laws.bond import Bond
 from .masonry import Masonry
 from .plausible import doubts
 from .standing import joints_of, solids_of
@@ -166,16 +166,6 @@ class MasonryCase(Carrying):
     def bonds(self) -> tuple[Bond | None, ...]:
         """The bond of each joint, None where it is dry."""
         return self.masonry.bonds
-
-    @property
-    def joint_stiffness(self) -> Array:
-        """Stiffness of each joint along its normal [N/m3], shape (joints,)."""
-        return self.masonry.joint_stiffness
-
-    @property
-    def joint_shear(self) -> Array:
-        """Stiffness of each joint along its face [N/m3], infinite where it sticks rigidly, shape (joints,)."""
-        return self.masonry.joint_shear
 
     def require_dry(self, what: str) -> None:
         """Raise a ValueError that says what takes dry joints, where some have a bond."""

@@ -9,9 +9,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...quantities import Array, named
-from .compound import AnyBlock
-from .joints import Joint
-from .joints_in_space import SpaceJoint
+from .blocks.compound import AnyBlock
+from .blocks.joints import Joint
+from .blocks.joints_in_space import SpaceJoint
 
 LARGEST, SMALLEST = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""

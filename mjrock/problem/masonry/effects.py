@@ -10,7 +10,7 @@ import numpy as np
 from ...quantities import GRAVITY, Array, named, require_whole
 from ..wall.effect import Anchored, Effect
 from .actuator import Actuator
-from .compound import AnyBlock
+from .blocks.compound import AnyBlock
 from .masonry import Masonry
 
 BESIDE = 1e-3

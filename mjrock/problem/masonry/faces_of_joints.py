@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...quantities import Array
-from .joints_in_space import Face, faces_of
+from .blocks.joints_in_space import Face, faces_of
 from .masonry import Masonry
 
 

@@ -13,11 +13,11 @@ from ...geometry.convex import exact_shares, sectioned, spread, within
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
-from .compound import AnyBlock
-from .joints import LEVEL, Joint
-from .joints_in_space import SpaceJoint, axes_across
-from .polygon import Polygon
-from .sides import Side
+from .blocks.compound import AnyBlock
+from .blocks.joints import LEVEL, Joint
+from .blocks.joints_in_space import SpaceJoint, axes_across
+from .blocks.polygon import Polygon
+from .blocks.sides import Side
 
 RIGID = 1e-12
 """Square of a frequency, over that of the highest, below which a mode is a motion that no joint resists [-]."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self, Unpack
+from typing import Self, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,20 +37,33 @@ from ..damping.contacts import AnyLaw, required_law
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from ..wall.section import Opening
-from .bond import Bond
-from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, curved, ground_below_all, side_of, stacked
-from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
-from .compas_files import compas_text, read_compas
-from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
+from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
+from .blocks.joints import Joint, joints_in_plane, names_of
+from .blocks.joints_in_space import SpaceJoint, joints_in_space
+from .blocks.polygon import Polygon
+from .blocks.polyhedron import Polyhedron
+from .builders.in_plane import (
+    MOST_BLOCKS,
+    Ends,
+    arch_of,
+    between_beams,
+    bonded_wall,
+    curved,
+    ground_below_all,
+    side_of,
+    stacked,
+)
+from .builders.in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
+from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
-from .dxf_files import OfLayer, polygons_of, read_dxf
-from .joint_table import JointTable
-from .joints import Joint, joints_in_plane, names_of
-from .joints_in_space import SpaceJoint, joints_in_space
-from .lines import Lines, lines_of, lowest_frequency
-from .mesh_files import obj_text, read_obj, read_stl
-from .meshes import Mesh, blocks_of
-from .of_joint import (
+from .files.compas import compas_text, read_compas
+from .files.dxf import OfLayer, polygons_of, read_dxf
+from .files.mesh_files import obj_text, read_obj, read_stl
+from .files.meshes import Mesh, blocks_of
+from .laws.bond import Bond
+from .laws.dry import Properties
+from .laws.joint_table import JointTable
+from .laws.of_joint import (
     PROPERTIES,
     AnyJoints,
     ByKind,
@@ -61,11 +74,9 @@ from .of_joint import (
     properties_of,
     required_points,
 )
-from .options import JointOptions, OtherOptions, keywords_checked, one_by_one
-from .polygon import Polygon
-from .polyhedron import Polyhedron
-from .stack_law import damping_by_law
-from .vaults import Span, barrel_of, bridge_of, groin_of
+from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
+from .laws.stack_law import damping_by_law
+from .lines import Lines, lines_of, lowest_frequency
 
 AnyPath = str | PathLike[str]
 LINES = Within(2, 1000, whole=True), Within(2, 50, whole=True)
@@ -962,7 +973,7 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
     return tuple(blocks)
 
 
-def _halved(halves: Bond | None, options: JointOptions) -> dict[str, Any]:
+def _halved(halves: Bond | None, options: JointOptions) -> Properties:
     """Keywords of masonry whose units are divided by a bond, or not."""
     require_kind("halves", halves, Bond, type(None))
     given = one_by_one(options)

@@ -12,9 +12,9 @@ import numpy as np
 from ...geometry.vectors import spun
 from ...quantities import GRAVITY, Array
 from ..wall.block import Block
+from .laws.of_joint import ByName
+from .laws.stack_law import is_side, parts_above, wall_of
 from .masonry import Masonry
-from .of_joint import ByName
-from .stack_law import is_side, parts_above, wall_of
 
 
 @dataclass(frozen=True)

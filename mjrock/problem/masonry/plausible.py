@@ -12,8 +12,8 @@ from ...quantities import GRAVITY, Array
 from ..wall.effect import Anchored
 from ..wall.plausible import IN_G, NEGLIGIBLE, Whole, of_effects, of_motion
 from .actuator import Actuator
-from .collapse import limit_of, pushed
 from .effects import held_at
+from .limit.collapse import limit_of, pushed
 from .masonry import Masonry
 
 FEW = 40

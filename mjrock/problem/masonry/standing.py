@@ -7,11 +7,11 @@ import numpy as np
 from ...geometry.hull import Faces, prism
 from ...quantities import Array
 from ..wall.standing import JointFrames, Solid, in_space
-from .compound import AnyBlock
-from .joint_forces import axes_of
+from .blocks.compound import AnyBlock
+from .blocks.polygon import Polygon
+from .limit.joint_forces import axes_of
 from .lines import free_numbers
 from .masonry import Masonry
-from .polygon import Polygon
 
 
 def solids_of(masonry: Masonry, centroids: Array) -> list[Solid]:

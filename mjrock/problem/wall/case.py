@@ -62,8 +62,6 @@ class Case(Carrying):
     settled: ClassVar[bool] = True
     joints: ClassVar[tuple[()]] = ()
     bonds: ClassVar[tuple[()]] = ()
-    joint_stiffness: ClassVar[Array] = np.empty(0)
-    joint_shear: ClassVar[Array] = np.empty(0)
     in_space: ClassVar[bool] = False
     bodies: ClassVar[tuple[str, ...]] = ("wall",)
     blocks: ClassVar[tuple[str, ...]] = ("wall",)

@@ -1,0 +1,348 @@
+"""Friction along a face: one way in the plane, two in space.
+
+A line with a shear stiffness has a spring with a slider, as in distinct-element codes: its force is no larger than the
+face holds. What it keeps is the stretch of the spring, in the plane a number along the face and in space a vector in
+the axes of the face.
+
+A line that sticks rigidly gets an impulse along its face that stops the slip, as far as Coulomb's law lets it. The
+impulses of all lines are found by projected Gauss-Seidel: one line after the other gets the impulse that stops its
+slip, until the impulses no longer change. They start from those of the last step. In space, where this impulse is more
+than the face holds, the point gets one against its slip instead, shortened to what the face holds. In the end the
+friction of a point that slips is against its slip.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ...compiled import inlined
+from ...geometry.vectors import (
+    Vector,
+    dot,
+    increase,
+    minus,
+    moment,
+    plus,
+    put,
+    read,
+    scaled,
+    spin_components,
+    spun,
+    tangent,
+    tangents,
+    times,
+    vector,
+)
+from ...problem.masonry.laws.joint_law import shear_limit
+from ...quantities import Array, Integers
+from ..rows import Row, Rows
+from ..supports import Supports
+from ..system import Books, System
+from ..turning import in_body, in_world, kick_place, spin_from_many, turn_momentum
+
+SWEEPS = 50
+"""Most sweeps over the lines in a step."""
+SETTLED = 1e-3
+"""Change of an impulse in a sweep, over the largest of a line that is pressed most, below which the sweeps end [-]."""
+STRIDE = 3
+"""Lines from one that a sweep takes to the next."""
+HELD = 1e-9
+"""Least compliance of a body that a guide holds, over that of its mass [-]."""
+
+
+@inlined
+def along_face(normal: Vector, a: Vector) -> Vector:
+    """The part of a vector along a face: a number along its tangent in the plane, where it stays, a vector in space."""
+    if len(a) == 1:
+        return a
+    if len(a) == 2:
+        return (dot(tangent(normal), a),)
+    return minus(a, scaled(dot(normal, a), normal))
+
+
+@inlined
+def as_vector(normal: Vector, a: Vector) -> Vector:
+    """A vector of the world from its part along a face."""
+    if len(a) == 1:
+        return scaled(a[0], tangent(normal))
+    return a
+
+
+@inlined
+def shortened(a: Vector, limit: float) -> Vector:
+    """A vector that is no longer than a limit."""
+    if len(a) == 1:
+        return (min(max(a[0], -limit), limit),)
+    square = dot(a, a)
+    return a if square <= limit * limit else scaled(limit / math.sqrt(square), a)
+
+
+@inlined
+def carried(row: Row, supports: Supports, way: Vector) -> float:
+    """Velocity of the support of a line, or of one of its ways, along a vector, zero where none moves it."""
+    if row.support < 0:
+        return 0.0
+    return dot(way, vector(supports.moving, row.support, way))
+
+
+@inlined
+def stretched(bodies: Rows, face: int, grip: Array, normal: Vector, way: Vector) -> Vector:
+    """Stretch of a shear spring, kept in the axes of its face, after a way along the face [m]."""
+    kept = spin_components(grip, normal)
+    if face >= 0:
+        kept = in_world(bodies[face], kept)
+    return along_face(normal, plus(kept, way))
+
+
+@inlined
+def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push: float, time: float) -> Vector:
+    """Force of the shear spring with its slider and dashpot along the face [N]. The last velocity has stretched it for
+    as long as the line was closed in the last step [s].
+
+    The slider shortens the spring to what the face holds, and then spring and dashpot together pull no more than that.
+    A dashpot that alone exceeds it stretches no spring, which would put energy in.
+    """
+    limit = shear_limit(line, push)
+    grip = shortened(stretched(bodies, line.face, line.grip, normal, scaled(time, slip)), limit / line.k_s)
+    drag = shortened(minus(scaled(-line.k_s, grip), scaled(line.c_s, slip)), limit)
+    if line.face >= 0:
+        grip = in_body(bodies[line.face], grip)
+    put(line.grip, grip)
+    return drag
+
+
+@inlined
+def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
+    """Friction of a line in the last step [N], of which `dragged` is that of its shear spring."""
+    if line.k_s < math.inf:
+        return dragged
+    grip = read(line.grip) if len(dragged) == 3 else (line.grip[0],)
+    return in_world(bodies[line.face], grip) if line.face >= 0 else grip
+
+
+@inlined
+def yielding(body: Row, way: Vector) -> float:
+    """Velocity that a unit impulse along a unit vector gives to the centroid of a body along it [1/kg].
+
+    It is not quite zero of a body that a guide holds, so that it can be divided by.
+    """
+    light: float = dot(way, times(read(body.inverse_mass), way))
+    return light if light * body.mass > HELD else HELD / body.mass
+
+
+@inlined
+def list_way(
+    system: System, line: Row, number: int, way: Vector, arm: Vector, face_arm: Vector, velocity: Vector
+) -> None:
+    """Prepare one way of a line that sticks rigidly, see `list_rigid`."""
+    row, body, on_face = system.ways[number], system.bodies[line.body], line.face >= 0
+    row.body, row.face, row.support, row.slip = line.body, line.face, line.support, dot(way, velocity)
+    lever = moment(arm, way)
+    spin = spin_from_many(body, lever)
+    put(row.way, way)
+    put(row.lever, lever)
+    put(row.spin, spin)
+    compliance = yielding(body, way) + dot(lever, spin)
+    if on_face:
+        face, lever = system.bodies[line.face], moment(face_arm, way)
+        spin = spin_from_many(face, lever)
+        put(row.lever_on_face, lever)
+        put(row.spin_of_face, spin)
+        compliance += yielding(face, way) + dot(lever, spin)
+    row.compliance = compliance
+
+
+@inlined
+def swept(system: System, line: Row, arm: Vector, face_arm: Vector) -> Vector:
+    """Acceleration of the point of a line over its face that turning alone makes, towards both centroids [m/s2]."""
+    spin = spin_components(system.bodies[line.body].spin, arm)
+    towards = spun(spin, spun(spin, arm))
+    if line.face >= 0:
+        spin = spin_components(system.bodies[line.face].spin, arm)
+        towards = minus(towards, spun(spin, spun(spin, face_arm)))
+    return towards
+
+
+@inlined
+def list_rigid(
+    system: System, line: Row, first: int, normal: Vector, arms: tuple[Vector, Vector], velocity: Vector, h: float
+) -> None:
+    """Prepare the ways of a line that sticks rigidly.
+
+    Args:
+        system: the bodies, and the room for the ways.
+        line: the line.
+        first: number of its first way.
+        normal: of its face.
+        arms: from the two centroids to where friction acts [m].
+        velocity: of the point there against its face, before the forces act [m/s].
+        h: length of a step [s].
+    """
+    arm, face_arm = arms
+    a, drift = system.ways[first], scaled(0.5 * h, swept(system, line, arm, face_arm))
+    if len(normal) == 2:
+        list_way(system, line, first, tangent(normal), arm, face_arm, velocity)
+        a.stiffness, a.drift = 1 / a.compliance, dot(tangent(normal), drift)
+        return
+    b, (way, other) = system.ways[first + 1], tangents(normal)
+    list_way(system, line, first, way, arm, face_arm, velocity)
+    list_way(system, line, first + 1, other, arm, face_arm, velocity)
+    a.drift, b.drift = dot(way, drift), dot(other, drift)
+    a.coupling = dot(read(a.lever), read(b.spin))
+    if line.face >= 0:
+        a.coupling += dot(read(a.lever_on_face), read(b.spin_of_face))
+    area = 1 / (a.compliance * b.compliance - a.coupling * a.coupling)
+    a.stiffness, a.shared, b.stiffness = area * b.compliance, area * a.coupling, area * a.compliance
+
+
+@inlined
+def slip_along(system: System, row: Row) -> float:
+    """Velocity along a way of a line that sticks rigidly [m/s]."""
+    body, way = system.bodies[row.body], read(row.way)
+    slip = dot(way, read(body.velocity))
+    slip += dot(read(row.lever), read(body.spin))
+    if row.face >= 0:
+        face = system.bodies[row.face]
+        slip -= dot(way, read(face.velocity))
+        slip -= dot(read(row.lever_on_face), read(face.spin))
+    return slip - carried(row, system.supports, way)
+
+
+@inlined
+def along_ways(impulses: Vector, first: Vector, second: Vector) -> Vector:
+    """What impulses along the ways of a line do, from what a unit impulse along each does; the plane has one way."""
+    if len(impulses) == 1:
+        return scaled(impulses[0], first)
+    return plus(scaled(impulses[0], first), scaled(impulses[1], second))
+
+
+@inlined
+def strike(system: System, first: int, impulses: Vector) -> None:
+    """Let impulses along the ways of a line act on the velocities of its body and of that of its face [N s]."""
+    a, b = system.ways[first], system.ways[first + len(impulses) - 1]
+    body, kick = system.bodies[a.body], along_ways(impulses, read(a.way), read(b.way))
+    kick_place(body, kick)
+    increase(body.spin, along_ways(impulses, read(a.spin), read(b.spin)))
+    if a.face >= 0:
+        face = system.bodies[a.face]
+        kick_place(face, scaled(-1.0, kick))
+        spin = along_ways(impulses, read(a.spin_of_face), read(b.spin_of_face))
+        increase(face.spin, scaled(-1.0, spin))
+
+
+@inlined
+def impulses_of(system: System, first: int, axes: tuple[int, ...]) -> Vector:
+    """The impulses along the ways of a line [N s]."""
+    if len(axes) == 2:
+        return (system.ways[first].impulse,)
+    return system.ways[first].impulse, system.ways[first + 1].impulse
+
+
+@inlined
+def begin(system: System, line: Row, first: int, held: float, kick: float, axes: Vector) -> None:
+    """Let the ways of a line start with the friction of the last step, as far as the face holds it now [N]."""
+    limit: float = kick * held
+    grip = scaled(kick, read(line.grip))
+    if line.face >= 0:
+        grip = in_world(system.bodies[line.face], grip)
+    if len(axes) == 2:
+        impulses = shortened(grip, limit)
+    else:
+        a, b = system.ways[first], system.ways[first + 1]
+        impulses = shortened((dot(read(a.way), grip), dot(read(b.way), grip)), limit)
+    for i in range(len(axes) - 1):
+        row = system.ways[first + i]
+        row.impulse, row.limit = impulses[i], limit
+
+
+@inlined
+def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
+    """The impulses along its ways that stop the slip of a line in the middle of the step as far as its face can [N s].
+
+    Its slip at the pose is then the drift before the forces act, and less the drift after them: a line that sticks
+    takes nothing, and stays where it is.
+    """
+    a = system.ways[first]
+    slip, limit = slip_along(system, a) + a.drift, a.limit
+    if len(axes) == 2:
+        return shortened((a.impulse - slip * a.stiffness,), limit)
+    b = system.ways[first + 1]
+    other = slip_along(system, b) + b.drift
+    along = a.impulse - (a.stiffness * slip - a.shared * other)
+    across = b.impulse - (b.stiffness * other - a.shared * slip)
+    if along * along + across * across > limit * limit:  # it slips, and friction is against the slip
+        half = 0.5 * (a.compliance - b.compliance)
+        loosest = 0.5 * (a.compliance + b.compliance) + math.sqrt(half * half + a.coupling * a.coupling)
+        along, across = a.impulse - slip / loosest, b.impulse - other / loosest
+        shorter = min(1.0, limit / math.sqrt(along * along + across * across))
+        along, across = shorter * along, shorter * across
+    return along, across
+
+
+@inlined
+def stop(system: System, first: int, axes: tuple[int, ...]) -> float:
+    """Stop the slip of one line as far as its face can. Returns by how much its impulses have changed [N s]."""
+    impulses = stopping(system, first, axes)
+    change = minus(impulses, impulses_of(system, first, axes))
+    strike(system, first, change)
+    system.ways[first].impulse = impulses[0]
+    if len(axes) == 2:
+        return abs(change[0])
+    system.ways[first + 1].impulse = impulses[1]
+    return max(abs(change[0]), abs(change[1]))
+
+
+@inlined
+def stick(system: System, active: Integers, count: int, kick: float, axes: tuple[int, ...]) -> None:
+    """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s].
+
+    Lines that follow each other share their bodies, so that each would wait for the one before it: a sweep takes every
+    third line, then the next ones.
+    """
+    each, largest = len(axes) - 1, 0.0
+    for i in range(count):
+        largest = max(largest, system.ways[each * i].limit)
+        strike(system, each * i, impulses_of(system, each * i, axes))
+    for sweep in range(SWEEPS):
+        changed = 0.0
+        for start in range(STRIDE):
+            for turn in range(start, count, STRIDE):
+                i = turn if sweep % 2 else count - 1 - turn
+                changed = max(changed, stop(system, each * i, axes))
+        if changed <= SETTLED * largest:
+            break
+    for i in range(count):
+        keep_rigid(system, system.lines[active[i]], each * i, kick, axes)
+
+
+@inlined
+def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[int, ...]) -> None:
+    """Keep the friction of a line that sticks rigidly for the next step [N], and what it turns the bodies by."""
+    impulses = impulses_of(system, first, axes)
+    if len(axes) == 2:
+        line.grip[0] = impulses[0] / kick
+        return
+    a, b = system.ways[first], system.ways[first + 1]
+    lever = along_ways(impulses, read(a.lever), read(b.lever))
+    turn_momentum(system.bodies[a.body], lever)
+    grip = scaled(1 / kick, along_ways(impulses, read(a.way), read(b.way)))
+    if a.face >= 0:
+        lever = along_ways(impulses, read(a.lever_on_face), read(b.lever_on_face))
+        turn_momentum(system.bodies[a.face], scaled(-1.0, lever))
+        grip = in_body(system.bodies[a.face], grip)
+    put(line.grip, grip)
+
+
+@inlined
+def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]) -> tuple[float, float]:
+    """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
+    the supports put in through it. Returns the halves of both before the pose [J]."""
+    totals, rubbed, put_in = books.totals[0], 0.0, 0.0
+    for i in range((len(axes) - 1) * count):
+        row = system.ways[i]
+        totals.friction -= 0.5 * row.impulse * (row.slip + slip_along(system, row))
+        work = row.impulse * carried(row, system.supports, read(row.way))
+        totals.ground += work
+        rubbed -= 0.5 * row.impulse * row.slip
+        put_in += 0.5 * work
+    return rubbed, put_in

@@ -1,0 +1,226 @@
+"""Clipping: the places where a face of one block lies over a face of another.
+
+The part of one face that lies over the other is bounded by corners of either and by places where edges cross. Each of
+them is a place: a corner meets the other face, and edges that cross meet along the normal of both. It stands for the
+angle by which the outline of the part turns there, over a whole turn: a quarter for each corner of a rectangle. So
+places that fall together stand for what one stood for, and one on a straight side stands for nothing.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...compiled import inlined
+from ...geometry.frames import SPACE
+from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
+from ...quantities import Array
+from ..rows import Row, Rows, integers, numbers, vectors
+from .solids import Solids
+
+PLACE = np.dtype([*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area")])
+"""A place: block of the face, other block, where, normal out of the face, gap [m], share, and area of the part [m2]."""
+OUTSIDE = 1e-9
+"""Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
+SAME = 1e-6
+"""Distance of two places that are one, over the length of an edge [-]."""
+PARALLEL, UPRIGHT = 1e-4, 0.3
+"""Sine of the angle of two edges, and cosine of that between their common normal and that of the face, below which they
+do not meet as edges [-]."""
+
+
+@inlined
+def corner_of(solids: Solids, number: int) -> Vector:
+    """Where a corner of an outline is [m]."""
+    return vector(solids.corners, solids.outline[number], SPACE.axes)
+
+
+@inlined
+def next_corner(solids: Solids, face: int, number: int) -> Vector:
+    """Where the corner after another one of the outline of a face is [m]."""
+    return corner_of(solids, solids.first[face] if number + 1 == solids.first[face + 1] else number + 1)
+
+
+@inlined
+def normal_of(solids: Solids, face: int) -> Vector:
+    """The normal of a face."""
+    return vector(solids.normals, face, SPACE.axes)
+
+
+@inlined
+def length_of(a: Vector) -> float:
+    """Length of a vector."""
+    return math.sqrt(dot(a, a))
+
+
+@inlined
+def face_towards(solids: Solids, block: int, way: Vector) -> int:
+    """The face of a block whose normal is nearest to a direction."""
+    best, largest = -1, -math.inf
+    for face in range(solids.face[block], solids.face[block + 1]):
+        cosine = dot(normal_of(solids, face), way)
+        if cosine > largest:
+            best, largest = face, cosine
+    return best
+
+
+@inlined
+def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, room: Array) -> int:
+    """Cut a polygon to where it reaches no further along a direction. Returns how many corners are left.
+
+    A convex one gets one corner more at most. One that rounding has dented gets no more than there is room for."""
+    left = 0
+    for i in range(count):
+        a, b = vector(polygon, i, way), vector(polygon, (i + 1) % count, way)
+        beyond, next_beyond = dot(way, a) - reach, dot(way, b) - reach
+        if beyond <= slack and left < len(room):
+            put(room[left], a)
+            left += 1
+        if (beyond <= slack) != (next_beyond <= slack) and left < len(room):
+            share = min(max(beyond / (beyond - next_beyond), 0.0), 1.0)
+            put(room[left], plus(a, scaled(share, minus(b, a))))
+            left += 1
+    for i in range(left):
+        put(polygon[i], vector(room, i, way))
+    return left
+
+
+@inlined
+def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
+    """Write the part of a face that lies over another into the first half of the room.
+
+    Returns:
+        How many corners it has.
+    """
+    count, extent, polygon, further = 0, 0.0, room[: len(room) // 2], room[len(room) // 2 :]
+    for i in range(solids.first[over], solids.first[over + 1]):
+        put(polygon[count], corner_of(solids, i))
+        count += 1
+    normal = normal_of(solids, face)
+    for i in range(solids.first[face], solids.first[face + 1]):
+        a = corner_of(solids, i)
+        way = spun(minus(next_corner(solids, face, i), a), normal)
+        length = length_of(way)
+        extent = max(extent, length)
+        way = scaled(1 / length, way)
+        count = cut(polygon, count, way, dot(way, a), OUTSIDE * extent, further)
+    return count
+
+
+@inlined
+def parted(polygon: Array, count: int) -> int:
+    """Leave out the corners of a polygon that fall on those before them. Returns how many are left."""
+    left = 0
+    for i in range(count):
+        at, last = vector(polygon, i, SPACE.axes), vector(polygon, left - 1 if left else count - 1, SPACE.axes)
+        if length_of(minus(at, last)) > OUTSIDE * (length_of(at) + length_of(last)):
+            put(polygon[left], at)
+            left += 1
+    return left
+
+
+@inlined
+def turn_at(polygon: Array, count: int, i: int) -> float:
+    """The angle by which the outline of a polygon turns at a corner, over a whole turn."""
+    at = vector(polygon, i, SPACE.axes)
+    before = minus(at, vector(polygon, i - 1 if i else count - 1, SPACE.axes))
+    after = minus(vector(polygon, (i + 1) % count, SPACE.axes), at)
+    return math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
+
+
+@inlined
+def area_of(polygon: Array, count: int) -> float:
+    """Area of a polygon [m2]."""
+    first, area = vector(polygon, 0, SPACE.axes), 0.0
+    for i in range(1, count - 1):
+        one, next_one = vector(polygon, i, SPACE.axes), vector(polygon, i + 1, SPACE.axes)
+        area += 0.5 * length_of(spun(minus(one, first), minus(next_one, first)))
+    return area
+
+
+@inlined
+def distance_from(at: Vector, a: Vector, along: Vector) -> float:
+    """Distance of a place from the line through another one [m]."""
+    return length_of(spun(along, minus(at, a))) / length_of(along)
+
+
+@inlined
+def write_place(place: Row, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
+    """Write a place of a face, the first block, and of a point on the other one."""
+    place.face, place.other, place.gap = blocks[0], blocks[1], gap
+    put(place.at, minus(at, scaled(0.5 * gap, normal)))
+    put(place.normal, normal)
+
+
+@inlined
+def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, place: Row) -> None:
+    """Write what a corner of the part of a face that lies over another is: a corner of either, or edges that cross.
+
+    Args:
+        solids: the blocks where they are.
+        faces, blocks: the face below and that over it, and their blocks.
+        at: the corner, on the face over the other [m].
+        place: the row to write.
+    """
+    face, over = faces
+    normal, edge, from_edge = normal_of(solids, face), -1, math.inf
+    for i in range(solids.first[over], solids.first[over + 1]):
+        corner = corner_of(solids, i)
+        along = minus(next_corner(solids, over, i), corner)
+        if length_of(minus(at, corner)) < SAME * length_of(along):
+            gap = dot(normal, minus(at, corner_of(solids, solids.first[face])))
+            write_place(place, blocks, at, normal, gap)
+            return
+        distance = distance_from(at, corner, along)
+        if distance < from_edge:
+            edge, from_edge = i, distance
+    crossed, from_crossed = -1, math.inf
+    for i in range(solids.first[face], solids.first[face + 1]):
+        corner = corner_of(solids, i)
+        own, off = minus(next_corner(solids, face, i), corner), minus(at, corner)
+        off = minus(off, scaled(dot(off, normal), normal))
+        if length_of(off) < SAME * length_of(own):
+            normal = normal_of(solids, over)
+            gap = dot(normal, minus(corner, corner_of(solids, solids.first[over])))
+            write_place(place, (blocks[1], blocks[0]), corner, normal, gap)
+            return
+        distance = distance_from(off, scaled(0.0, own), own)
+        if distance < from_crossed:
+            crossed, from_crossed = i, distance
+    below = corner_of(solids, crossed)
+    own, along = (
+        minus(next_corner(solids, face, crossed), below),
+        minus(next_corner(solids, over, edge), corner_of(solids, edge)),
+    )
+    across = spun(along, own)
+    size = length_of(across)
+    if abs(dot(across, normal)) > UPRIGHT * size and size > PARALLEL * length_of(along) * length_of(own):
+        normal = scaled(math.copysign(1 / size, dot(across, normal)), across)
+    write_place(place, blocks, at, normal, dot(normal, minus(at, below)))
+
+
+@inlined
+def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count: int, room: Array) -> int:
+    """Write the places where a block lies over a face of another. Returns how many places there are then.
+
+    Args:
+        solids: the blocks where they are.
+        face, blocks: the face, its block, and the other one.
+        table: rows of `PLACE`.
+        count: how many places there are.
+        room: for the corners of two faces, twice.
+    """
+    faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
+    corners = parted(room, lying_over(solids, faces[0], faces[1], room))
+    if corners < 3:
+        return count
+    area = area_of(room, corners)
+    for i in range(corners):
+        share = turn_at(room, corners, i)
+        if share > SAME:
+            if count < len(table):
+                meet(solids, faces, blocks, vector(room, i, SPACE.axes), table[count])
+                table[count].share, table[count].area = share, area
+            count += 1
+    return count

@@ -1,0 +1,317 @@
+"""Encounters: blocks that have left their joints meet others wherever they are.
+
+A joint of the drawing serves while it is intact. Once all of it has opened by a share of its width, or a part of it has
+slid by so much, it is handed over for good, with its friction, to contacts that are found where the blocks are. Blocks
+that have no common joint are looked at once one of them has moved nearly as far as the other was away at rest. A find
+gives each pair its places, with the law of `pair_law`. Where the step asks for softer ones, they stay soft as long as
+they press: from find to find stiff and soft in turn, blocks would sink into each other. Until the next find each place
+moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked,
+along a face what they hold more: what they hold less friction takes. What their change of force does over the half of
+a step before the pose is booked too.
+"""
+
+from __future__ import annotations
+
+import math
+from copy import copy
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...problem.masonry.laws.joint_law import Law, stored_along
+from ...problem.masonry.lines import free_numbers
+from ...problem.masonry.masonry import Masonry
+from ...quantities import Array, Flags, Integers
+from ..contacts.bonds import holding, released
+from ..rows import chosen, joined, rows, unsound
+from ..supports import surges
+from ..system import Books, System
+from .finder import Finder, Found
+from .handover import Blocks, Lines, Pairs, hand_over
+from .looking import (
+    NEAR,
+    PASSED,
+    SURE,
+    Motion,
+    Reach,
+    Seen,
+    Wear,
+    fallen,
+    held,
+    longest_time,
+    take_motion,
+    wait,
+    watch,
+    wears,
+)
+from .loose import longest_step_of_loose
+from .pair_law import SHARED, PairLaw, least_among, pair_number
+from .softening import Sides, shares_within
+from .solids import Poses
+
+STAYED = 2e-4
+"""Way over its size that a block may make while a find of it stays valid [-]. What is within `NEAR` is found."""
+STABLE = 0.5
+"""Longest step over the longest one with which the places of a block alone are stable [-]. Intact joints, and places of
+blocks that have not moved, act on it besides."""
+LEFT = 0.05
+"""Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
+ROLLED = 0.5
+"""Turn of a joint about its end, over the angle to the nearest side beside it, beyond which it is handed over too [-].
+So a polygon of many sides rolls on to the next one."""
+FLUSH = 0.9999
+"""Cosine of the angle of two sides of a block from which on they are one plane [-]."""
+TOWARDS = 0.4
+"""Way of a block over its distance from the nearest one without a common joint, from which on it is looked at [-]."""
+
+
+@dataclass
+class Met:
+    """What a look knows of those before it.
+
+    Args:
+        seen: of the blocks.
+        handed: whether the joints of each pair that has some are handed over, shape (p,).
+        pair: number of the pair of each line of an encounter, shape (lines,).
+        slack: what presses nothing of the overlap of each line [m], shape (lines,).
+        share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
+        found: moves of both blocks when each line was found, shape (lines,).
+        softest: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
+        since: time from the last look to the next [s].
+    """
+
+    seen: Seen
+    handed: Flags
+    pair: Integers
+    slack: Array
+    share: Array
+    found: Integers
+    softest: Array
+    since: float
+
+
+class Encounters:
+    """The blocks of masonry, and the lines where they meet beyond their joints.
+
+    Args:
+        masonry: the masonry.
+        system: its bodies where they stand, and the lines of its joints.
+        joint: number of the joint of each line. The account of the encounters comes after those of the joints.
+
+    `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
+    """
+
+    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
+        blocks = masonry.blocks
+        self.count, self.group = len(blocks), len(masonry.joints)
+        self.names, self.sizes = masonry.names, np.array([block.size for block in blocks])
+        body, drawn = free_numbers(blocks), np.array(masonry.centroids, dtype=float)
+        still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
+        fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
+        self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
+        self.finder = Finder(blocks, drawn, masonry.points)
+        self.law = PairLaw.of_joints(masonry, system.lines, joint)
+        self.longest = longest_step_of_loose(masonry, self.law, system)
+        below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
+        of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
+        left, rolled = np.full((2, len(self.law.jointed)), np.inf)
+        np.minimum.at(left, of, LEFT * np.array([joint.width for joint in masonry.joints]))
+        np.minimum.at(rolled, of, _rolled(masonry))
+        self.jointed = _jointed(masonry, self.finder, of)
+        self.finder.jointed = np.unique(self.jointed[1])
+        self.kind, start = system.lines.dtype, self.motion(system).poses
+        look = longest_time(self.sizes[self.blocks.free])
+        self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
+        self.wear = Wear.unworn(of[joint], left, rolled)
+        self.met = self._nothing_met()
+
+    def begun(self, supports: tuple[str, ...]) -> Encounters:
+        """The same at the start of a run, with room of its own to write into.
+
+        Args:
+            supports: names of the fixed blocks that move, in the order of the supports.
+        """
+        fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
+        fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
+        fresh.finder, wear = self.finder.apart(), self.wear
+        fresh.wear, fresh.met = Wear.unworn(wear.pairs, wear.left, wear.rolled), self._nothing_met()
+        return fresh
+
+    def _nothing_met(self) -> Met:
+        none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
+        seen, zeros = Seen.nothing(self.reach.start, self.reach.look), np.zeros(0)
+        return Met(seen, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
+
+    def _limits(self, start: Poses) -> Array:
+        """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
+        a pair may. One that is not found is farther than the sum of both sizes."""
+        every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
+        found = self.finder.found(start, self.sizes, every, jointed)
+        apart = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
+        limits = TOWARDS * self.sizes
+        for block in (found.face, found.other):
+            np.minimum.at(limits, block, np.where(apart, TOWARDS * found.gap, PASSED * self.sizes[block]))
+        return np.asarray(np.maximum(limits, NEAR * self.sizes))
+
+    def _numbers(self, found: Found) -> Integers:
+        return pair_number(found.face, found.other, self.count)
+
+    def motion(self, system: System) -> Motion:
+        """Where all blocks are, and how fast."""
+        still = self.blocks.poses
+        poses = Poses(still.drawn, np.zeros_like(still.moved), np.zeros_like(still.change))
+        motion = Motion(poses, np.zeros_like(still.moved), np.zeros(self.count))
+        take_motion(system, self.blocks, motion)
+        return motion
+
+    def look_on(self, system: System, books: Books, t: float, h: float) -> tuple[System, Books, int]:
+        """The system at a time [s] with the lines of the encounters that may happen until the next look, its books with
+        room for them, and the steps until then. With steps of h [s] they are stable."""
+        met, seen = self.met, self.met.seen
+        worn, left = self._worn(system)
+        motion = self.motion(system)
+        self._add_surges(motion, system, t, t + h + self.reach.look)
+        if watch(motion, self.sizes, self.reach, seen, left, met.since):
+            met.handed = met.handed | worn
+            stays = self._moves_of(met.pair) == met.found
+            intact = self.jointed[1][~met.handed[self.jointed[0]]]
+            reach = SURE * (seen.ahead + fallen(self.reach.look) + NEAR * self.sizes)
+            found = self.finder.found(motion.poses, reach, seen.stale, intact)
+            soon = np.empty(len(found.gap), dtype=bool)
+            wait(found, motion, self.sizes, seen, soon, self.reach.look)
+            soon &= found.share > 0
+            of_gone = np.append(worn[self.wear.pairs], ~stays)
+            if soon.any() or of_gone.any():
+                system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
+                books = books.with_room(len(system.lines))
+        steps = max(1, int(seen.due[seen.watched].min(initial=self.reach.look) / h))
+        met.since = steps * h
+        return system, books, steps
+
+    def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
+        """Add to the speeds of what is driven, a fixed block or one at a link, by how much they change until a time."""
+        moves = np.flatnonzero(self.blocks.support >= 0)
+        motion.about[moves] += surges(system.supports, t, until)[self.blocks.support[moves]]
+        for table in system.links:
+            bodies, changes = table.surges(t, until)
+            np.add.at(motion.about, self.blocks.free[bodies], changes)
+
+    def _worn(self, system: System) -> tuple[Flags, Flags]:
+        """Which pairs of blocks have left their joints since the last look, shape (p,), and which blocks have left one,
+        shape (blocks,)."""
+        met, wear = self.met, self.wear
+        worn, left = np.zeros(len(met.handed), dtype=bool), np.zeros(self.count, dtype=bool)
+        if wears(system, wear):
+            worn = wear.leave() & ~met.handed
+            if len(system.bonds):
+                worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
+            left[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
+        return worn, left
+
+    def _renewed(self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float) -> System:
+        """The system with these places. Pairs that have not moved keep their lines.
+
+        Args:
+            system, books: the system, and the account of what the springs of vanished lines have lost.
+            poses: of all blocks.
+            found: places that may touch.
+            of_gone: lines of joints that are handed over, and of encounters whose blocks have moved, shape (lines,).
+            h: length of a step [s].
+        """
+        met, count = self.met, len(self.wear.pairs)
+        lines, sheared = np.asarray(system.lines), in_shear(system)
+        joints, others, number = lines[:count], lines[count:], self._numbers(found)
+        worn, stays = of_gone[:count], ~of_gone[count:]
+        if len(system.bonds):
+            released(joints, system.bonds, worn)
+        pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
+        which = which[np.argsort(pair[which], kind="stable")]
+        slack, size = np.append(np.zeros(count), met.slack), len(number)
+        gone = Lines.unwritten(chosen(lines, which), slack[which])
+        new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
+        before, gave = held(system, which, gone.depth)
+        share = np.append(np.ones(count), met.share)[which]
+        soft = (share < 1) & (gone.depth > 0)
+        share = least_among(number, pair[which][soft], share[soft])
+        law = self.law.of_places(number, found.share, found.area, self.count)
+        share = np.minimum(share, self._stable(found, law, poses, system, h))
+        for name, column in law.items():
+            new.rows[name] = share * column if name in SHARED else column
+        blocks = self.blocks._replace(poses=poses)
+        hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
+        for place in unsound(np.asarray(new.rows))[:1]:
+            one, other = (self.names[int(block[place])] for block in (found.face, found.other))
+            raise ArithmeticError(f"the contact of {one} and {other}")
+        if worn.any():
+            for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
+                joints[name][worn] = 0.0
+            joints["margin"][worn] = np.inf  # no step looks at such a line again
+        met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
+        met.share = np.append(met.share[stays], share)
+        met.found = np.append(met.found[stays], self._moves_of(number))
+        pressing = found.gap < 0
+        for block in (found.face[pressing], found.other[pressing]):
+            np.minimum.at(met.softest, block, share[pressing])
+        lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
+        system = system._replace(lines=lines).with_ways()
+        given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
+        books.totals[0].friction -= given
+        after, gives = held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        late = 0.5 * h * (gives - gave) if met.since > 0 else 0.0  # forces change half a step before the pose
+        books.totals[0].encounter_ends += before + given - after - late
+        return system
+
+    def _moves_of(self, pair: Integers) -> Integers:
+        """Moves of both blocks of pairs."""
+        return np.asarray(self.met.seen.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
+
+    def _stable(self, found: Found, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
+        """Share of their law that leaves places stable in a step of h [s], shape (n,)."""
+        blocks = np.array([found.face, found.other])
+        arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
+        sides = Sides(self.blocks.body[blocks], arms, found.normal)
+        return shares_within(sides, law, system.bodies, h / STABLE)
+
+
+def in_shear(system: System) -> float:
+    """Energy in the shear springs of all lines and bonds [J]."""
+    energy = 0.0
+    for table in (system.lines, system.bonds):
+        sprung = np.asarray(table)[np.isfinite(table["k_s"])]
+        energy += float(np.sum(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0))))
+    return energy
+
+
+def _rolled(masonry: Masonry) -> Array:
+    """1 less the cosine of the angle of its faces up to which each joint serves [-], shape (joints,)."""
+    normals = [np.array([side.normal for side in block.sides]) for block in masonry.blocks]
+    rolled = np.empty(len(masonry.joints))
+    for i, joint in enumerate(masonry.joints):
+        cosine = -1.0
+        for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            beside = normals[block] @ normals[block][side]
+            cosine = max(cosine, float(beside[beside < FLUSH].max(initial=-1.0)))
+        rolled[i] = 1 - math.cos(ROLLED * math.acos(cosine))
+    return rolled
+
+
+def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:
+    """Pairs of solids whose faces make a joint: the number of the pair of blocks among those with joints, and that of
+    the pair of solids, shape (n,) each.
+
+    Args:
+        masonry, finder: the blocks.
+        of: number of the pair of blocks of each joint, shape (joints,).
+    """
+    pairs, numbers = list[int](), list[int]()
+    for joint, pair in zip(masonry.joints, of.tolist(), strict=True):
+        ends = (joint.below, joint.above)
+        one, other = (
+            [int(finder.first[block]) + part for part in masonry.blocks[block].sides[side].parts]
+            for block, side in zip(ends, joint.sides, strict=True)
+        )
+        both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]
+        pairs += [pair] * len(both)
+        numbers += both
+    order = np.argsort(numbers, kind="stable")
+    return np.array(pairs)[order], np.array(numbers)[order]

@@ -1,0 +1,475 @@
+"""Finder: where convex blocks meet or are about to, at any pose.
+
+Two blocks are apart by what the best of all directions parts them by: a normal of a face, or one across an edge of
+each (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). Where that is a face the places come from `clipping`, and
+where it is two edges there is one place. MuJoCo finds such contacts too, but of two faces that are nearly flush it
+gives four places at most, and not always the deepest. The finder decides neither the law of a contact nor the motion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from copy import copy
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compiled import compiled_at_once, inlined
+from ...geometry.frames import SPACE
+from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, vector
+from ...problem.masonry.blocks.compound import AnyBlock
+from ...problem.masonry.blocks.joints import each_with_each, numbered_parts
+from ...quantities import Array, Flags, Integers
+from ..rows import Rows, rows
+from .clipping import PLACE, clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
+from .grid import lay_out
+from .pair_law import pair_number
+from .solids import Poses, Solids, inside_of, solids_of
+
+EDGES = 0.8
+"""Overlap along the normal of two edges, over that along the best one of a face, below which the edges meet [-]."""
+ACROSS = 1e-3
+"""Sine of the angle of two edges below which there is no direction across both [-]."""
+FLUSH = -0.7
+"""Cosine of the angle between the normals of two faces up to which they meet as faces [-]."""
+SOUGHT = 0.06
+"""How much deeper than along the best face two blocks may overlap along one that comes into question, over the outline
+of a face [-]: about a third of the width of a unit in space."""
+LESS = 0.7
+"""Overlap at the places of a face that comes into question, over that of the best face, below which it is taken [-].
+Faces of two blocks that are nearly flush differ by the cosine of their angle, see `FLUSH`, and the best one stays."""
+LEAD = 1e-6
+"""By how much the other block may be less outside of a face, over how much longer its outline is than that of another
+face, for it to be taken [-]. The corners of the smaller one then lie over it."""
+HAIR = 1e-9
+"""How much farther, over its outline, a block must be outside of the face of the second block of a pair for this one to
+be taken [-]. So rounding does not decide between two that are equal."""
+ALIKE = 1e-6
+"""Relative difference up to which blocks are as large, and difference of heights over the smallest size up to which
+they are as high [-]."""
+ON_ENDS = 0.01
+"""Distance up to which a place outside of a block counts as inside, over the overlap there [-]. That of two prisms
+whose ends lie in one plane is on these ends, and rounding does not decide."""
+OF_EDGES = 0.25
+"""Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
+NONE = np.zeros(0, dtype=np.int64)
+"""Numbers of no pairs."""
+
+
+class Found(NamedTuple):
+    """Places where two blocks meet or are near.
+
+    Args:
+        face, other: block of the face, of two edges either, and the other block, shape (n,).
+        place: halfway between the two surfaces [m], shape (n, d).
+        normal: unit vector out of the face, shape (n, d).
+        gap: between the surfaces, negative for an overlap [m], shape (n,).
+        share: of what the pair has, zero where no face lies over the other, shape (n,).
+        area: of the part of a face that lies over the other [m2], in the plane its length [m], zero for edges, (n,).
+    """
+
+    face: Integers
+    other: Integers
+    place: Array
+    normal: Array
+    gap: Array
+    share: Array
+    area: Array
+
+    def only(self, which: Flags | Integers) -> Found:
+        """Some of the places."""
+        return Found._make(part[which] for part in self)
+
+
+class Near(NamedTuple):
+    """Which pairs are looked at.
+
+    Args:
+        low, high: least and largest coordinates of each solid, what it reaches included [m], shape (solids, 3).
+        order: the solids by their low ends along an axis, shape (solids,).
+        axis: its number.
+        reach: of each solid [m], shape (solids,).
+        watched, fixed: shape (solids,). One of two solids is watched, and one is free.
+        rank: of the block of each solid, shape (solids,). Of two with equal faces, or whose edges cross, the first has
+            the normal.
+        skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
+        jointed: numbers of pairs of solids that had a joint, increasing.
+        cells: of the grid of a joint, along x and z and along y.
+    """
+
+    low: Array
+    high: Array
+    order: Integers
+    axis: int
+    reach: Array
+    watched: Flags
+    fixed: Flags
+    rank: Integers
+    skipped: Integers
+    jointed: Integers = NONE
+    cells: tuple[int, int] = (1, 1)
+
+
+class Finder:
+    """Blocks, and the convex solids that they are made of.
+
+    Args:
+        blocks: the blocks.
+        drawn: where their centroids are drawn [m], shape (blocks, d).
+        points: of the joints of masonry. `jointed` has the numbers of the pairs of solids that had one, increasing.
+    """
+
+    def __init__(self, blocks: Sequence[AnyBlock], drawn: Array, points: int = 2) -> None:
+        self.flat = drawn.shape[1] == 2
+        self.jointed = NONE
+        self._cells = points - 1, 1 if self.flat else points - 1
+        self._half = min(block.size for block in blocks)  # of the length of a prism, which plays no part
+        self.first, self.number = numbered_parts(blocks)
+        self.owner = np.repeat(np.arange(len(blocks)), self.number)
+        self._fixed = np.array([block.fixed for block in blocks])[self.owner]
+        centroids = (np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)[self.owner]
+        solids = solids_of(blocks, self._half)
+        self.volumes = np.add.reduceat([solid.volume for solid in solids], self.first)
+        self._rank = ranked([block.fixed for block in blocks], self.volumes, drawn[:, -1], self._half)
+        inside = [flags for block in blocks for flags in inside_of(block)]
+        self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
+        most = int(np.diff(self.solids.first).max())
+        self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 3))
+
+    def apart(self) -> Finder:
+        """The same with room of its own, which runs in two threads must not share."""
+        fresh = copy(self)
+        fresh._table, fresh._room = self._table.copy(), np.empty_like(self._room)
+        return fresh
+
+    def found(self, poses: Poses, reach: Array, watched: Flags, skipped: Integers) -> Found:
+        """Where pairs of blocks of which one is watched are nearer than the sum of what they reach.
+
+        Args:
+            poses: of all blocks.
+            reach: of each block [m], shape (blocks,).
+            watched: shape (blocks,).
+            skipped: numbers of pairs of solids that are left out, increasing, see `between`.
+        """
+        solids, reach, watched = self.posed(poses), reach[self.owner], watched[self.owner]
+        low, high = (ends.reduceat(solids.corners, solids.corner[:-1]) for ends in (np.minimum, np.maximum))
+        low, high = low - reach[:, None], high + reach[:, None]
+        axis = int(np.ptp(low, axis=0).argmax())
+        order, pairs = np.argsort(low[:, axis]), (skipped, self.jointed)
+        near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs, self._cells)
+        while (count := find(solids, near, self._table, self._room)) > len(self._table):
+            self._table = rows(PLACE, 2 * count)
+        table = self._table[:count]
+        found = self._in_order(Found(*(table[name].copy() for name in PLACE.names or ())))
+        found = self._of_the_plane(found) if self.flat else found
+        return found if self.number.max() == 1 else self._among_blocks(found)
+
+    def _in_order(self, found: Found) -> Found:
+        """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
+        in rank, those of a pair together."""
+        rank = self._rank[self.owner]
+        of_blocks = pair_number(rank[found.face], rank[found.other], len(self.number))
+        return found.only(np.lexsort((pair_number(found.face, found.other, len(self.owner)), of_blocks)))
+
+    def between(self, a: Integers, b: Integers) -> Integers:
+        """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
+        if self.number.max() > 1:
+            _, a, b = each_with_each(self.first, self.number, np.column_stack([a, b]))
+        return pair_number(a, b, len(self.owner))
+
+    def parts_of(self, block: int) -> range:
+        """Numbers of the solids of a block."""
+        return range(self.first[block], self.first[block] + self.number[block])
+
+    def posed(self, poses: Poses) -> Solids:
+        """The blocks where they are."""
+        place, change = poses.drawn + poses.moved, poses.change
+        if self.flat:
+            place, change = np.insert(place, 1, 0.0, axis=1), np.zeros((len(place), 3, 3))
+            change[:, ::2, ::2] = poses.change
+        return self.solids.moved(place[self.owner], change[self.owner])
+
+    def _among_blocks(self, found: Found) -> Found:
+        """Places of solids as those of blocks, those of a pair together. What a pair has is shared among its pairs of
+        solids by the areas where these lie over each other."""
+        solids, count = pair_number(found.face, found.other, len(self.owner)), len(self.number)
+        found = found._replace(face=self.owner[found.face], other=self.owner[found.other])
+        blocks = pair_number(found.face, found.other, count)
+        at = np.unique(solids, return_index=True)[1]  # the places of solids have one area
+        _, of_pair = np.unique(blocks, return_inverse=True)
+        in_pair = np.bincount(of_pair[at], weights=found.area[at])[of_pair]
+        over = found.area > 0
+        share = found.share * np.where(over, found.area / np.where(over, in_pair, 1.0), 1.0)
+        area = np.where(over, in_pair, 0.0)
+        return found._replace(share=share, area=area)
+
+    def _of_the_plane(self, found: Found) -> Found:
+        """The places at one end of the prisms."""
+        kept = found.only(found.place[:, 1] > 0.5 * self._half)
+        normal = kept.normal[:, ::2] / np.hypot(*kept.normal[:, ::2].T)[:, None]
+        return kept._replace(
+            place=kept.place[:, ::2], normal=normal, share=2 * kept.share, area=kept.area / (2 * self._half)
+        )
+
+
+def ranked(fixed: Sequence[bool], volumes: Array, heights: Array, size: float) -> Integers:
+    """The rank of each block: fixed ones first, then the largest and then the lowest ones, whatever their numbers are
+    and whichever side is left. Only of those that are alike in all of these the first one in the drawing comes first.
+
+    Args:
+        fixed, volumes, heights: of the blocks, fixed or not, volume [m3] and height of the centroid [m], shape (n,).
+        size: of the smallest [m].
+    """
+    keys = steps_of(heights / size), steps_of(-np.log(volumes)), ~np.array(fixed)
+    rank = np.empty(len(fixed), dtype=np.int64)
+    rank[np.lexsort(keys)] = np.arange(len(fixed))
+    return rank
+
+
+def steps_of(values: Array) -> Integers:
+    """Values in steps: those that are alike have the same number, shape of the values."""
+    order = np.argsort(values, kind="stable")
+    steps = np.empty(len(values), dtype=np.int64)
+    steps[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > ALIKE)
+    return steps
+
+
+@inlined
+def among(values: Integers, number: int) -> bool:
+    """Whether a number is among increasing values."""
+    low, high = 0, len(values)
+    while low < high:
+        middle = (low + high) // 2
+        if values[middle] < number:
+            low = middle + 1
+        else:
+            high = middle
+    return low < len(values) and values[low] == number
+
+
+@compiled_at_once
+def find(solids: Solids, near: Near, table: Rows, room: Array) -> int:
+    """Write the places of all pairs that are near, see `clipping.clip`, those of faces in the grid of their joint where
+    they had one.
+
+    Returns:
+        How many there are, or more than there is room for where there may be too many.
+    """
+    count, blocks = 0, len(near.order)
+    for turn in range(blocks):
+        a = near.order[turn]
+        for later in range(turn + 1, blocks):
+            b = near.order[later]
+            if near.low[b, near.axis] > near.high[a, near.axis]:
+                break
+            if not (near.watched[a] or near.watched[b]) or (near.fixed[a] and near.fixed[b]):
+                continue
+            if solids.owner[a] == solids.owner[b]:
+                continue
+            pair = (a, b) if near.rank[a] < near.rank[b] else (b, a)
+            number = min(a, b) * blocks + max(a, b)
+            if are_apart(near, a, b) or among(near.skipped, number):
+                continue
+            cells = near.cells if among(near.jointed, number) else (1, 1)
+            count = find_pair(solids, near.reach[a] + near.reach[b], pair, table, count, room, cells)
+    return count
+
+
+@inlined
+def are_apart(near: Near, a: int, b: int) -> bool:
+    """Whether two blocks are apart along an axis."""
+    apart = False
+    for i in range(3):
+        apart = apart or near.low[a, i] > near.high[b, i] or near.low[b, i] > near.high[a, i]
+    return apart
+
+
+@inlined
+def find_pair(
+    solids: Solids,
+    reach: float,
+    blocks: tuple[int, int],
+    table: Rows,
+    count: int,
+    room: Array,
+    cells: tuple[int, int] = (1, 1),
+) -> int:
+    """Write the places of a pair that is nearer than it reaches [m], on faces in a grid of some cells. Returns how many
+    places there are then, or more than there is room for where there may be."""
+    a, b = blocks
+    face, apart = face_between(solids, a, b, reach)
+    other_face, other_apart = (-1, -math.inf) if apart > reach else face_between(solids, b, a, reach)
+    best = max(apart, other_apart)
+    if best > reach or face < 0 or other_face < 0:
+        return count
+    if count + len(room) > len(table):
+        return count + len(room)
+    least = best - SOUGHT * min(solids.extent[face], solids.extent[other_face])
+    longer = solids.extent[other_face] - solids.extent[face]
+    if other_apart + LEAD * longer - HAIR * solids.extent[face] > apart:
+        face, blocks = other_face, (b, a)
+    if best < 0:
+        face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
+        over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
+        if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FLUSH:
+            way, across = across_edges(solids, a, b)
+            if across > EDGES * gap:
+                return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
+    if cells[0] > 1:
+        last = lay_out(solids, face, blocks, cells, table, count, room)
+    else:
+        last = clip(solids, face, blocks, table, count, room)
+    return last if last > count else pass_by(solids, face, blocks, best, table, count)
+
+
+@inlined
+def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Rows, count: int) -> int:
+    """Write a corner of a face that another block is near and does not lie over, as two that come together at their
+    corners: a place without a share, so that it is known when to look again. Returns how many places there are then."""
+    corner = solids.first[face]
+    for i in range(corner, solids.first[face + 1]):
+        if corner_of(solids, i)[1] > corner_of(solids, corner)[1]:  # at the end of the prisms that is kept
+            corner = i
+    write_place(table[count], blocks, corner_of(solids, corner), normal_of(solids, face), gap)
+    table[count].share = table[count].area = 0.0
+    return count + 1
+
+
+@inlined
+def shallowest(
+    solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Rows, count: int, room: Array
+) -> tuple[int, tuple[int, int], float]:
+    """The face of two blocks that overlap along which their places are least deep, its block and the other one, and the
+    least gap of these places [m].
+
+    A corner of the whole face may lie deep below the plane of another one, far from where the two lie over each other.
+    A face whose places are open, or leave out the deepest place of the first face, does not part the blocks.
+
+    Args:
+        solids: the blocks where they are.
+        face, blocks: the face that the other block is farthest outside of, its block and the other one.
+        least: how far the other block is outside of a face that comes into question [m].
+        table, count, room: for places that are not kept, see `clipping.clip`.
+    """
+    first = deepest(table, count, clip(solids, face, blocks, table, count, room))
+    there, most, middle = first >= 0, -math.inf, corner_of(solids, solids.first[face])
+    if there:
+        most, middle = table[first].gap, read(table[first].at)
+    slack = ON_ENDS * max(-most, 0.0)
+    common = there and lies_in(solids, blocks[0], middle, slack) and lies_in(solids, blocks[1], middle, slack)
+    best, of_best, taken = face, blocks, LESS * most
+    for turn in range(2):
+        block, other = blocks if turn == 0 else (blocks[1], blocks[0])
+        for one in range(solids.face[block], solids.face[block + 1]):
+            if one != face and not solids.inside[one] and outside(solids, one, other) > least:
+                row = deepest(table, count, clip(solids, one, (block, other), table, count, room))
+                gap = table[row].gap if row >= 0 else -math.inf
+                open_or_beside = (there and gap >= 0) or (common and gap > height(solids, one, middle))
+                if gap > taken and not open_or_beside:
+                    best, of_best, taken, most = one, (block, other), gap, gap
+    return best, of_best, most
+
+
+@inlined
+def deepest(table: Rows, first: int, last: int) -> int:
+    """Which of some places has the least gap, -1 for none."""
+    best = -1
+    for i in range(first, last):
+        if best < 0 or table[i].gap < table[best].gap:
+            best = i
+    return best
+
+
+@inlined
+def height(solids: Solids, face: int, at: Vector) -> float:
+    """Height of a place over the plane of a face [m]."""
+    above: float = dot(normal_of(solids, face), minus(at, corner_of(solids, solids.first[face])))
+    return above
+
+
+@inlined
+def lies_in(solids: Solids, block: int, at: Vector, slack: float) -> bool:
+    """Whether a place lies inside a block, or outside by some slack [m]."""
+    inside = True
+    for face in range(solids.face[block], solids.face[block + 1]):
+        inside = inside and height(solids, face, at) <= slack
+    return inside
+
+
+@inlined
+def outside(solids: Solids, face: int, other: int) -> float:
+    """How far a block is outside of a face of another one [m], negative for an overlap."""
+    normal = normal_of(solids, face)
+    return -dot(normal, corner_of(solids, solids.first[face])) - farthest(solids, other, scaled(-1.0, normal))
+
+
+@inlined
+def farthest(solids: Solids, block: int, way: Vector) -> float:
+    """How far a block reaches along a direction [m]."""
+    most = -math.inf
+    for i in range(solids.corner[block], solids.corner[block + 1]):
+        most = max(most, dot(way, vector(solids.corners, i, SPACE.axes)))
+    return most
+
+
+@inlined
+def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[int, float]:
+    """The face of a block that another block is farthest outside of, and how far [m], negative for an overlap.
+
+    More than it reaches is far enough. Nothing meets a face that lies inside its block: what is outside of one is near
+    other parts of the block, and counts as far."""
+    best, most = -1, -math.inf
+    for face in range(solids.face[block], solids.face[block + 1]):
+        apart = outside(solids, face, other)
+        if solids.inside[face]:
+            apart = math.inf if apart >= 0 else -math.inf
+        if apart > most:
+            best, most = face, apart
+            if most > reach:
+                break
+    return best, most
+
+
+@inlined
+def across_edges(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
+    """The direction across an edge of each of two blocks along which they are farthest apart, and how far [m]."""
+    best: Vector = (0.0, 0.0, 0.0)
+    most = -math.inf
+    for i in range(solids.way[a], solids.way[a + 1]):
+        for j in range(solids.way[b], solids.way[b + 1]):
+            normal = spun(vector(solids.ways, i, SPACE.axes), vector(solids.ways, j, SPACE.axes))
+            size = length_of(normal)
+            if size < ACROSS:
+                continue
+            for sign in (1.0, -1.0):
+                way = scaled(sign / size, normal)
+                apart = -farthest(solids, b, scaled(-1.0, way)) - farthest(solids, a, way)
+                if apart > most:
+                    best, most = way, apart
+    return best, most
+
+
+@inlined
+def edge_towards(solids: Solids, block: int, way: Vector) -> tuple[Vector, Vector]:
+    """The edge of a block that is farthest along a direction: one end [m], and the way to the other."""
+    most, end, along = -math.inf, way, way
+    for face in range(solids.face[block], solids.face[block + 1]):
+        for i in range(solids.first[face], solids.first[face + 1]):
+            here, after = corner_of(solids, i), next_corner(solids, face, i)
+            reaches = dot(way, plus(here, after))
+            if reaches > most:
+                most, end, along = reaches, here, minus(after, here)
+    return end, along
+
+
+@inlined
+def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: float, table: Rows, count: int) -> int:
+    """Write the place where two edges cross. Returns how many places there are then."""
+    if count < len(table):
+        start, along = edge_towards(solids, blocks[0], normal)
+        other, way = edge_towards(solids, blocks[1], scaled(-1.0, normal))
+        share = dot(spun(minus(start, other), along), normal) / dot(spun(way, along), normal)
+        write_place(table[count], blocks, plus(other, scaled(share, way)), normal, apart)
+        table[count].share, table[count].area = OF_EDGES, 0.0
+    return count + 1

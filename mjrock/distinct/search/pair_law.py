@@ -1,0 +1,176 @@
+"""The law of the contact of two blocks beyond their joints.
+
+Two blocks that had a joint keep its stiffness and dashpot per area of what lies over each other, and its friction,
+that of a mortared joint without its bond. So a joint that has slid is as stiff as one that is drawn where it is. Two
+that had none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more,
+since a block of a wall has joints on two sides. Where their faces lie over each other by less than a tenth of the area
+of such a joint, they have less in proportion. So blocks that only touch along their edges bear nothing. The places
+where a pair touches share what it has.
+
+A block without any joint is loose. It has what a joint over its largest face would have, per area that of the softest
+joint of the masonry. Where it is the softer block, the pair has that over the area on which the two faces lie, as a
+joint that is drawn there would have. A fixed block has over the area of the free one what its own joints have per area,
+so that how many blocks stand on the ground plays no part.
+
+A corner or a small face of a loose block has a quarter of the largest face, and what is left of a joint that has slid
+has a quarter of the joint, with the same decrease for areas that are ten times smaller still. Otherwise they would sink
+in.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.hull import area_vector
+from ...problem.masonry.blocks.sides import Side
+from ...problem.masonry.masonry import Masonry
+from ...quantities import Array, Flags, Integers
+from ..rows import Rows
+
+SHARED = ("k", "c", "k_s", "c_s")
+"""What the places of a pair share."""
+WHOLE = 0.1
+"""Part of the area of a joint over which two faces that had none have all that a pair has [-]."""
+LEAST = 0.25
+"""Part of what a loose block has over its largest face, or a pair over its joint, that a smaller area has too [-]."""
+
+ROUNDED = 1e-9
+"""Relative difference up to which what two blocks have is the same [-]."""
+
+
+def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
+    """One number for two blocks."""
+    return np.asarray(np.minimum(a, b) * blocks + np.maximum(a, b), dtype=np.int64)
+
+
+def are_among(numbers: Integers, increasing: Integers) -> Flags:
+    """Whether numbers are among increasing ones, shape of the numbers."""
+    if not len(increasing):
+        return np.zeros(len(numbers), dtype=bool)
+    place = np.minimum(np.searchsorted(increasing, numbers), len(increasing) - 1)
+    return np.asarray(increasing[place] == numbers)
+
+
+def least_among(pair: Integers, others: Integers, shares: Array) -> Array:
+    """The least share of each pair among others, 1 where it is not one of them, shape of the pairs."""
+    if not len(others):
+        return np.ones(len(pair))
+    known, of = np.unique(others, return_inverse=True)
+    least = np.ones(len(known) + 1)
+    np.minimum.at(least, of, shares)
+    return least[np.where(are_among(pair, known), np.searchsorted(known, pair), -1)]
+
+
+class PairLaw(NamedTuple):
+    """What each pair of blocks has in all.
+
+    Args:
+        jointed: numbers of the pairs that have a joint, increasing, shape (p,).
+        of_pair: columns of `SHARED` and area [m2], in the plane width [m], of these pairs, shape (p, 5), and their
+            friction, shape (p,).
+        of_block: likewise of each block as a pair without a joint takes it.
+        fixed, loose: which blocks are fixed, and which have no joint, shape (blocks,).
+    """
+
+    jointed: Integers
+    of_pair: tuple[Array, Array]
+    of_block: tuple[Array, Array]
+    fixed: Flags
+    loose: Flags
+
+    @classmethod
+    def of_joints(cls, masonry: Masonry, lines: Rows, joint: Integers) -> PairLaw:
+        """The law of masonry, from the lines of its joints and the number of the joint of each."""
+        blocks, joints = len(masonry.blocks), len(masonry.joints)
+        below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
+        areas = np.array([each.area if masonry.in_space else each.width for each in masonry.joints])
+        sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED), areas])
+        friction = np.zeros(joints)
+        friction[joint] = np.minimum(lines["friction"], masonry.residual_friction[joint])
+        jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
+        in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
+        least = np.full(len(jointed), np.inf)
+        np.minimum.at(least, of, friction)
+        shared, rough = _of_blocks(np.append(below, above), sums, friction, blocks)
+        loose = shared[:, 0] == 0
+        shared[loose], rough[loose] = _of_loose(masonry, sums, friction, loose)
+        fixed = np.array([block.fixed for block in masonry.blocks])
+        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose)
+
+    @property
+    def slowest(self) -> float:
+        """The largest dashpot over its spring [s]."""
+        shared = np.concatenate([self.of_pair[0], self.of_block[0]])
+        return float((shared[:, 1] / shared[:, 0]).max())
+
+    def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
+        """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
+        face that lies over the other [m2], zero for edges, shape (n,) each."""
+        ends = np.array(np.divmod(pair, blocks))
+        shared, loose = self._of_softer(ends)
+        friction, had = self.of_block[1][ends].min(axis=0), are_among(pair, self.jointed)
+        there = np.searchsorted(self.jointed, pair[had])
+        shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
+        over = area / shared[:, -1]
+        part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE, 1.0))
+        share = share * np.where(area > 0, part, 1.0)
+        return {**dict(zip(SHARED, share * shared[:, :-1].T, strict=True)), "friction": friction}
+
+    def _of_softer(self, ends: Integers) -> tuple[Array, Flags]:
+        """What pairs without a joint have, shape (n, 5), and whether the block that rules is loose, shape (n,), from
+        their blocks, shape (2, n)."""
+        both, fixed = self.of_block[0][ends], self.fixed[ends]
+        over = both[::-1, :, -1] / both[..., -1]
+        both = both * np.where(fixed, over, 1.0)[..., None]
+        less, more = both[0] < (1 - ROUNDED) * both[1], (1 - ROUNDED) * both[0] > both[1]
+        unlike = (less | more).argmax(axis=1)  # of equal stiffness the one with less of the next column
+        first = ~np.take_along_axis(more, unlike[:, None], axis=1)[:, 0]
+        second = fixed[0] | (~fixed[1] & ~first)
+        rules = np.where(second, self.loose[ends[1]], self.loose[ends[0]])
+        alike = ~fixed.any(axis=0) & ~(less | more).any(axis=1)
+        rules |= alike & self.loose[ends].any(axis=0)  # the loose one of two
+        return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
+
+
+def part_of_face(over: Array) -> Array:
+    """Part of what a loose block has over its largest face, or a pair over its joint, that it has over another area,
+    from this area over that of the face or the joint."""
+    return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
+
+
+def side_area(side: Side, *, in_space: bool) -> float:
+    """Area of a side of a block [m2], in the plane its length [m]."""
+    return float(np.linalg.norm(area_vector(side.corners) if in_space else np.subtract(*side.corners)))
+
+
+def _sums(of: Integers, values: Array, count: int) -> Array:
+    return np.asarray(np.bincount(of, weights=values, minlength=count), dtype=float)
+
+
+def _of_blocks(block: Integers, joints: Array, friction: Array, blocks: int) -> tuple[Array, Array]:
+    """What each block has, from its joints: below of all and then above of all. One without a joint has nothing."""
+    joints, friction = np.concatenate([joints, joints]), np.concatenate([friction, friction])
+    sums = np.column_stack([_sums(block, column, blocks) for column in joints.T])
+    stiffest, least = np.zeros(blocks), np.zeros(blocks)
+    np.maximum.at(stiffest, block, joints[:, 0])
+    least[block] = friction
+    np.minimum.at(least, block, friction)
+    share = np.maximum(stiffest / np.where(sums[:, 0] == 0, 1.0, sums[:, 0]), 0.5)
+    return share[:, None] * sums, least
+
+
+def _of_loose(masonry: Masonry, joints: Array, friction: Array, loose: Flags) -> tuple[Array, Array]:
+    """What loose blocks have over their largest faces. Of joints that are as soft, the softest along the face counts,
+    then the least damped and the smoothest one."""
+    known = masonry.joint_stiffness, masonry.joint_shear, masonry.retardation, friction
+    softest = int(np.lexsort(known[::-1])[0])
+    blocks = [block for block, alone in zip(masonry.blocks, loose.tolist(), strict=True) if alone]
+    areas = [max(side_area(side, in_space=block.in_space) for side in block.sides) for block in blocks]
+    largest = np.reshape(areas, (-1, 1))
+    per_area = joints[softest] / joints[softest, -1]
+    if not masonry.in_space:
+        length = np.array([block.length for block in masonry.polygons])[loose][:, None]
+        per_area = per_area * np.append(length / masonry.joints[softest].length * np.ones(4), np.ones_like(length), 1)
+    return largest * per_area, np.full(len(blocks), friction[softest])

@@ -1,0 +1,216 @@
+"""Softening: how much of its law a place has that is found in a run, so that the step of the run stays stable.
+
+Each body is bounded alone. For this a spring between two bodies is taken as two, one on each body with the other one
+held, which together are never softer: (a - b)^2 <= a^2 / s + b^2 / (1 - s) for any share s. The shares go as what all
+springs of each body are over its masses, so that a heavy body on many light ones is not softened for them. The trace of
+a power of a matrix bounds its highest eigenvalue.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compiled import compiled_at_once, inlined
+from ...geometry.vectors import (
+    Vector,
+    components,
+    dot,
+    moment,
+    put,
+    spin_components,
+    tangent,
+    tangents,
+    times,
+    vector,
+)
+from ...problem.masonry.laws.joint_law import Law, largest_stiffness
+from ...quantities import Array, Integers
+from ..rows import Row, Rows
+from ..turning import spin_from_many
+
+MOST = 4.0
+"""Highest eigenvalue of the stiffness over the masses that leaves the step stable, times the square of the step [-]."""
+SQUARED = 4
+"""How often a matrix is squared before its trace is taken. The trace of the 16th power of a matrix of six rows bounds
+the highest eigenvalue by 1.12 times what it is."""
+
+
+class Sides(NamedTuple):
+    """The two blocks of each place.
+
+    Args:
+        bodies: their numbers, negative for a fixed block, shape (2, n).
+        arms: from their centroids to the place [m], shape (2, n, d).
+        normals: of the places, shape (n, d).
+    """
+
+    bodies: Integers
+    arms: Array
+    normals: Array
+
+
+class Room(NamedTuple):
+    """Room for `soften`.
+
+    Args:
+        traces: of each place on its two bodies, that of its stiffness over the masses of the body, shape (2, n).
+        shares: of the springs of each place that its two bodies take, shape (2, n).
+        loads: of each body, the sum of these traces, shape (bodies,).
+        stiffness: of each body by its places, shape (bodies, nv, nv).
+        powers: of the stiffness of a body over its masses, two matrices, shape (2, nv, nv).
+        share: of its law that the places of each body have left, and 1 for fixed blocks, shape (bodies + 1,).
+    """
+
+    traces: Array
+    shares: Array
+    loads: Array
+    stiffness: Array
+    powers: Array
+    share: Array
+
+
+@inlined
+def way_at(normal: Vector, i: int) -> Vector:
+    """The normal of a place, or a direction along its face."""
+    if i == 0:
+        return normal
+    if len(normal) == 2:
+        return tangent(normal)
+    return tangents(normal)[i - 1]
+
+
+@inlined
+def trace_of(body: Row, sides: Sides, side: int, p: int, along: float, across: float, axes: tuple[int, ...]) -> float:
+    """The trace of the stiffness of place p over the masses of one of its bodies."""
+    trace, arm, normal = 0.0, vector(sides.arms[side], p, axes), vector(sides.normals, p, axes)
+    for way in range(len(axes)):
+        direction = way_at(normal, way)
+        turning = moment(arm, direction)
+        moved = dot(times(components(body.inverse_mass, axes), direction), direction)
+        trace += (along if way == 0 else across) * (moved + dot(spin_from_many(body, turning), turning))
+    return trace
+
+
+@inlined
+def add_up(sides: Sides, room: Room) -> None:
+    """Add up the traces of all places on each body, over its shares of them."""
+    for b in range(len(room.loads)):
+        room.loads[b] = 0.0
+    for side in range(2):
+        for p in range(sides.bodies.shape[1]):
+            if sides.bodies[side, p] >= 0:
+                room.loads[sides.bodies[side, p]] += room.traces[side, p] / room.shares[side, p]
+
+
+@inlined
+def split(sides: Sides, room: Room) -> None:
+    """Let the two bodies of each place take shares of its springs that go as their loads."""
+    for p in range(sides.bodies.shape[1]):
+        if sides.bodies[0, p] >= 0 and sides.bodies[1, p] >= 0:
+            one, other = room.loads[sides.bodies[0, p]], room.loads[sides.bodies[1, p]]
+            if one > 0 and other > 0:
+                room.shares[0, p], room.shares[1, p] = one / (one + other), other / (one + other)
+
+
+@inlined
+def stiffen(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[int, ...]) -> None:
+    """Add up the stiffness of each body with much load by its places, over its shares of them."""
+    for side in range(2):
+        for p in range(len(along)):
+            body = sides.bodies[side, p]
+            if body < 0 or room.loads[body] <= MOST:
+                continue
+            for way in range(len(axes)):
+                direction = way_at(vector(sides.normals, p, axes), way)
+                rate = direction + moment(vector(sides.arms[side], p, axes), direction)
+                k = along[p] if way == 0 else across[p]
+                for i in range(len(rate)):
+                    for j in range(len(rate)):
+                        room.stiffness[body, i, j] += k / room.shares[side, p] * rate[i] * rate[j]
+
+
+@inlined
+def over_masses(body: Row, stiffness: Array, rates: Array, axes: tuple[int, ...]) -> None:
+    """Write a stiffness over the masses of its body."""
+    for j in range(len(stiffness)):
+        column, of_spin = stiffness[:, j], stiffness[len(axes) :, j]
+        put(rates[:, j], times(components(body.inverse_mass, axes), components(column, axes)))
+        put(rates[len(axes) :, j], spin_from_many(body, spin_components(of_spin, axes)))
+
+
+@inlined
+def squared(a: Array, square: Array) -> float:
+    """Write the square of a matrix. Returns its trace."""
+    trace = 0.0
+    for i in range(len(a)):
+        for j in range(len(a)):
+            square[i, j] = 0.0
+            for k in range(len(a)):
+                square[i, j] += a[i, k] * a[k, j]
+        trace += square[i, i]
+    return trace
+
+
+@compiled_at_once
+def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, axes: tuple[int, ...]) -> None:
+    """Write the share of their law that the places of each body have left, see `shares_within`.
+
+    Args:
+        sides: the two blocks of each place.
+        along, across: stiffness along the normal and along the face of each place, shape (n,).
+        bodies: whose inverse inertia is taken in the axes of the world, in space.
+        room: with shares of 1 and no stiffness.
+        axes: of the system.
+    """
+    for side in range(2):
+        for p in range(len(along)):
+            if sides.bodies[side, p] >= 0:
+                body = bodies[sides.bodies[side, p]]
+                room.traces[side, p] = trace_of(body, sides, side, p, along[p], across[p], axes)
+    add_up(sides, room)
+    split(sides, room)
+    add_up(sides, room)
+    stiffen(sides, along, across, room, axes)
+    for b in range(len(bodies)):
+        if room.loads[b] > MOST:
+            over_masses(bodies[b], room.stiffness[b], room.powers[0], axes)
+            trace = 0.0
+            for i in range(SQUARED):
+                trace = squared(room.powers[i % 2], room.powers[1 - i % 2])
+            room.share[b] = MOST / max(trace ** (0.5**SQUARED), MOST)
+
+
+def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float) -> Array:
+    """Share of its stiffness and damping with which each place leaves a step stable, at most 1, shape (n,).
+
+    Args:
+        sides: the two blocks of each place.
+        law: `k`, `c`, `k_s` and `c_s` of the places, shape (n,) each.
+        bodies: whose inverse inertia is taken in the axes of the world, in space.
+        step: that is to be stable [s].
+    """
+    along = step**2 * largest_stiffness(Law(k=law["k"])) + 2 * step * law["c"]
+    across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
+    d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
+    stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((2, nv, nv))
+    traces, shares = np.zeros(sides.bodies.shape), np.ones(sides.bodies.shape)
+    room = Room(traces, shares, np.empty(len(bodies)), stiffness, powers, share)
+    soften(sides, along, across, bodies, room, tuple(range(d)))
+    return np.asarray(share[sides.bodies].min(axis=0))
+
+
+def unsoftened(share: float, step: float, slow: float) -> float:
+    """The step with which a place keeps all of its law that a longer one leaves a share of [s].
+
+    What counts of a place goes as the square of the step for its spring, and as the step for its dashpot.
+
+    Args:
+        share: of its law that the longer step leaves [-].
+        step: the longer one that is to be stable [s].
+        slow: its dashpot over its spring [s].
+    """
+    damped = 2 * slow / step
+    return 0.5 * step * (math.sqrt(damped**2 + 4 * (1 + damped) * share) - damped)

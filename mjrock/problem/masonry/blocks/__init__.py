@@ -1,0 +1,1 @@
+"""Blocks of masonry, and where they lie on each other."""

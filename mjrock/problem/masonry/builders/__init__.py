@@ -1,0 +1,1 @@
+"""Blocks of masonry that is built often."""

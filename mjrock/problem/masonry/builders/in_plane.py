@@ -1,0 +1,220 @@
+"""Blocks of masonry that is built often, in the plane: a stack, an arch, and a wall in running bond."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ....quantities import Array, require_flag, require_kind, require_whole, require_within, shown
+from ...wall.block import Block
+from ...wall.effects import SideStop
+from ..blocks.compound import Compound, FlatBlock
+from ..blocks.polygon import Polygon
+
+DEEP = 0.25
+"""Depth of the ground, over the width of what stands on it [-]."""
+BEYOND = 2.0
+"""How far the ground reaches beyond what stands on it, over the height of that [-]: what falls over lies on it."""
+THINNEST_GROUND = 1e-3
+"""Depth of the ground, over its own width, at least [-]: what stands on it may be ever so slender."""
+SMALLEST_PIECE = 0.1
+"""Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
+DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
+"""Depth of a loading beam, and how far it reaches beyond the wall at either end, over the length of the wall [-]."""
+LEAST_RADIUS = 0.01
+"""Least radius of an arch [m]."""
+MOST_BLOCKS = 5000
+"""Most blocks of a wall."""
+
+
+def rectangle(
+    left: float, right: float, low: float, high: float, density: float, length: float, fixed: bool, name: str
+) -> Polygon:
+    """A rectangular block between two x and two z [m]."""
+    corners = [(left, low), (right, low), (right, high), (left, high)]
+    return Polygon(corners, density=density, length=length, fixed=fixed, name=name)
+
+
+def ground_under(left: float, right: float, height: float, length: float, level: float = 0.0) -> Polygon:
+    """Fixed ground with its surface at a level [m], under what stands on it between two x, of a height [m]."""
+    wide = right - left
+    beyond, deep = extent_of_ground(wide, height)
+    return rectangle(left - beyond, right + beyond, level - deep, level, 2000.0, length, True, "ground")
+
+
+def extent_of_ground(wide: float, height: float) -> tuple[float, float]:
+    """How far ground reaches beyond what stands on it, of a width and a height [m], and how deep it is [m]."""
+    beyond = max(BEYOND * height, 0.5 * wide)
+    return beyond, max(DEEP * wide, THINNEST_GROUND * (wide + 2 * beyond))
+
+
+def ground_below_all(blocks: Sequence[FlatBlock]) -> Polygon:
+    """Fixed ground with its surface at the lowest point of some blocks, see `ground_under`."""
+    corners = np.concatenate([block.corners for block in blocks])
+    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    return ground_under(left, right, high - low, max(block.length for block in blocks), low)
+
+
+def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
+    """Rectangular blocks one on the other, centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
+    require_flag("ground", ground)
+    if not isinstance(blocks, Sequence) or isinstance(blocks, str) or not blocks:
+        raise TypeError(f"blocks = {shown(blocks)} is not a list of blocks")
+    polygons, z = [], 0.0
+    for i, block in enumerate(blocks):
+        require_kind(f"blocks[{i}]", block, Block)
+        if block.inset:
+            raise ValueError(
+                f"blocks[{i}]: inset = {block.inset:g} m; a block of a stack has its edges at its faces: give Masonry "
+                "a Polygon with its corners cut off"
+            )
+        fixed = i == 0 and not ground
+        polygons.append(
+            rectangle(-block.b, block.b, z, z + 2 * block.h, block.density, block.length, fixed, f"block_{i}")
+        )
+        if not math.isclose(polygons[-1].mass, block.mass, rel_tol=1e-9):
+            raise ValueError(
+                f"blocks[{i}] has openings, a profile or masses, and a block of a stack is a plain rectangle: cut it "
+                "at sills, heads and steps into blocks of the length that is left there, as Polygon where one is "
+                "flatter than thick; or take the Block in a Case, which has them all"
+            )
+        z += 2 * block.h
+    if ground:
+        b, length = max(block.b for block in blocks), max(block.length for block in blocks)
+        polygons.insert(0, ground_under(-b, b, z, length))
+    return polygons
+
+
+def side_of(blocks: Sequence[Polygon], side_stop: bool | SideStop) -> Polygon | None:
+    """The fixed block behind the inner face of a stack, from z = 0 up to its top or to that of the stop; or None.
+
+    A ValueError says if the stop ends above the stack.
+    """
+    require_kind("side_stop", side_stop, bool, SideStop)
+    if not side_stop:
+        return None
+    face = min(float(block.corners[:, 0].min()) for block in blocks if block.name != "ground")
+    height = max(float(block.corners[:, 1].max()) for block in blocks)
+    top = height
+    if isinstance(side_stop, SideStop):
+        top = require_within("top of the side stop", side_stop.top, 0.01, height, "m")
+    return rectangle(2 * face, face, 0.0, top, 2000.0, max(block.length for block in blocks), True, "side")
+
+
+def required_unit(unit: object) -> tuple[float, float]:
+    """Length and height of a unit [m]; a TypeError or ValueError says what is wrong with them."""
+    if not isinstance(unit, tuple | list) or len(unit) != 2:
+        raise TypeError(f"unit = {shown(unit)} is not the length and the height of a unit")
+    long = require_within("unit length", unit[0], 1e-2, 100.0, "m")
+    return long, require_within("unit height", unit[1], 1e-2, 100.0, "m")
+
+
+Ends = float | tuple[float, float]
+"""A measure [m], or a pair: what it is at one end and at the other, between which it changes linearly."""
+
+
+def required_ends(name: str, measure: Ends, low: float, high: float) -> tuple[float, float]:
+    """A measure at both ends [m]; a TypeError or ValueError says what is wrong with it."""
+    if not isinstance(measure, tuple | list):
+        measure = (measure, measure)
+    if len(measure) != 2:
+        raise ValueError(f"{name} = {shown(measure)} is neither a number nor a pair, one for each end")
+    return require_within(name, measure[0], low, high, "m"), require_within(name, measure[1], low, high, "m")
+
+
+def rings_of(radius: float, thickness: Ends, least: float, share: Array) -> tuple[Array, Array]:
+    """Radii of the inner and the outer face of an arch or a dome at its joints [m], from that of the middle.
+
+    Args:
+        radius: of the middle, at least so large [m].
+        thickness: at the springing and at the crown [m].
+        least: the least radius [m].
+        share: where the joints are, from 0 at the springing to 1 at the crown [-].
+    """
+    radius = require_within("radius", radius, least, 1e3, "m")
+    springing, crown = required_ends("thickness", thickness, 1e-3 * radius, radius)
+    half = 0.5 * (springing + (crown - springing) * share)
+    return radius - half, radius + half
+
+
+def arch_of(
+    radius: float, thickness: Ends, span_angle: float, voussoirs: int, density: float, length: float
+) -> list[Polygon]:
+    """Voussoirs of equal angles between two fixed abutments, from left to right, see `Masonry.arch`."""
+    span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
+    count = require_whole("voussoirs", voussoirs, 1, 1000)
+    along = np.arange(count + 1) / count
+    inner, outer = rings_of(radius, thickness, LEAST_RADIUS, 1 - np.abs(1 - 2 * along))
+    angles = 0.5 * math.pi + span_angle * (0.5 - along)
+    directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    intrados, extrados = inner[:, None] * directions, outer[:, None] * directions
+    polygons = [
+        Polygon(
+            [extrados[i], extrados[i + 1], intrados[i + 1], intrados[i]],
+            density=density,
+            length=length,
+            name=f"voussoir_{i}",
+        )
+        for i in range(count)
+    ]
+    for name, i, side in (("left_abutment", 0, -1.0), ("right_abutment", count, 1.0)):
+        at = directions[i]
+        down = (outer[i] - inner[i]) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
+        corners = [intrados[i], extrados[i], extrados[i] + down, intrados[i] + down]
+        polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
+    return [polygons[-2], *polygons[:-2], polygons[-1]]
+
+
+def curved(arch: Sequence[Polygon], chords: int) -> list[FlatBlock]:
+    """An arch in which so many voussoirs that follow each other are one, see `Masonry.arch`."""
+    if chords == 1:
+        return list(arch)
+    left, *pieces, right = arch
+    starts = range(0, len(pieces), chords)
+    joined = [Compound(pieces[k : k + chords], name=f"voussoir_{i}") for i, k in enumerate(starts)]
+    return [left, *joined, right]
+
+
+def bonded_wall(
+    length: float, height: float, unit: tuple[float, float], thickness: float, density: float, halved: bool
+) -> list[Polygon]:
+    """The ground and units in running bond on it, whole ones in two halves or not, see `Masonry.running_bond`."""
+    long, high = required_unit(unit)
+    length = require_within("wall length", length, long, 1e3, "m")
+    height = require_within("wall height", height, high, 1e3, "m")
+    thickness = require_within("wall thickness", thickness, 1e-3, 1e3, "m")
+    courses = round(height / high)
+    if not math.isclose(courses * high, height, rel_tol=1e-6):
+        raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
+    count = courses * length / long * (2 if halved else 1)
+    if count + courses > MOST_BLOCKS:
+        raise ValueError(
+            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
+        )
+    polygons = [ground_under(0.0, length, height, thickness)]
+    for course in range(courses):
+        shift = 0.5 * long if course % 2 else long
+        inner = shift + long * np.arange(math.ceil(length / long))
+        ends = [0.0, *(x for x in inner.tolist() if x < length - SMALLEST_PIECE * long), length]
+        for i, (left, right) in enumerate(pairwise(ends)):
+            name = f"unit_{course}_{i}"
+            level = course * high, (course + 1) * high
+            parts = {name: (left, right)}
+            if halved and math.isclose(right - left, long):
+                middle = 0.5 * (left + right)
+                parts = {f"{name}a": (left, middle), f"{name}b": (middle, right)}
+            polygons += [rectangle(*ends, *level, density, thickness, False, part) for part, ends in parts.items()]
+    return polygons
+
+
+def between_beams(units: Sequence[Polygon]) -> list[Polygon]:
+    """Units of a wall between a base and a beam, both fixed, see `Masonry.shear_wall`."""
+    corners = np.concatenate([unit.corners for unit in units])
+    (left, low), (right, high) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    deep, beyond, thickness = DEEP_BEAM * (right - left), BEYOND_BEAM * (right - left), units[0].length
+    base = rectangle(left - beyond, right + beyond, low - deep, low, 2000.0, thickness, True, "base")
+    beam = rectangle(left - beyond, right + beyond, high, high + deep, 2000.0, thickness, True, "beam")
+    return [base, *units, beam]

@@ -1,0 +1,294 @@
+"""Blocks of masonry that is built often, in space: a box, a column, a dome, and a facade with return walls."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ....quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
+from ...wall.section import Opening
+from ..blocks.polygon import Polygon
+from ..blocks.polyhedron import Polyhedron
+from .in_plane import MOST_BLOCKS, SMALLEST_PIECE, Ends, extent_of_ground, required_ends, required_unit, rings_of
+
+WHOLE = 1e-6
+"""How far edges that are to coincide may lie apart, over the unit [-]."""
+SLENDEREST = 100.0
+"""Height of a drum over its width at most, and the other way round [-]: a hundred sides are still told apart."""
+
+
+def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
+    """Fixed ground under what stands on it between two corners x, y, z [m]."""
+    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    wide = (high - low)[:2]
+    beyond, depths = np.array([extent_of_ground(each, high[2] - low[2]) for each in wide]).T
+    deep = float(depths.max())
+    middle = 0.5 * (low + high)[:2]
+    return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
+
+
+def box_on_ground(size: ArrayLike, density: float) -> list[Polyhedron]:
+    """The ground and a box on it, see `Masonry.box`."""
+    extents = require_array("size", size, (3,))
+    block = Polyhedron.box(extents, (0.0, 0.0, 0.5 * float(extents[2])), density, name="block")
+    return [ground_below(block.corners.min(axis=0), block.corners.max(axis=0)), block]
+
+
+def column_of(width: Ends, height: float, drums: int, sides: int, density: float) -> list[Polyhedron]:
+    """The ground and prismatic drums on it, see `Masonry.column`."""
+    ends = required_ends("width", width, 1e-2, 100.0)
+    height = require_within("height", height, 1e-2, 1e3, "m")
+    drums, sides = require_whole("drums", drums, 1, 1000), require_whole("sides", sides, 3, 100)
+    angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
+    for wide in ends:
+        if not 1 / SLENDEREST <= (slender := height / (drums * wide)) <= SLENDEREST:
+            raise ValueError(
+                f"height is {height:g} m for {drums} drums {wide:g} m wide: a drum is {slender:.3g} times as high as "
+                f"wide; the valid range is [{1 / SLENDEREST:g}, {SLENDEREST:g}]"
+            )
+    ring = 0.5 / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
+    levels, widths = np.linspace(0.0, height, drums + 1), np.linspace(*ends, drums + 1)
+    blocks = [ground_below((*(max(ends) * ring.min(axis=0)), 0.0), (*(max(ends) * ring.max(axis=0)), height))]
+    for i in range(drums):
+        vertices = [(*(widths[j] * at), levels[j]) for j in (i, i + 1) for at in ring]
+        blocks.append(Polyhedron(vertices, density, name=f"drum_{i}"))
+    return blocks
+
+
+def dome_of(radius: float, thickness: Ends, lunes: int, hoops: int, oculus: float, density: float) -> list[Polyhedron]:
+    """The ground and the voussoirs of a hemisphere on it, see `Masonry.dome`."""
+    lunes, hoops = require_whole("lunes", lunes, 4, 360), require_whole("hoops", hoops, 1, 360)
+    oculus = require_within("oculus", oculus, 0.01, 1.5, "rad")
+    if lunes * hoops >= MOST_BLOCKS:
+        raise ValueError(f"lunes = {lunes} times hoops = {hoops} is outside the valid range up to {MOST_BLOCKS}")
+    inner, outer = rings_of(radius, thickness, 0.1, np.arange(hoops + 1) / hoops)
+    polar, around = np.linspace(0.5 * math.pi, oculus, hoops + 1), 2 * math.pi * np.arange(lunes + 1) / lunes
+    sines, levels = np.sin(polar), np.append(0.0, np.cos(polar[1:]))
+    rays = sines[:, None, None] * np.column_stack([np.cos(around), np.sin(around)])
+    directions = np.dstack([rays, np.broadcast_to(levels[:, None], rays.shape[:2])])  # (hoops + 1, lunes + 1, 3)
+    directions[:, -1] = directions[:, 0]
+    wide = float(outer.max())
+    blocks = [ground_below((-wide, -wide, 0.0), (wide, wide, wide))]
+    faces = np.stack([face[:, None, None] * directions for face in (inner, outer)])
+    for j in range(hoops):
+        for i in range(lunes):
+            corners = faces[:, j : j + 2, i : i + 2].reshape(8, 3)
+            blocks.append(Polyhedron(corners, density, name=f"voussoir_{j}_{i}"))
+    return blocks
+
+
+ROUNDED = 1 - 1e-9
+"""Factor on the least size of a wall, so that rounding does not refuse it [-]."""
+RETURNS = {"both": (True, True), "left": (True, False), "right": (False, True), "none": (False, False)}
+"""Whether there is a return wall at the left, where y is negative, and at the right end of a facade."""
+Rectangle = tuple[float, float, float, float]
+"""Part of the face of a wall: from y to y, and from z to z [m]."""
+
+
+class Walls(NamedTuple):
+    """Measures of a facade and of the return walls behind it, with units that are made to fit [m].
+
+    Args:
+        length, depth, thickness: of the facade, of the return walls from the face of the facade, and of both.
+        unit, behind: length of a unit of the facade and of the return walls.
+        high: height of a course.
+        courses, gable: how many courses the walls have, and the facade above them.
+        sides: whether there is a return wall at the left and at the right.
+    """
+
+    length: float
+    depth: float
+    thickness: float
+    unit: float
+    behind: float
+    high: float
+    courses: int
+    gable: int
+    sides: tuple[bool, bool]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Length of the corners at the left and at the right, where a return wall and the facade take turns [m]."""
+        return self.thickness * self.sides[0], self.thickness * self.sides[1]
+
+    def span(self, course: int) -> tuple[float, float]:
+        """Where a course of the facade begins and ends [m]. In every second course the return walls come through."""
+        shorter = course % 2 if course < self.courses else course - self.courses + self.courses % 2
+        left, right = (end + 0.5 * (shorter - 1) * self.unit if shorter else 0.0 for end in self.ends)
+        return left - 0.5 * self.length, 0.5 * self.length - right
+
+    def heads(self, course: int) -> list[float]:
+        """Where the head joints of a course of the facade are [m]: half a unit beside those below."""
+        first = self.ends[0] - 0.5 * self.length + (1.0 if course % 2 else 0.5) * self.unit
+        return np.arange(first, 0.5 * self.length, self.unit).tolist()
+
+    def behind_ends(self, course: int) -> list[float]:
+        """Where the blocks of a course of a return wall end, from the face of the facade inwards [m]."""
+        first = self.thickness + (0.5 if course % 2 else 1.0) * self.behind
+        heads = np.arange(first, self.depth - WHOLE * self.behind, self.behind).tolist()
+        return [0.0 if course % 2 else self.thickness, *heads, self.depth]
+
+
+def walls_of(
+    length: float,
+    height: float,
+    depth: float,
+    unit: tuple[float, float],
+    *,
+    thickness: float | None,
+    returns: str,
+    gable: int,
+) -> Walls:
+    """Measures of a facade, checked, see `Masonry.facade`."""
+    long, high = required_unit(unit)
+    if not isinstance(returns, str) or returns not in RETURNS:
+        raise ValueError(f"returns = {spelt(returns)} is not one of {', '.join(RETURNS)}")
+    sides = RETURNS[returns]
+    t = 0.5 * long if thickness is None else require_within("thickness", thickness, 1e-2, 10.0, "m")
+    corners = t * sum(sides)
+    length = require_within("length", length, (corners + long) * ROUNDED, 1e3, "m")
+    height = require_within("height", height, high * ROUNDED, 1e3, "m")
+    depth = require_within("depth", depth, (t + 0.5 * long) * ROUNDED, 1e3, "m") if any(sides) else t
+    units, courses = round((length - corners) / long), round(height / high)
+    halves = max(round(2 * (depth - t) / long), 1)
+    gable = require_whole("gable", gable, 0, units + 1 - courses % 2)
+    if (courses + gable) * (units + 1) + courses * (halves // 2 + 1) * sum(sides) >= MOST_BLOCKS:
+        raise ValueError(f"length, height and depth need more units than {MOST_BLOCKS}; give larger units")
+    fitted, behind = (length - corners) / units, 2 * (depth - t) / halves
+    return Walls(length, depth, t, fitted, behind, height / courses, courses, gable, sides)
+
+
+def facade_of(
+    walls: Walls, openings: Sequence[tuple[float, Opening]], density: float, ground: Polyhedron | None
+) -> list[Polyhedron]:
+    """The ground, and a facade and its return walls on it, see `Masonry.facade`."""
+    holes, lintels = _holes(openings, walls)
+    half, top = 0.5 * walls.length, (walls.courses + walls.gable) * walls.high
+    if ground is None:
+        ground = ground_below((-walls.depth, -half, 0.0), (0.0, half, top))
+    blocks, names = [ground], Counter[str]()
+
+    def lay(name: str, x: tuple[float, float], face: Rectangle) -> None:
+        low, high = (x[0], face[0], face[2]), (x[1], face[1], face[3])
+        corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+        names[name] += 1
+        again = "" if names[name] == 1 else chr(ord("a") + names[name] - 1)
+        blocks.append(Polyhedron(corners, density, name=name + again))
+
+    for course in range(walls.courses + walls.gable):
+        z = course * walls.high, (course + 1) * walls.high
+        over = [face for face in lintels if z[0] * (1 - WHOLE) <= face[2] < z[1] * (1 - WHOLE)]
+        for face in sorted([*over, *_pieces(walls, course, [*holes, *lintels])]):
+            lay(f"facade_{course}_{int((face[0] + half) / (0.5 * walls.unit) + 0.01)}", (-walls.thickness, 0.0), face)
+        if course < walls.courses:
+            for side, y in (("left", (-half, walls.thickness - half)), ("right", (half - walls.thickness, half))):
+                if walls.sides[side == "right"]:
+                    for i, (front, back) in enumerate(pairwise(walls.behind_ends(course))):
+                        lay(f"{side}_{course}_{i}", (-back, -front), (*y, *z))
+    return blocks
+
+
+def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[list[Rectangle], list[Rectangle]]:
+    """The openings, and the lintels over them: up to a bed joint, half a course high or more."""
+    if not isinstance(openings, Sequence) or isinstance(openings, str):
+        raise TypeError(f"openings = {shown(openings)} is not a sequence of (y, Opening)")
+    holes: list[Rectangle] = []
+    lintels: list[Rectangle] = []
+    for i, pair in enumerate(openings):
+        if not isinstance(pair, tuple | list) or len(pair) != 2:
+            raise TypeError(f"openings[{i}] = {shown(pair)} is not (y, Opening)")
+        y, opening = require_real(f"openings[{i}], y", pair[0]), pair[1]
+        require_kind(f"openings[{i}]", opening, Opening)
+        if opening.round:
+            raise ValueError(f"openings[{i}] is round, and blocks are convex: give the rectangle that is left open")
+        left, right = y - 0.5 * opening.width, y + 0.5 * opening.width
+        top = walls.high * math.ceil(opening.head / walls.high + 0.5 - WHOLE)
+        bearing = 0.5 * walls.unit
+        _require_inside(i, (left - bearing, right + bearing, opening.sill, top), walls)
+        for k, (hole, lintel) in enumerate(zip(holes, lintels, strict=True)):
+            near = WHOLE * walls.unit
+            beside = left - bearing > lintel[1] - near or right + bearing < lintel[0] + near
+            if not beside and opening.sill < lintel[3] - near and hole[2] < top - near:
+                raise ValueError(f"openings[{i}] and openings[{k}], or the lintels over them, overlap")
+        holes.append((left, right, opening.sill, opening.head))
+        lintels.append((left - bearing, right + bearing, opening.head, top))
+    return holes, lintels
+
+
+def _require_inside(i: int, taken: Rectangle, walls: Walls) -> None:
+    """A ValueError says where an opening with its lintel does not lie within the courses that it cuts."""
+    left, right, sill, top = taken
+    near = WHOLE * walls.unit
+    if top > (walls.courses + walls.gable) * walls.high + near:
+        raise ValueError(f"openings[{i}] has no course above it for its lintel, which ends at {top:g} m")
+    for course in range(int(sill / walls.high + WHOLE), round(top / walls.high)):
+        first, last = walls.span(course)
+        if left < first - near or right > last + near:
+            raise ValueError(
+                f"openings[{i}] with its lintel reaches from y = {left:g} to {right:g} m; the valid range in course "
+                f"{course} is {first:g} to {last:g} m"
+            )
+
+
+def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Rectangle]:
+    """Units of a course of the facade, cut where openings and lintels are."""
+    (first, last), low, high = walls.span(course), course * walls.high, (course + 1) * walls.high
+    near, least = WHOLE * walls.unit, SMALLEST_PIECE * (1 - WHOLE)
+    cutting = [hole for hole in holes if hole[2] < high - near and hole[3] > low + near]
+    edges = [edge for hole in cutting for edge in hole[:2] if first + near < edge < last - near]
+    cuts = sorted({first, *edges, last})
+    cuts = [cut for i, cut in enumerate(cuts) if i == 0 or cut > cuts[i - 1] + near]
+    whole: list[Rectangle] = []
+    for left, right in pairwise(cuts):
+        middle, start = 0.5 * (left + right), low
+        above = sorted((hole[2:] for hole in cutting if hole[0] < middle < hole[1]), key=lambda z: z[0])
+        for sill, head in [*above, (high, high)]:
+            if sill > start + near:
+                grown = [k for k, part in enumerate(whole) if part[1:] == (left, start, sill)]
+                part = (whole.pop(grown[0])[0] if grown else left, right, start, sill)
+                whole.append(part)
+            start = max(start, head)
+    pieces = []
+    for left, right, start, end in whole:
+        if right - left < least * walls.unit or end - start < least * walls.high:
+            raise ValueError(
+                f"openings leave a piece of {right - left:.3g} x {end - start:.3g} m at y = {left:g} m in course "
+                f"{course}; the valid range begins at {SMALLEST_PIECE} of a unit, {walls.unit:.4g} x {walls.high:.4g} m"
+            )
+        inner = [
+            head for head in walls.heads(course) if left + least * walls.unit <= head <= right - least * walls.unit
+        ]
+        pieces += [(one, other, start, end) for one, other in pairwise([left, *inner, right])]
+    return pieces
+
+
+def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: int) -> list[Polyhedron]:
+    """Rectangles of a wall of the plane, its base and beam, as boxes in space, see `Masonry.wallette`."""
+    leaves, headers = require_whole("leaves", leaves, 1, 10), require_whole("headers", headers, 0, 1000)
+    middle = 0.5 * float(blocks[0].corners[:, 0].min() + blocks[0].corners[:, 0].max())
+    boxes = []
+    for block in blocks:
+        (left, low), (right, high) = block.corners.min(axis=0).tolist(), block.corners.max(axis=0).tolist()
+        name, thick = str(block.name), block.length
+        deep, count, names = [(0.0, thick)], 1, [name]
+        if block.fixed:
+            deep = [(-thick, 2 * thick)]
+        elif headers and (int(name.split("_")[1]) + 1) % headers == 0:
+            count = max(1, round(2 * (right - left) / unit))
+            names = [f"{name}{'abcdefgh'[i]}" for i in range(count)] if count > 1 else names
+        elif leaves > 1:
+            faces = np.linspace(0.0, thick, leaves + 1).tolist()
+            deep, names = list(pairwise(faces)), [f"{name}_{i}" for i in range(leaves)]
+        along = list(pairwise(np.linspace(left, right, count + 1).tolist()))
+        spans = [(x, y) for x in deep for y in along]
+        for part, ((front, back), (a, b)) in zip(names, spans, strict=True):
+            size = back - front, b - a, high - low
+            centre = -0.5 * (front + back), 0.5 * (a + b) - middle, 0.5 * (low + high)
+            boxes.append(Polyhedron.box(size, centre, block.density, block.fixed, part))
+    return boxes

@@ -1,0 +1,1 @@
+"""Blocks from files: drawings, meshes and models of COMPAS."""

@@ -1,0 +1,94 @@
+"""Joints as objects: dry ones, and ones with mortar."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import Annotated, Any
+
+from ....quantities import Within, keep_declared, require_kind
+from .bond import Bond
+
+Properties = dict[str, Any]
+"""What a joint has, by the keywords of `Masonry`."""
+
+
+@dataclass(frozen=True, repr=False)
+class Dry:
+    """A dry joint: it presses and rubs, and never pulls.
+
+    A contact line of the joint is a spring and a dashpot along the normal, and Coulomb friction along the face.
+
+    Args:
+        k_n: normal stiffness [N/m3], 1e4 to 1e14. `joint_stiffness` and `layered_stiffness` compute it from moduli.
+        friction: coefficient of friction [-], 0 to 10.
+        xi: damping ratio [-], 0 to 100. The dashpot of a line is c = (2 xi / omega) k, the stiffness-proportional
+            damping of distinct-element codes.
+        k_s: shear stiffness [N/m3], 1e4 to 1e16, for `solve_explicit`. None lets the joint stick rigidly, up to its
+            friction, as joints always do in MuJoCo.
+        frequency: omega [rad/s], 1e-3 to 1e9; None takes the lowest natural frequency of the masonry, see `Masonry`.
+        points: contact lines, 2 to 1000, in space 2 to 50, see `Masonry`. All joints of masonry have as many.
+
+    Raises:
+        TypeError, ValueError: for what is not a number, or lies outside its range.
+
+    Examples:
+        >>> mr.Masonry.arch(radius=5.0, thickness=0.9, joints=mr.Dry(k_n=1e9, friction=0.6)).k_n
+        1000000000.0
+    """
+
+    k_n: Annotated[float, Within(1e4, 1e14, "N/m3")] = 1e10
+    friction: Annotated[float, Within(0, 10)] = 0.7
+    xi: Annotated[float, Within(0, 100)] = 0.05
+    k_s: Annotated[float | None, Within(1e4, 1e16, "N/m3")] = None
+    frequency: Annotated[float | None, Within(1e-3, 1e9, "rad/s")] = None
+    points: Annotated[int, Within(2, 1000, whole=True)] = 2
+
+    def __repr__(self) -> str:
+        numbers = ((each.name, getattr(self, each.name)) for each in fields(self))
+        return f"Dry({', '.join(f'{name}={value:g}' for name, value in numbers if value is not None)})"
+
+    def __post_init__(self) -> None:
+        keep_declared(self)
+
+    @property
+    def properties(self) -> Properties:
+        """The keywords of `Masonry` that stand for it."""
+        return {**vars(self), "bond": None}
+
+
+@dataclass(frozen=True, repr=False)
+class Mortar:
+    """A mortared joint: a dry one with a bond, which pulls and holds along the face until it breaks.
+
+    Args:
+        dry: the joint without its bond, with `k_s` and three `points` or more. Five or more follow a crack.
+        bond: what the mortar holds, see `Bond`. The named ones of `BONDS` have their sources.
+
+    Raises:
+        TypeError, ValueError: for another kind, or a bond that the springs of the joint cannot have: of two lines,
+            without k_s, with a residual friction above that of the joint, or whose crushing softens faster than the
+            joint springs back.
+
+    Examples:
+        >>> bed = mr.Dry(k_n=2.5e9, friction=0.75, k_s=2.5e9, points=5)
+        >>> mr.Mortar(bed, mr.Bond(tension=0.2e6, cohesion=0.3e6, opening_energy=13.0, slip_energy=130.0))
+        Mortar(Dry(k_n=2.5e+09, friction=0.75, xi=0.05, k_s=2.5e+09, points=5), Bond(tension=200000, cohesion=300000))
+    """
+
+    dry: Dry
+    bond: Bond
+
+    def __repr__(self) -> str:
+        return f"Mortar({self.dry!r}, Bond(tension={self.bond.tension:g}, cohesion={self.bond.cohesion:g}))"
+
+    def __post_init__(self) -> None:
+        require_kind("dry", self.dry, Dry)
+        require_kind("bond", self.bond, Bond)
+        dry = self.dry
+        self.bond.require_fit("the joint", dry.k_n, math.inf if dry.k_s is None else dry.k_s, dry.friction, dry.points)
+
+    @property
+    def properties(self) -> Properties:
+        """The keywords of `Masonry` that stand for it."""
+        return {**self.dry.properties, "bond": self.bond}

@@ -1,0 +1,112 @@
+"""The law of a joint: what a contact pushes, what its face holds, and what it stores.
+
+A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit steps and their ledger, the search for the
+pose of rest and limit analysis all take the law from here. MuJoCo has the same law in its rows, see `engine.rows`.
+
+The spring along the normal is linear. `secant_stiffness`, `equivalent_stiffness`, `largest_stiffness`, `depth_of_force`
+and `depth_of_energy` say so, and nothing else in explicit steps does: another spring is another text of these five.
+
+A row is anything with these numbers by name: a row of compiled steps, or a `Law`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ....compiled import compiled, inlined
+from ....quantities import Array, Flags
+
+
+class Law(NamedTuple):
+    """The numbers of the law.
+
+    Args:
+        k, c: spring and dashpot along the normal [N/m, N s/m].
+        k_s: spring along the face [N/m].
+        friction: coefficient of friction [-].
+    """
+
+    k: Any = 0.0
+    c: Any = 0.0
+    k_s: Any = 0.0
+    friction: Any = 0.0
+
+
+@inlined
+def secant_stiffness(row: Any, depth: float) -> Any:
+    """Force of the spring along the normal over its depth [N/m], at a depth [m]."""
+    return row.k
+
+
+@inlined
+def equivalent_stiffness(row: Any, depth: float) -> Any:
+    """Stiffness of the linear spring that holds the same energy at a depth [N/m]."""
+    return row.k
+
+
+@inlined
+def largest_stiffness(row: Any) -> Any:
+    """Largest stiffness of the spring along the normal for which steps are short enough [N/m]."""
+    return row.k
+
+
+@inlined
+def depth_of_force(row: Any, factor: float, depth: float) -> float:
+    """Depth at which the spring along the normal has a multiple of the force that it has at some depth [m]."""
+    return factor * depth
+
+
+@inlined
+def depth_of_energy(row: Any, factor: float, depth: float) -> float:
+    """Depth at which the spring along the normal holds a multiple of the energy that it holds at some depth [m]."""
+    return math.sqrt(factor) * depth
+
+
+@inlined
+def normal_force(row: Any, gap: float, rate: float) -> float:
+    """Force that presses the two sides apart [N], at a gap [m] that grows at a rate [m/s].
+
+    It is that of spring and dashpot while the gap is negative, and never a tension.
+    """
+    return max(-(secant_stiffness(row, -gap) * gap + row.c * rate), 0.0) if gap < 0 else 0.0
+
+
+@inlined
+def shear_limit(row: Any, push: Any) -> Any:
+    """Largest force along the face that holds under a force along the normal [N]."""
+    return row.friction * push
+
+
+@inlined
+def stored(row: Any, gap: float) -> float:
+    """Energy in the spring along the normal [J]."""
+    depth = min(gap, 0.0)
+    energy: float = 0.5 * equivalent_stiffness(row, -depth) * (depth * depth)
+    return energy
+
+
+@inlined
+def stored_along(row: Any, square: float) -> float:
+    """Energy in the spring along the face [J], from the square of its stretch [m2]."""
+    energy: float = 0.5 * row.k_s * square
+    return energy
+
+
+def resting(k: Array, gap: Array, bonded: Flags) -> tuple[Array, Array]:
+    """Force along the normal [N] of contacts at rest, and the energy in their springs [J], shape (m,) each.
+
+    Those that are bonded pull as they push.
+    """
+    force, energy = np.empty(len(gap)), np.empty(len(gap))
+    _resting(k, gap, force, energy)
+    return np.where(bonded, -k * gap, force), np.where(bonded, 0.5 * k * gap * gap, energy)
+
+
+@compiled
+def _resting(k: Array, gap: Array, force: Array, energy: Array) -> None:
+    for i in range(len(gap)):
+        row = Law(k[i], 0.0, 0.0, 0.0)
+        force[i], energy[i] = normal_force(row, gap[i], 0.0), stored(row, gap[i])

@@ -1,0 +1,1 @@
+"""Limit analysis of rigid masonry: whether it stands, and the push that it bears."""

@@ -1,0 +1,164 @@
+"""The push that rigid masonry bears, by limit analysis, and the mechanism in which it fails."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+from scipy.sparse import hstack
+
+from ....quantities import Array
+from ..blocks.joints_in_space import axes_along
+from ..laws.joint_law import Law, shear_limit
+from ..masonry import Masonry
+from .joint_forces import JointForces, joint_forces
+from .limit_state import Programme, states_without_dilatancy
+from .statics import Pulls, bonded, cones, edges_of, method, moving, sizes_of, weight_of
+
+LARGEST = 1e6
+"""Multiplier from which it counts as infinite [-]."""
+BALANCED = 1e-9
+"""Resultant of forces that grow below which they have no direction, over the sum of their components [-]."""
+
+
+@dataclass(frozen=True)
+class Collapse:
+    """How rigid masonry fails under forces that grow.
+
+    Args:
+        multiplier: of the forces that grow, at which the masonry moves [-]; of a horizontal force on all blocks it is
+            the acceleration over g. Infinite where no mechanism gives way to them.
+        direction: unit vector of the horizontal force, shape (2,), in space (3,); zero where only loads grow.
+        moving: names of the blocks that move in the mechanism, none where the multiplier is infinite.
+        motion: velocity of each free block in it, as in `MasonryCase.velocity`, shape (free, 3), in space (free, 6).
+            Under a horizontal force alone the mean along it over the mass of all free blocks is 1 m/s. In general the
+            forces that grow do the work of the weight of all free blocks over 1 m, in each second.
+        forces: of the joints as the masonry begins to move, or None where the multiplier is infinite. Where the joints
+            leave them open, they are one of the choices.
+        others: multipliers of other states at the limit that were found without dilatancy, ascending [-].
+        masonry: the masonry.
+        wedged: names of blocks that stand only by wedging: friction holds them if their joints were pressed together
+            before, and no load on joints without load presses them so. Solvers let them fall.
+        pulls: of the ties among the effects, in their order [N], shape (ties,).
+    """
+
+    multiplier: float
+    direction: Array = field(compare=False)
+    moving: tuple[str, ...]
+    motion: Array = field(compare=False, repr=False)
+    forces: JointForces | None = field(default=None, compare=False, repr=False)
+    others: tuple[float, ...] = ()
+    masonry: Masonry | None = field(default=None, compare=False, repr=False)
+    wedged: tuple[str, ...] = field(default=(), compare=False)
+    pulls: Array | None = field(default=None, compare=False, repr=False)
+
+
+def limit_of(
+    masonry: Masonry,
+    push: Array,
+    grown: Array,
+    applied: Array | float = 0.0,
+    *,
+    associated: bool = True,
+    ties: Pulls | None = None,
+) -> Collapse:
+    """The multiplier at which rigid masonry moves that stands under its weight, and its mechanism.
+
+    Args:
+        masonry: the masonry.
+        push: the unit vector of a horizontal force, or zero, shape (2,), in space (3,).
+        grown: forces that grow and their moments about the centroids of the free blocks [N, N m], shape (free, 3), in
+            space (free, 6).
+        applied: constant ones beside the weight, likewise.
+        associated: whether sliding opens joints.
+        ties: that hold the blocks, or None.
+
+    Raises:
+        ValueError: if no state without dilatancy is found.
+    """
+    weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
+    turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
+    across = axes_along(lines.normal, resultant) if turned else lines.across
+    search, ties = _associated if associated else _without_dilatancy, ties or Pulls.of(masonry)
+    found = search(masonry, weight + np.ravel(applied), grown, across, ties)
+    if found is None:
+        return Collapse(math.inf, push, (), np.zeros_like(grown), masonry=masonry)
+    total, multipliers = float(np.abs(weight).sum()), found.multipliers
+    return Collapse(
+        multipliers[0],
+        push,
+        moving(masonry, found.velocities),
+        (found.velocities / sizes_of(masonry)).reshape(grown.shape),
+        joint_forces(masonry, total * found.lines),
+        multipliers[1:],
+        masonry,
+        pulls=total * found.pulls,
+    )
+
+
+def pushed(masonry: Masonry, push: Array) -> Array:
+    """A force on every free block in proportion to its weight, along a unit vector, as `limit_of` takes it."""
+    weight = weight_of(masonry).reshape(len(masonry.free), -1)
+    force = np.zeros_like(weight)
+    force[:, : len(push)] = np.outer(np.abs(weight).sum(axis=1), push)
+    return force
+
+
+class Found(NamedTuple):
+    """A state at the limit.
+
+    Args:
+        multipliers: of all states found, the least first [-].
+        velocities: of the mechanism, over the size of their block.
+        lines: forces that the contact lines press with, over the weight of all blocks, shape (m, d).
+        pulls: of the ties, likewise, shape (t,).
+    """
+
+    multipliers: tuple[float, ...]
+    velocities: Array
+    lines: Array
+    pulls: Array
+
+
+def _associated(
+    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+) -> Found | None:
+    """The state of associated friction, None where nothing gives way."""
+    sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
+    pressed, lines = cones(masonry, friction, across), masonry.lines
+    pulls, held, ways = bonded(masonry, across)
+    raised, count, end = (grown.ravel() / total / sizes)[:, None], pressed.shape[1], pressed.shape[1] + len(held)
+    highest = np.concatenate([np.full(count, np.inf), held / total, ties.strength / total, [np.inf]])
+    bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
+    prices[-1] = -1.0
+    columns = hstack([pressed, pulls, ties.columns, raised])
+    answer = scipy.optimize.linprog(
+        prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry)
+    )
+    if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
+        return None  # unbounded
+    if answer.status != 0:
+        raise ValueError(f"masonry: the programme for its multiplier has no answer: {answer.message}")
+    shares, limits = (
+        answer.x[:count].reshape(-1, len(lines.k), 1),
+        shear_limit(Law(friction=friction[lines.joint]), 1.0),
+    )
+    forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(across))).sum(axis=0)
+    forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * ways).sum(axis=0)
+    return Found((float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces, answer.x[end:-1])
+
+
+def _without_dilatancy(
+    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+) -> Found | None:
+    """The least state without dilatancy, None where nothing gives way."""
+    programme = Programme.of(masonry, constant, grown, across, ties)
+    states = states_without_dilatancy(programme)
+    if not states:
+        return None
+    multipliers, x = tuple(state.multiplier for state in states), states[0].x
+    pulls = x[programme.pulled : programme.pulled + programme.ties]
+    return Found(multipliers, states[0].p[: programme.unknowns], programme.on_lines(masonry, x), pulls)

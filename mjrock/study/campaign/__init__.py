@@ -1,0 +1,1 @@
+"""Campaigns: many cases, headless, with one row a case in a store."""

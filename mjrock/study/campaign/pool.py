@@ -1,0 +1,137 @@
+"""Worker processes of this machine, by `pebble`, which ends those whose task takes too long and replaces dead ones."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import threading
+import time
+import warnings
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
+from multiprocessing import resource_tracker
+from multiprocessing.context import SpawnContext, SpawnProcess
+from pathlib import Path
+from typing import Any
+
+from pebble import ProcessPool
+from tqdm import tqdm
+
+from .task import Row, Task, carry_out
+from .warning_counter import collect_warnings
+
+CHUNK_SECONDS = 0.5
+"""Work that a worker does before it hands over its rows [s]: long compared with the 1 ms of handing over, and short
+enough to keep the progress bar moving."""
+QUIT = 256
+"""Exit status of a worker that ended with 0, which `pebble` would take for one that it has ended itself."""
+
+
+class Workers:
+    """Processes that carry out tasks, a list at a time. Leaving the `with` statement ends them at once.
+
+    Args:
+        count: how many.
+        limit: how long one list may take [s], or None.
+    """
+
+    def __init__(self, count: int, limit: float | None) -> None:
+        self.limit = limit
+        self.pool = ProcessPool(count, initializer=start_worker, context=_Context())
+
+    def submit(self, tasks: Sequence[tuple[Task, Path | None]]) -> Future[list[Row]]:
+        """The rows of the first tasks; raises whatever pickle does for a task that it cannot take."""
+        found: Future[list[Row]] = self.pool.schedule(serve, (pickle.dumps(list(tasks)),), timeout=self.limit)
+        return found
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.pool.stop()  # type: ignore[no-untyped-call]
+        self.pool.join()
+
+
+class _Worker(SpawnProcess):
+    """A worker process, which Ctrl-C does not reach: the campaign ends it."""
+
+    dead = False
+
+    def start(self) -> None:
+        """Start it."""
+        with _uninterrupted():
+            super().start()
+
+    def is_alive(self) -> bool:
+        """Whether it runs. A death is told at the second look, when `pebble` has read which task was in progress."""
+        told, self.dead = self.dead, not super().is_alive()
+        return not (told and self.dead)
+
+    @property
+    def exitcode(self) -> int | None:
+        """How it ended, see QUIT."""
+        code = super().exitcode
+        return QUIT if code == 0 else code
+
+
+class _Context(SpawnContext):
+    """Starts `_Worker` processes."""
+
+    Process = _Worker
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Start processes to which Ctrl-C does not go, not even while they start."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # it would unblock the signal as it starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def start_worker() -> None:
+    """What a worker process does first. It can then be ended at once, also while compiled code runs."""
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    os.environ["MJROCK_INTERPRET"] = "0"  # many runs: one worker compiles a loop, and the others wait for it
+    tqdm.set_lock(threading.RLock())  # its own is a semaphore, which a process that is killed would leave behind
+    if not sys.warnoptions:
+        warnings.simplefilter("always", UserWarning)  # the campaign counts them
+    threading.Thread(target=_end_with_the_campaign, daemon=True).start()
+
+
+def _end_with_the_campaign() -> None:
+    parent: Any = multiprocessing.parent_process()
+    parent.join()
+    os._exit(1)
+
+
+def serve(content: bytes) -> list[Row]:
+    """The rows of the first of the pickled tasks, as many as are carried out in CHUNK_SECONDS.
+
+    Raises:
+        PicklingError: if the tasks cannot be read here.
+    """
+    try:
+        tasks = pickle.loads(content)
+    except BaseException as error:
+        raise pickle.PicklingError(f"{type(error).__name__}: {error}") from None
+    rows: list[Row] = []
+    end = time.monotonic() + CHUNK_SECONDS
+    for task, history in tasks:
+        warned: list[str] = []
+        with collect_warnings(warned.append):
+            row = carry_out(task, history)
+        row["warned"] = warned
+        rows.append(row)
+        if time.monotonic() > end:
+            break
+    return rows

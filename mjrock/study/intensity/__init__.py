@@ -1,0 +1,1 @@
+"""Intensities that overturn a wall, under one record or many."""

@@ -1,0 +1,1 @@
+"""Slow loading: pushes, push-over curves, limit analysis and the check of a mechanism."""

@@ -1,0 +1,268 @@
+"""The check of a local mechanism on its push-over curve, after the Italian commentary C8.7.1.2.1, clause by clause.
+
+The clauses are those of Circolare 21 gennaio 2019 n. 7. The single rigid block of a case is the mechanism. It stands on
+the ground, or on a floor whose spectrum or motion is the demand, and has no vibration of its own before it opens.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...problem.ground.code_spectrum import SpectrumOfCode
+from ...problem.ground.motion import GroundMotion
+from ...problem.ground.oscillator import SHORTEST
+from ...problem.ground.spectrum import response_spectrum
+from ...problem.masonry.case import require_wall
+from ...problem.wall.case import Case
+from ...problem.wall.ties_on_wall import moment_at_strength
+from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, shown, takes
+from .pushover import pushover
+
+SHARE = {"SLV": 0.4, "SLC": 0.6}
+"""Displacement capacity over that at which the curve ends [-], C8.7.1.2.1.6."""
+PERIOD = {"SLV": 1.68 * math.pi, "SLC": 1.56 * math.pi}
+"""Factor of the equivalent period [-], equations C8.7.1.10 and C8.7.1.11."""
+DAMPING = {"SLV": 0.08, "SLC": 0.10}
+"""Equivalent damping ratio [-], C8.7.1.2.1.8."""
+BEHAVIOUR = 2.0
+"""Behaviour factor q of the linear check [-], C8.7.1.2.1.7."""
+PERIODS = 60
+"""Periods at which the spectrum of a record is looked at, up to the equivalent period."""
+
+Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
+"""A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitState:
+    """One limit state of the non-linear check.
+
+    Args:
+        capacity: spectral displacement that the mechanism may reach [m].
+        period: equivalent period [s].
+        demand: spectral displacement that the ground motion asks for [m].
+    """
+
+    capacity: float
+    period: float
+    demand: float
+
+    @property
+    def ratio(self) -> float:
+        """Capacity over demand [-]: the factor on the ground motion that uses the capacity up."""
+        return self.capacity / self.demand if self.demand > 0 else math.inf
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MechanismCheck:
+    """Every step of the check.
+
+    Args:
+        alpha_0: multiplier that starts the mechanism [-], its ties slack.
+        alpha_tied: the same with its ties at their strength, as forces on the mechanism; None without ties [-].
+        participation: e*, the participating share of the mass [-].
+        confidence_factor: FC [-].
+        d: spectral displacements of the capacity curve [m], shape (n,).
+        a: spectral accelerations [m/s2], shape (n,).
+        d_0: displacement at which the acceleration falls to zero [m].
+        states: the limit states SLV and SLC.
+        peak: peak acceleration of the demand, where the wall stands [m/s2]; None of a displacement spectrum.
+        yielding, breaking: displacement at which each tie yields and breaks [m], by name, of those that do up to d_0.
+    """
+
+    alpha_0: float
+    alpha_tied: float | None
+    participation: float
+    confidence_factor: float
+    d: Array
+    a: Array
+    d_0: float
+    states: dict[str, LimitState]
+    peak: float | None = None
+    yielding: Mapping[str, float] = field(default_factory=dict)
+    breaking: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def a_0(self) -> float:
+        """Acceleration that starts the mechanism [m/s2]; the peak ground acceleration of its damage limit state."""
+        return self._acceleration(self.alpha_0)
+
+    @property
+    def linear(self) -> float:
+        """Peak ground acceleration of the linear check of the SLV with q = 2 [m/s2], the ties slack."""
+        return BEHAVIOUR * self.a_0
+
+    @property
+    def linear_tied(self) -> float | None:
+        """The same with the ties at their strength [m/s2]; None without ties."""
+        return None if self.alpha_tied is None else BEHAVIOUR * self._acceleration(self.alpha_tied)
+
+    @property
+    def linear_ratio(self) -> float | None:
+        """Capacity over demand of the linear check of the SLV [-], with the ties at their strength; None where the peak
+        acceleration of the demand is not known."""
+        if self.peak is None:
+            return None
+        capacity = self.linear if self.linear_tied is None else self.linear_tied
+        return capacity / self.peak if self.peak > 0 else math.inf
+
+    def _acceleration(self, multiplier: float) -> float:
+        """Spectral acceleration of a multiplier [m/s2], equation C8.7.1.8."""
+        return multiplier * GRAVITY / (self.participation * self.confidence_factor)
+
+    def table(self) -> str:
+        """The steps with their clauses, as text."""
+        rows = [
+            ("multiplier alpha_0", f"{self.alpha_0:.4f}", "C8.7.1.1"),
+            ("participating mass e*", f"{self.participation:.4f}", "C8.7.1.5"),
+            ("confidence factor FC", f"{self.confidence_factor:.2f}", "C8.7.1.2.1.3"),
+            ("a_0 = alpha_0 g / (e* FC) [g], SLD", f"{self.a_0 / GRAVITY:.4f}", "C8.7.1.8"),
+            ("linear SLV, q a_0 with q = 2 [g]", f"{self.linear / GRAVITY:.4f}", "C8.7.1.2.1.7"),
+        ]
+        if self.alpha_tied is not None and self.linear_tied is not None:
+            rows.append(("alpha_0, ties at their strength", f"{self.alpha_tied:.4f}", "C8.7.1.1"))
+            rows.append(("linear SLV, ties at their strength [g]", f"{self.linear_tied / GRAVITY:.4f}", "C8.7.1.2.1.7"))
+        if self.peak is not None:
+            rows.append(("peak of the demand, a_g S or a_Z [g]", f"{self.peak / GRAVITY:.4f}", "C8.7.1.2.1.7"))
+            rows.append(("capacity over demand SLV, linear", f"{self.linear_ratio:.2f}", ""))
+        rows.append(("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"))
+        rows += [(f"{tie} yields at d [m]", f"{d:.4f}", "") for tie, d in self.yielding.items()]
+        rows += [(f"{tie} breaks at d [m]", f"{d:.4f}", "") for tie, d in self.breaking.items()]
+        for name, state in self.states.items():
+            gone = [tie for tie, d in self.breaking.items() if d <= state.capacity]
+            broken = f"without {', '.join(gone)}, broken" if gone else ""
+            rows += [
+                (f"d_{name} = {SHARE[name]:.1f} d_0 [m]", f"{state.capacity:.4f}", "C8.7.1.2.1.6"),
+                (f"T_{name} [s]", f"{state.period:.3f}", "C8.7.1.10" if name == "SLV" else "C8.7.1.11"),
+                (f"demand, xi = {DAMPING[name]:.0%} [m]", f"{state.demand:.4f}", "C8.7.1.2.1.8"),
+                (f"capacity over demand {name}", f"{state.ratio:.2f}", broken),
+            ]
+        widths = [max(len(row[i]) for row in rows) for i in range(2)]
+        return "\n".join(f"{what:<{widths[0]}}  {value:>{widths[1]}}  {where}".rstrip() for what, value, where in rows)
+
+    def __repr__(self) -> str:
+        ratios = ", ".join(f"{name} {state.ratio:.2f}" for name, state in self.states.items())
+        return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
+
+
+def mechanism_check(
+    case: Case, demand: Demand | Mapping[str, Demand], *, confidence_factor: float = 1.35
+) -> MechanismCheck:
+    """The kinematic check of a wall as a local mechanism, linear and non-linear, by Circolare 2019 n. 7, C8.7.1.2.1.
+
+    The push-over curve of the rigid wall becomes the capacity curve a(d) of an equivalent oscillator. Its displacement
+    capacities are shares of the displacement at which it ends. The demand is the elastic displacement at an equivalent
+    period: of a code's spectrum its value there, of a record the largest at any period up to it.
+
+    Loads have no mass here, and give no horizontal force. Ties count along the curve with the strength they have until
+    they break. In the linear check they stand twice: slack, as they are where rocking starts, and at their strength, a
+    stabilising force on the mechanism in the equation of virtual work, for ties that are tensioned or have no slack. Of
+    the two conditions of C8.7.1.2.1.6 only the share of d_0 is looked at: whether a beam loses its seat before is for
+    the user. A mechanism on a floor (C8.7.1.2.1.4) takes `spectrum.at_height(...)` or `motion.through_building(...)` as
+    its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known.
+
+    Args:
+        case: the wall and its effects; its release and its motion play no part.
+        demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
+            [m] of a spectrum. It is that of both limit states, or a mapping has one for each, "SLV" and "SLC"; the
+            linear check then takes that of the SLV.
+        confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
+
+    Returns:
+        The `MechanismCheck`, which prints in a line and as a table.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
+
+    Warns:
+        Implausible: for ties that still hold at d_SLC and raise it above d_0 of the wall without them.
+
+    Examples:
+        >>> check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=1.0, soil="A"))
+        >>> str(check).startswith('<MechanismCheck: starts at 0.1')
+        True
+    """
+    require_wall("case", case, "collapse_multiplier")
+    demands = _by_limit_state(demand)
+    severe = demands["SLV"]
+    peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None
+    factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
+    curve = pushover(case)
+    if not math.isfinite(curve.end):
+        raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
+    wall = case.wall
+    weights, heights = _masses(case)
+    first, second = float(weights @ heights), float(weights @ heights**2)
+    participation = first**2 / (float(weights.sum()) * second)
+    moved = wall.pose(curve.rotation)[:, 0]  # of the control point, the centroid
+    d = moved * second / (wall.centroid_height * first)
+    a = curve.multiplier * GRAVITY / (participation * factor)
+    d_0 = float(d[-1])
+    alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
+    yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
+    _warn_of_ties(case, SHARE["SLC"] * d_0, alone, breaking)
+    states = {}
+    for name, share in SHARE.items():
+        capacity = share * d_0
+        period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
+        states[name] = LimitState(capacity, period, _asked(demands[name], period, DAMPING[name]))
+    alpha_0, tied = float(curve.multiplier[0]), None
+    if case.pulls:
+        tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
+    return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking)
+
+
+def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
+    """Warn of ties that still hold at d_SLC, where they raise it above the displacement `alone` at which the curve of
+    the wall without them ends [m]. `breaking` has the displacement at which ties break [m]."""
+    holding = [
+        f"{name} (ultimate = {f'{tie.law.ultimate:g} m' if tie.law.ultimate < math.inf else None})"
+        for name, tie in case.springs.items()
+        if breaking.get(name, math.inf) > capacity
+    ]
+    if holding and capacity > alone:
+        warnings.warn(
+            f"d_SLC = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
+            f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
+            Implausible,
+            stacklevel=3,
+        )
+
+
+def _by_limit_state(demand: Demand | Mapping[str, Demand]) -> Mapping[str, Demand]:
+    """The demand of each limit state."""
+    demands = demand if isinstance(demand, Mapping) else dict.fromkeys(SHARE, demand)
+    if set(demands) != set(SHARE):
+        raise ValueError(f"demand has {', '.join(map(str, demands)) or 'none'}; a mapping needs {' and '.join(SHARE)}")
+    for name, one in demands.items():
+        if not isinstance(one, GroundMotion) and not takes(one, 2):
+            said = f"demand[{name!r}]" if demands is demand else "demand"
+            raise TypeError(f"{said} = {shown(one)} is neither a GroundMotion nor a function S_De(T, xi)")
+    return demands
+
+
+def _masses(case: Case) -> tuple[Array, Array]:
+    """Weights [N] and heights [m] of the wall and of the masses that the case adds to it."""
+    added = [effect for effect in case.effects if effect.mass_added]
+    weights = [case.block.mass, *(effect.mass_added for effect in added)]
+    heights = [case.block.centroid_height, *(effect.height for effect in added)]
+    return GRAVITY * np.array(weights), np.array(heights)
+
+
+def _asked(demand: Demand, period: float, damping: float) -> float:
+    """The displacement that is asked for at a period [m]."""
+    if isinstance(demand, GroundMotion):
+        periods = np.geomspace(min(0.05, period), max(period, SHORTEST), PERIODS)
+        return float(response_spectrum(demand, periods, damping).Sd.max())
+    if isinstance(demand, SpectrumOfCode):
+        return float(demand.displacement(period, damping))
+    try:
+        asked = require_real("demand(T, xi)", demand(period, damping))
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"demand = {shown(demand)} gives no displacement for T, xi: {error}") from None
+    return require_within("demand(T, xi)", asked, 0.0, 1e3, "m")

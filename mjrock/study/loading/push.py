@@ -1,0 +1,491 @@
+"""Slow loading: masonry pushed by an actuator or by a horizontal force that grows, with what it bears after its peak.
+
+The load goes on in pieces, each of which carries on the steps of the one before. A piece in which the forces of inertia
+are above the share that is allowed is made again at half the rate, and after one far below it the rate doubles.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from tqdm import tqdm
+
+from ...distinct.explicit import solve_explicit
+from ...problem.masonry.actuator import LARGEST, Actuator
+from ...problem.masonry.case import MasonryCase
+from ...problem.masonry.effects import laden
+from ...problem.masonry.masonry import Masonry
+from ...problem.wall.effect import Effect
+from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown
+from ...result.response import Response
+from ...result.start import required_start
+from .limit_analysis import horizontal
+
+PIECES, POINTS, SAMPLES = 100, 4, 5
+"""Pieces of a push, points of the curve in each, and samples of a point."""
+SHORTEST = 1e-6
+"""Least displacement of a push [m]."""
+TRIES = 5
+"""How often a piece is made at most, each time at half the rate."""
+HELPS = 0.75
+"""Inertia of a piece over that at twice the rate, above which a lower rate is no help [-]."""
+FIRST = 0.02
+"""Time of the first piece and of the shortest one [s]."""
+QUIET = 0.25
+"""Share of the inertia allowed below which the next piece takes half the time [-]."""
+RISE, LEAST = 0.03, 0.001
+"""Growth of the multiplier beyond all before it in a piece, over the largest, and its least value [-]. A piece in which
+it grows twice as much is cut into halves."""
+CUTS = 3
+"""How often a piece is cut."""
+STIFF = 1e4
+"""Stiffness of what drives all blocks, over their weight divided by the height of the masonry [-]."""
+HIGHEST = 2.5
+"""Largest multiplier of a push [-]."""
+DAMPED = 0.5
+"""Damping ratio of what is driven on an actuator that has no damping of its own [-]."""
+STRIKING = 0.05
+"""Force of inertia over what is borne beyond which a point is part of a blow [-]."""
+OFF = 0.02
+"""Difference of the work under a curve and the energy gained that is warned of, over the largest energy [-]."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Push:
+    """What masonry bears as it is pushed slowly. A point is a mean over its time.
+
+    Args:
+        displacement: of the actuator's point along its direction, or of the centroid of all free blocks along the
+            direction of the force [m], shape (n,).
+        force: what the masonry bears: force of the actuator, or horizontal force over the weight of the free blocks,
+            each less inertia and damping of the motion [N] or [-], shape (n,).
+        inertia: forces of inertia and of the damping of the motion, likewise, shape (n,): under an actuator the rate of
+            the momentum along it, under a direction the growth of the kinetic energy over the displacement.
+        ended: why it stopped, in words.
+        answer: the last piece of the motion, whose `end` carries on.
+        unit: of the force, "N" or "-".
+        energy: potential and elastic energy that the masonry has gained, and what friction, dashpots, bonds and ties
+            have taken, since the push began [J], shape (n,). The work under the curve equals it where the motion is
+            slow.
+    """
+
+    displacement: Array
+    force: Array
+    inertia: Array
+    ended: str
+    answer: Response = field(repr=False)
+    unit: str = "N"
+    energy: Array = field(kw_only=True)
+
+    @property
+    def peak(self) -> float:
+        """The largest force either way [N] or multiplier [-], of points whose force of inertia is up to 5 % of it.
+
+        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry.
+        """
+        return float(np.abs(self.force[self._peak_at]))
+
+    @property
+    def inertia_share(self) -> float:
+        """Root mean square of the forces of inertia over the whole curve, over the peak [-]."""
+        return float(np.sqrt(np.mean(self.inertia**2)) / self.peak)
+
+    @property
+    def _peak_at(self) -> int:
+        """The point of the peak."""
+        borne, inertia = np.abs(self.force) if self.unit == "N" else self.force, np.abs(self.inertia)
+        return int(np.where(inertia <= STRIKING * borne, borne, -1.0).argmax())
+
+    def __repr__(self) -> str:
+        return (
+            f"<Push: {len(self.force)} points to {np.abs(self.displacement).max():.3g} m, peak {self.peak:.4g} "
+            f"{self.unit}, inertia {self.inertia_share:.2%} of it, {self.ended}>"
+        )
+
+
+def push(
+    masonry: Masonry,
+    driver: Actuator | float | ArrayLike,
+    to: float | ArrayLike,
+    *,
+    angle: float | None = None,
+    effects: Sequence[Effect] | Effect = (),
+    inertia: float = 0.01,
+    mass_damping: float = 0.0,
+    local_damping: float = 0.0,
+    falls_to: float = 0.0,
+    start: Any = None,
+) -> Push:
+    """Force and displacement of masonry that is pushed slowly, with the branch on which the force falls.
+
+    An actuator is driven to displacements one after the other, to and fro for a cyclic test. A direction is that of a
+    horizontal force on every block in proportion to its weight. The force is the one that lets the common centroid of
+    the blocks move slowly along the direction, so that its work is what the masonry gains and what is taken in it. It
+    ends before `to` where nothing is borne any more and the masonry would go on by itself.
+
+    Args:
+        masonry: the masonry.
+        driver: the actuator, whose own history plays no part, or the direction: 1 along x, -1 against it, or in space a
+            vector in plan, shape (2,), of any length.
+        to: displacement at which to stop [m], or those at which to turn back and to stop; for a direction one number.
+        angle: of the direction in plan, from x towards y [rad], in space; it takes the place of `driver`.
+        effects: further effects, such as a `Load` that stays.
+        inertia: forces of inertia and of the damping of the motion that are allowed in a piece, root mean square over
+            the largest force so far [-], 1e-4 to 0.5. Where blocks give way at once they are larger at any rate.
+        mass_damping, local_damping: of the motion, see `solve_explicit`.
+        falls_to: share of the largest force so far at which to stop [-], 0 to 1; 0 goes on to the displacement, as a
+            cyclic push has to.
+        start: the `end` of the answer of an earlier push with the same driver.
+
+    Returns:
+        The `Push`: displacement [m] and force [N] or multiplier [-], their `peak`, and the `answer` at the end.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range, or masonry that does not stand.
+
+    Warns:
+        UserWarning: where the motion was not slow: where the work under the curve is not the energy that was gained, or
+            the forces of inertia are above 5 % of the peak.
+    """
+    require_kind("masonry", masonry, Masonry)
+    allowed = require_within("inertia", inertia, 1e-4, 0.5)
+    falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
+    turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
+    require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST, LARGEST, "m")
+    if turns.any():
+        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST, "m")
+    given = _required(masonry, effects, start)
+    options = {"mass_damping": mass_damping, "local_damping": local_damping}
+    if isinstance(driver, Actuator) and angle is None:
+        jack = _damped(driver, _driven_mass(driver, masonry, given))
+        return _pushed(Driven(masonry, given, options, start, jack, turns), allowed, falls_to)
+    if isinstance(driver, Actuator):
+        raise ValueError(f"angle = {shown(angle)} is for a direction; an Actuator has one of its own")
+    actuator = _of_all(masonry, given, horizontal(masonry, driver, angle, "driver"))
+    if len(turns) != 1 or turns[0] <= 0:
+        raise ValueError(f"to = {shown(to)}: a direction goes with one displacement above 0, an Actuator with others")
+    return _pushed(Forced(masonry, given, options, start, actuator, float(turns[0])), allowed, falls_to)
+
+
+def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> tuple[Effect, ...]:
+    """The effects with the numbers of their blocks, where they and a start are what steps take."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Implausible)
+        case = MasonryCase(masonry, 1.0, effects=effects)  # type: ignore[arg-type]
+    if start is not None:
+        required_start(start, case)
+    return case.effects
+
+
+class Piece(NamedTuple):
+    """A piece of a push: its points, its answer, and at its end how far the actuator has gone, how far its spring is
+    pressed, and what was gained."""
+
+    displacement: Array
+    force: Array
+    inertia: Array
+    energy: Array
+    answer: Response
+    level: float
+    stretch: float
+    gained: float
+
+
+def means(values: Array) -> Array:
+    """Means of samples over the time of each point, by the trapezoidal rule."""
+    between = 0.5 * (values[1:] + values[:-1])
+    return np.asarray(between.reshape(POINTS, SAMPLES).mean(axis=1))
+
+
+@dataclass
+class Load:
+    """An actuator that goes on slowly.
+
+    Args:
+        masonry, effects, options, start: see `push`.
+        actuator: its own history plays no part.
+    """
+
+    masonry: Masonry
+    effects: tuple[Effect, ...]
+    options: dict[str, Any]
+    start: Any
+    actuator: Actuator
+    level: float = field(default=0.0, init=False)
+    gained: float = field(default=0.0, init=False)
+    largest: float = field(default=0.0, init=False)
+    unit, weight = "N", 1.0
+
+    def path(self, duration: float) -> tuple[Array, Array]:
+        """Where the actuator goes next: times [s] and displacements from where it is [m], of the same shape."""
+        raise NotImplementedError
+
+    def piece(self, duration: float) -> Piece:
+        """The actuator goes on, in about so much time [s]."""
+        t, path = self.path(duration)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Implausible)  # the motion is that of a piece
+            driven = replace(self.actuator, displacement=(t, path))
+            case = MasonryCase(self.masonry, t[-1], effects=(*self.effects, driven))
+            warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
+            warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
+            spacing = t[-1] / (POINTS * SAMPLES)
+            answer = solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
+        *_, force = answer.actuators.values()  # effects may have others
+        gone = np.interp(answer.t, t, path)
+        stretch, inertia = self.stretched(answer, force, gone), self.inertia(answer, gone)
+        place, gained = self.level + gone - stretch, self._gained(answer, stretch)
+        end = self.level + gone[-1], stretch[-1], gained[-1]
+        return Piece(means(place), means(force) - inertia, inertia, means(gained), answer, *map(float, end))
+
+    def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
+        """How far the spring of the actuator is pressed at the samples [m], without the part of its dashpot."""
+        return force / self.actuator.stiffness
+
+    def inertia(self, answer: Response, gone: Array) -> Array:
+        """Force of inertia and of the damping of the motion along the direction, in the mean of each point [N]."""
+        raise NotImplementedError
+
+    def _gained(self, answer: Response, stretch: Array) -> Array:
+        """What the masonry has gained and what was taken in it at the samples of a piece, see `Push.energy` [J].
+
+        The spring and the dashpot of the actuator have no part in it, nor has the damping that is not in the curve.
+        """
+        ledger, driving = answer.ledger, list(answer.actuators)[-1]
+        assert ledger is not None
+        others = sum((work for name, work in ledger.put_in.items() if name != driving), np.zeros(len(answer.t)))
+        own = ledger.dashpots[driving] + 0.5 * self.actuator.stiffness * stretch**2
+        total = sum(ledger.taken.values(), ledger.potential + ledger.elastic) - others - own - self._slowed(answer)
+        return np.asarray(self.gained + total - total[0])
+
+    def _slowed(self, answer: Response) -> Array:
+        """What damping in proportion to mass has taken at the samples of a piece [J]."""
+        assert answer.ledger is not None
+        power = 2 * self.options["mass_damping"] * answer.ledger.kinetic
+        return np.append(0.0, np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(answer.t)))
+
+    def accept(self, piece: Piece) -> None:
+        """Go on from the end of a piece."""
+        self.start, self.level, self.gained = piece.answer.end, piece.level, piece.gained
+        self.largest = max(self.largest, float(np.abs(piece.force).max()))
+
+    def share(self, piece: Piece) -> float:
+        """Root mean square of the inertia in a piece, over the largest force so far [-]."""
+        most = max(self.largest, float(np.abs(piece.force).max()))
+        return float(np.sqrt(np.mean(piece.inertia**2))) / most
+
+    def next_time(self, duration: float, share: float, allowed: float) -> float:
+        """Time of the next piece [s], from that of the last and its inertia, over the largest force, and what is
+        allowed [-]."""
+        return max(0.5 * duration, FIRST) if share < QUIET * allowed else duration
+
+    def done(self, piece: Piece) -> str:
+        """Why it ends after a piece, or nothing."""
+        raise NotImplementedError
+
+
+@dataclass
+class Driven(Load):
+    """An actuator that goes from one displacement to the next.
+
+    Args:
+        turns: the displacements [m], shape (n,).
+    """
+
+    turns: Array
+
+    def __post_init__(self) -> None:
+        goals = np.concatenate([[0.0], self.turns])
+        share = np.abs(np.diff(goals)) / max(float(np.abs(np.diff(goals)).sum()), 1e-12)
+        legs = [
+            np.linspace(a, b, max(2, math.ceil(PIECES * part) + 1))[1:]
+            for a, b, part in zip(goals[:-1], goals[1:], share, strict=True)
+        ]
+        begun = legs[0][0] * 2.0 ** np.arange(-4, 0)  # the joints close
+        self.levels = list(np.concatenate([begun, *legs]))
+
+    def path(self, duration: float) -> tuple[Array, Array]:
+        """To the next displacement."""
+        return np.array([0.0, duration]), np.array([0.0, self.levels[0] - self.level])
+
+    def inertia(self, answer: Response, gone: Array) -> Array:
+        """The rate of momentum along the direction, with the part of it that is damped away."""
+        mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
+        momentum = (answer.velocity[:, :, : len(way)] @ way) @ mass
+        grown = np.diff(momentum[::SAMPLES]) / np.diff(answer.t[::SAMPLES])
+        return np.asarray(grown + self.options["mass_damping"] * means(momentum))
+
+    def accept(self, piece: Piece) -> None:
+        """Go on to the level after that."""
+        super().accept(piece)
+        del self.levels[0]
+
+    def done(self, piece: Piece) -> str:
+        """At the last level."""
+        return "" if self.levels else f"reached {1e3 * piece.level:.4g} mm"
+
+
+@dataclass
+class Forced(Load):
+    """A horizontal force on every block in proportion to its weight, which drives their common centroid.
+
+    Args:
+        to: displacement of the centroid at which it ends [m].
+    """
+
+    to: float
+    unit = "-"
+
+    def __post_init__(self) -> None:
+        self.weight = weight_of(self.masonry, self.effects)
+        self.least = min(LEAST * self.weight / self.actuator.stiffness, self.to / PIECES)
+        self.mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
+        going = 0.0 if self.start is None else float(self.mass @ (self.start[1][:, : len(way)] @ way) / self.mass.sum())
+        self.speed, self.stretch = max(going, 0.0), math.nan
+        self.step = max(self.least, self.speed * FIRST)
+
+    @property
+    def rise(self) -> float:
+        """Growth of the multiplier in a piece [-]."""
+        return max(RISE * self.largest, LEAST)
+
+    def path(self, duration: float) -> tuple[Array, Array]:
+        """Further by a step, from the speed that there is to that of a step in so much time, evenly."""
+        speed = self.step / duration
+        t = np.linspace(0.0, 2 * self.step / (self.speed + speed), POINTS * SAMPLES + 1)
+        return t, (self.speed + 0.5 * (speed - self.speed) * t / t[-1]) * t
+
+    def piece(self, duration: float) -> Piece:
+        """The piece with multipliers in place of forces, cut where they grow by too much."""
+        piece = self.in_weights(super().piece(duration))
+        for _ in range(CUTS):
+            if self.strikes(piece) or self.grown(piece) <= 2 * self.rise or self.step <= self.least:
+                break
+            self.step = max(0.5 * self.step, self.least)
+            piece = self.in_weights(super().piece(duration))
+        return piece
+
+    def in_weights(self, piece: Piece) -> Piece:
+        """A piece with multipliers in place of forces."""
+        return piece._replace(force=piece.force / self.weight, inertia=piece.inertia / self.weight)
+
+    def strikes(self, piece: Piece) -> bool:
+        """Whether a piece is part of a blow."""
+        return self.share(piece) > STRIKING
+
+    def grown(self, piece: Piece) -> float:
+        """By how much the multiplier gets above all before [-]."""
+        return float(piece.force.max()) - self.largest
+
+    def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
+        """From how far the centroid has moved. One that carries on counts from where the blocks are."""
+        way = self.actuator.way
+        moved = (answer.pose[:, :, : len(way)] @ way) @ self.mass / self.mass.sum()
+        if math.isnan(self.stretch):
+            self.stretch = float(force[0]) / self.actuator.stiffness
+            if self.start is not None:
+                self.level, self.largest = float(moved[0]) + self.stretch, float(force[0]) / self.weight
+        return np.asarray(self.stretch + gone - (moved - moved[0]))
+
+    def inertia(self, answer: Response, gone: Array) -> Array:
+        """The growth of the kinetic energy, with what was damped away, over the displacement of what drives."""
+        assert answer.ledger is not None
+        kinetic = answer.ledger.kinetic + self._slowed(answer)
+        return np.asarray(np.diff(kinetic[::SAMPLES]) / np.diff(gone[::SAMPLES]))
+
+    def accept(self, piece: Piece) -> None:
+        """Go on from the end of a piece, with the step in which the multiplier would grow as it is to."""
+        share = 2.0 if self.strikes(piece) else self.rise / max(self.grown(piece), 1e-9)
+        self.speed = 2 * self.step / piece.answer.t[-1] - self.speed
+        self.step = min(max(self.step * min(max(share, 0.5), 2.0), self.least), self.to / PIECES)
+        super().accept(piece)
+        self.stretch = piece.stretch
+
+    def next_time(self, duration: float, share: float, allowed: float) -> float:
+        """The speed of the centroid grows no faster than the force of inertia that is allowed, half as fast in
+        energy: blocks that turn have more of it."""
+        gained = GRAVITY * allowed * self.largest * self.step if share < QUIET * allowed else 0.0
+        return max(self.step / math.sqrt(self.speed**2 + gained), FIRST)
+
+    def done(self, piece: Piece) -> str:
+        """Where the centroid has moved, nothing gives way, or nothing is borne any more."""
+        if piece.displacement[-1] > self.to:
+            return f"moved by {1e3 * self.to:.4g} mm"
+        if self.strikes(piece):
+            return ""
+        if piece.force[-1] < 0 and self.largest > LEAST:
+            return f"goes on by itself from {1e3 * piece.displacement[-1]:.4g} mm"
+        return f"nothing gives way to {HIGHEST:g}" if piece.force[-1] >= HIGHEST else ""
+
+
+def _pushed(load: Load, allowed: float, falls_to: float) -> Push:
+    """The pieces of a push until one ends it."""
+    points, ended, duration = list[tuple[Array, ...]](), "", FIRST
+    with tqdm(desc="push", delay=3, disable=None, leave=False) as bar:
+        while not ended:
+            piece, share = load.piece(duration), math.inf
+            for _ in range(TRIES - 1):
+                before, share = share, load.share(piece)
+                if share <= allowed or share > HELPS * before:
+                    break
+                duration *= 2
+                piece = load.piece(duration)
+            share = load.share(piece)
+            load.accept(piece)
+            duration = load.next_time(duration, share, allowed)
+            points.append(piece[:4])
+            fallen = float(np.abs(piece.force).max()) < falls_to * load.largest
+            ended = load.done(piece) or (f"fell to {falls_to:.0%} of its peak" if fallen else "")
+            bar.update()
+    displacement, force, inertia, energy = (np.concatenate(part) for part in zip(*points, strict=True))
+    push = Push(displacement, force, inertia, ended, piece.answer, load.unit, energy=energy)
+    warn_if_fast(push, load.weight)
+    return push
+
+
+def warn_if_fast(push: Push, weight: float) -> None:
+    """Warn where a push was not slow. The weight [N] is 1 for forces."""
+    steps = 0.5 * (push.force[1:] + push.force[:-1]) * np.diff(push.displacement)
+    beside = np.cumsum(weight * steps) - (push.energy[1:] - push.energy[0])
+    off = float(np.abs(beside).max() / np.ptp(push.energy)) if np.ptp(push.energy) > 0 else 0.0
+    if off > OFF or push.inertia_share > STRIKING:
+        at = 1e3 * push.displacement[np.abs(push.inertia).argmax()]
+        warnings.warn(
+            f"the push was not slow: forces of inertia are {push.inertia_share:.1%} of the peak, most at {at:.4g} mm, "
+            f"and the work under the curve is up to {off:.1%} beside the energy gained. Blocks that fall or strike "
+            "each other take part in no slow push: end it before they do, or lower inertia",
+            stacklevel=3,
+        )
+
+
+def weight_of(masonry: Masonry, effects: tuple[Effect, ...]) -> float:
+    """Weight of the free blocks and of the masses added to them [N]."""
+    return GRAVITY * float(laden(masonry, effects)[0][list(masonry.free)].sum())
+
+
+def _of_all(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Actuator:
+    """What drives all blocks along a unit vector."""
+    heights = np.concatenate([part.corners[:, -1] for i in masonry.free for part in masonry.blocks[i].parts])
+    weight = weight_of(masonry, effects)
+    return _damped(Actuator(None, None, way, None, STIFF * weight / float(np.ptp(heights))), weight / GRAVITY)
+
+
+def _driven_mass(actuator: Actuator, masonry: Masonry, effects: tuple[Effect, ...]) -> float:
+    """Mass of what an actuator drives [kg]."""
+    if actuator.block is None:
+        return weight_of(masonry, effects) / GRAVITY
+    block = masonry.names.index(actuator.block) if isinstance(actuator.block, str) else actuator.block
+    return masonry.blocks[block].mass
+
+
+def _damped(actuator: Actuator, mass: float) -> Actuator:
+    """An actuator that damps the swing of a mass on it."""
+    if actuator.damping > 0:
+        return actuator
+    return replace(actuator, damping=2 * DAMPED * math.sqrt(actuator.stiffness * mass))

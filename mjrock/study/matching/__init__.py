@@ -1,0 +1,1 @@
+"""Damping that is matched to a restitution, and laws that are calibrated with it."""
