@@ -26,3 +26,9 @@ def test_those_of_a_wall_are_its_peaks_while_it_can_come_back():
     t = np.arange(50) / 50
     reading = Reading(mr.Outcome.AT_REST, "", count=25, peak_times=np.array([0.1, 0.3, 0.7]))
     assert marks_of(reading, SimpleNamespace(t=t, windows=SimpleNamespace(t=t))).tolist() == [0, 5, 15, 24]
+
+
+def test_a_peak_in_the_last_window_is_that_of_the_last_step():
+    t = np.arange(50) / 50
+    reading = Reading(mr.Outcome.AT_REST, "", count=25, peak_times=t[[24]])
+    assert marks_of(reading, SimpleNamespace(t=t, windows=SimpleNamespace(t=t - 0.01))).tolist() == [0, 24]

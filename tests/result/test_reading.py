@@ -35,6 +35,9 @@ def test_the_base_is_displaced_from_where_the_run_began_until_the_duration_is_ov
     assert reading.stats["base_displacement"] == pytest.approx(0.002 * two_sided.duration)
     assert f"{two_sided.duration:.4g} s" in reading.message
     np.testing.assert_allclose(reading.slip, pose[:, 0, 0] / two_sided.block.half_base)
+    assert reading.count == len(t)
+    pose[len(t) // 2 :, 0, 2] = 1.0  # lies
+    assert wall_reading(two_sided, contacts, t, SampledMotion(pose, 0 * pose, np.zeros(len(t)))).count == len(t) // 2
 
 
 def test_a_run_that_ends_early_names_the_blocks_that_went_far():
