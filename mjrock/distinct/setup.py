@@ -75,8 +75,12 @@ class Setup:
     local: float = 0.0
 
     def foresees(self, h: float) -> bool:
-        """Whether dashpots look ahead in steps of h [s]."""
-        return h <= SHORT * self.limit or (self.impacts is not None and self.impacts.look_ahead(h))
+        """Whether dashpots look ahead in steps of h [s].
+
+        Half a step ahead of the velocity, a dashpot is stable in half of the step that it is stable in otherwise.
+        """
+        wanted = self.impacts is not None and self.impacts.look_ahead(h)
+        return h <= SHORT * self.limit or (wanted and h <= 0.5 * self.limit)
 
     @property
     def is_slowed(self) -> bool:

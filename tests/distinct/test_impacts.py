@@ -111,3 +111,12 @@ def test_masonry_with_strong_dashpots_takes_the_step_that_they_ask_for():
     assert not start.foresees(given)
     assert start.foresees(0.2 * start.limit)
     assert setup(blocks, 0.0)[1].foresees(0.25 * start.limit)
+
+
+@pytest.mark.parametrize("share", [0.7, 0.95])
+def test_strong_dashpots_are_stable_up_to_the_limit(share):
+    """A column at rest. Dashpots that look ahead would be stable in half of it, and throw the drums about."""
+    drums = mr.Masonry.column(width=0.6, height=4.8, drums=12, k_n=1e9, k_s=1e9, xi=0.05)
+    limit = mr.solve_explicit(mr.MasonryCase(drums, 1e-3)).stats["stable_timestep"]
+    after = mr.solve_explicit(mr.MasonryCase(drums, 0.05), timestep=share * limit, output_step=0.01)
+    assert np.abs(after.velocity).max() < 1e-12
