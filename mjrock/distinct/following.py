@@ -75,8 +75,8 @@ class Stepping(NamedTuple):
                 "stiffest contacts and the strongest dashpots allow"
             )
         steps, last = max(1, round(output_step / timestep)), max(1, round(duration / timestep))
-        stride = min(steps, intervals(steps * timestep, setup.spacing))
-        return cls(timestep, round(steps / stride), stride, last, last * timestep)
+        every = steps // min(steps, intervals(steps * timestep, setup.spacing))
+        return cls(timestep, every, round(steps / every), last, last * timestep)
 
     @property
     def look(self) -> int:

@@ -140,8 +140,8 @@ def with_stops(scene):
         "k": [1e7] * 3,
         "c": [0.0] * 3,
         "friction": [0.0] * 3,
-        "tension": [0.0] * 3,
-        "cohesion": [0.0] * 3,
+        "k_s": [np.inf] * 3,
+        "area": [0.0] * 3,
         "joint": [2, 2, 3],
         "joints": ("stop", "pin"),
     }

@@ -121,6 +121,18 @@ def test_every_link_of_a_page_leads_somewhere():
     assert offenders == []
 
 
+def test_lines_of_code_in_pages_have_80_columns():
+    """But for XML, which stands as it is in a file."""
+    offenders = [
+        f"{page.name}: {line}"
+        for page in sorted(DOCS.glob("*.md"))
+        for code, _ in blocks(page)
+        for line in code.splitlines()
+        if len(line) > 80 and "<" not in line
+    ]
+    assert offenders == []
+
+
 def test_every_picture_is_in_the_gallery():
     gallery = (DOCS / "gallery.md").read_text(encoding="utf-8")
     shown = set(re.findall(r"\(figures/([\w/]+\.(?:png|gif))\)", gallery))
