@@ -53,7 +53,7 @@ def test_a_campaign(tmp_path):
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.* resamples of 5 groups gave no curve:UserWarning")
 def test_an_incremental_analysis_and_its_fragility(tmp_path):
-    builds = {f"record {i}": lambda scale, i=i: falls(scale * (1 + 0.1 * i)) for i in range(5)}
+    builds = {f"record {i}": lambda scale, i=i: falls(scale * (1 + 0.2 * i)) for i in range(5)}
     found = mr.ida(builds, [4.0, 5.0], tmp_path / "ida.sqlite", workers=1)
     assert np.isfinite(found.peaks[0]).all()
     assert np.isinf(found.peaks[4]).all()
