@@ -57,7 +57,8 @@ def seconds(folder: Path, code: str, **environment: str) -> list[float]:
     """What a program prints that takes the package in a folder [s]."""
     setting = {name: value for name, value in os.environ.items() if not name.startswith(("MJROCK_", "NUMBA_"))}
     setting |= {"PYTHONPATH": str(folder), "PYTHONWARNINGS": "ignore"} | environment
-    done = subprocess.run([sys.executable, "-c", code], env=setting, capture_output=True, text=True, check=True)
+    command = [sys.executable, "-c", code]  # which looks for the package in its folder first
+    done = subprocess.run(command, cwd=folder, env=setting, capture_output=True, text=True, check=True)
     return [float(line) for line in done.stdout.split()]
 
 
