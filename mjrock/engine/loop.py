@@ -154,12 +154,14 @@ def change_of_acceleration(
     for j in range(len(state.change)):
         state.change[j] = memory.acceleration[j] - state.acceleration[j]
         state.acceleration[j] = memory.acceleration[j]
-    whole = kinetic(setting.masses, setting.products, state.change)
+    slid = any_slid(state.sliding)
+    counts = kinetic(setting.masses, setting.products, state.change) if slid else 0.0
     add_change(state.shaken, setting.ground, t, step, -1.0, state.change)
     take_mean(state.shaken, setting.ground, t, step)
     for j in range(len(state.change)):
         state.rate[j] = 0.0 if no_rate else state.change[j] / previous
-    counts = whole if any_slid(state.sliding) else kinetic(setting.masses, setting.products, state.change)
+    if not slid:
+        counts = kinetic(setting.masses, setting.products, state.change)
     return step * step * counts
 
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ..plotting.masonry import blocks
 from ..plotting.sketch import sketch
+from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
@@ -112,8 +113,7 @@ class ReportedWall(Reported):
             said.append(
                 "The wall opens to one side, and no motion is here in both polarities: run the reversed motion too."
             )
-        if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
-            said.append("There is one ground motion: rocking is sensitive, and one record proves little.")
+        said += of_one_motion(motions)
         if not any(response.solver == "MuJoCo" for response in responses):
             said.append(
                 "Rocking theory has no stiffness of the base, and is most often the upper bound of the capacity."
@@ -186,8 +186,7 @@ class ReportedMasonry(Reported):
         if len({bool(response.fallen) for response in responses}) > 1:
             said.append("The responses do not agree on whether blocks fall.")
         motions = [response.case.motion for response in responses if response.case.motion is not None]
-        if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
-            said.append("There is one ground motion: rocking is sensitive, and one record proves little.")
+        said += of_one_motion(motions)
         if not any(response.solver == "explicit" for response in responses):
             said.append("In MuJoCo faces have no end, and blocks that fall meet no others. Explicit steps have both.")
         said.append("A margin depends on k_n and the points of the joints: repeat it with others.")
@@ -200,6 +199,13 @@ class ReportedMasonry(Reported):
     def at_end(self, response: Response, name: str) -> list[Captioned]:
         """The blocks where they are then."""
         return [(drawn(response), f"{name}: the blocks at {response.t[-1]:.4g} s.")]
+
+
+def of_one_motion(motions: Sequence[GroundMotion]) -> list[str]:
+    """What to be careful of where all motions are one, in both polarities or not."""
+    if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
+        return ["There is one ground motion: rocking is sensitive, and one record proves little."]
+    return []
 
 
 def drawn(masonry: Masonry | Response) -> Figure:
