@@ -116,7 +116,7 @@ class ReportedWall(Reported):
         said += of_one_motion(motions)
         if not any(response.solver == "MuJoCo" for response in responses):
             said.append(
-                "Rocking theory has no stiffness of the base, and is most often the upper bound of the capacity."
+                "Rocking theory has no stiffness of the base, and is more often the upper bound of the capacity."
             )
         if self.case.motion is None and not motions:
             said.append("There is no ground motion: this is the motion after a release.")
