@@ -28,7 +28,7 @@ from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
-from .plain.run import simulate_plain
+from .plain.run import Wanted, simulate_plain
 from .run import EngineRun, explained
 from .run_warnings import (
     require_still,
@@ -198,9 +198,8 @@ def simulate(
     state = None if start is None else required_start(start, case)
     with first_answer(simulate, **given):
         if collisions:
-            response = simulate_plain(
-                problem, timestep, output_step=output_step, ledger=ledger, forces=forces, state=state
-            )
+            wanted = Wanted(timestep, output_step, ledger, forces, state)
+            response = simulate_plain(problem, wanted)
             response.stats.update(watch.took())
             return response
         scene = problem.scene(method)

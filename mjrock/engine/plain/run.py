@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -197,16 +197,18 @@ class PlainRun:
         return forces_of(case, case.frames, Gathered(self.t, self.pose, loads, held, pulled))
 
 
-def simulate_plain(
-    problem: Problem,
-    timestep: float | None,
-    *,
-    output_step: float | None,
-    ledger: bool,
-    forces: bool,
-    state: State | None,
-) -> Response:
-    """`simulate` with collisions, whose arguments have been checked but for these.
+class Wanted(NamedTuple):
+    """What is asked of a run, as `simulate` explains it, and the state that it starts from instead of its release."""
+
+    timestep: float | None
+    output_step: float | None
+    ledger: bool
+    forces: bool
+    state: State | None
+
+
+def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
+    """`simulate` with collisions.
 
     Raises:
         ValueError: for a step or a spacing outside its range, or what no plain model has.
@@ -214,13 +216,13 @@ def simulate_plain(
     """
     case = problem.case
     require_plain(case)
-    spacing = required_spacing(output_step, case.duration)
+    spacing = required_spacing(wanted.output_step, case.duration)
     scene = problem.scene()
     warn_if_sheared(scene)
     course = problem.course(scene)
-    if state is not None:
-        course = course.continued(*state)
-    h = plain_timestep(scene, case.duration) if timestep is None else timestep
+    if wanted.state is not None:
+        course = course.continued(*wanted.state)
+    h = plain_timestep(scene, case.duration) if wanted.timestep is None else wanted.timestep
     h = require_within("timestep", h, 1e-9, min(1.0, case.duration), "s")
     require_size("the steps of this run", case.duration / h, "take a longer timestep")
     require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
@@ -230,11 +232,11 @@ def simulate_plain(
     gathers = JointForces(model.pairs.joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:
-        run = PlainRun(model, follow(model.engine(h), course, steps, stride, gathers if forces else None))
+        run = PlainRun(model, follow(model.engine(h), course, steps, stride, gathers if wanted.forces else None))
     except StepError as error:
         raise SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; halve the step") from None
     stats = {"steps": steps, "timestep": h, "resolved": h * scene.highest_frequency, **watch.stepping()}
-    return response_of_plain(run, stats, ledger=ledger, forces=forces)
+    return response_of_plain(run, stats, wanted)
 
 
 def plain_timestep(scene: Scene, duration: float) -> float:
@@ -256,7 +258,7 @@ def require_plain(case: AnyCase) -> None:
             )
 
 
-def response_of_plain(run: PlainRun, settings: dict[str, Any], *, ledger: bool, forces: bool) -> Response:
+def response_of_plain(run: PlainRun, settings: dict[str, Any], wanted: Wanted) -> Response:
     """The response of a run."""
     model, motion = run.of, SampledMotion(run.pose, run.velocity, run.energy)
     elsewhere = bool((run.elastic[:, -1] > 0).any())
@@ -282,8 +284,8 @@ def response_of_plain(run: PlainRun, settings: dict[str, Any], *, ledger: bool, 
         rocking=reading.rocking,
         joints=reading.joints,
         plastic=plastic,
-        ledger=account if ledger else None,
+        ledger=account if wanted.ledger else None,
         stats=reading.stats | {"overlap": overlap, "mujoco": mujoco.__version__} | settings,
         end=End(run.pose[-1].copy(), run.velocity[-1].copy()),
-        kept_forces=run.forces(plastic) if forces else None,
+        kept_forces=run.forces(plastic) if wanted.forces else None,
     )
