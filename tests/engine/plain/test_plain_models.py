@@ -55,11 +55,11 @@ def test_the_text_of_a_wall_is_short_and_its_steps_are_the_run():
 
 
 def test_a_wall_that_overturns_comes_to_lie_on_its_face():
-    """It is followed to the ground: turned by a right angle, its centroid half a thickness above the base. Its face meets
-    the base with the springs of its joint, and sinks in as it lands."""
+    """It is followed to the ground: turned by a right angle, its centroid half a thickness above the base. Its face
+    meets the base with the springs of its joint, and sinks in as it lands."""
     case = mr.Case(WALL, theta0=1.5 * WALL.alpha, duration=3.0, side_stop=False)
     with pytest.warns(UserWarning, match="base and wall lie inside each other by 2"):
-        run = mr.simulate(case, LAW, timestep=1e-3, collisions=True)
+        run = mr.simulate(case, LAW, timestep=3e-4, collisions=True)
     assert run.outcome is mr.Outcome.OVERTURNED
     assert run.theta[-1] == pytest.approx(0.5 * np.pi, abs=1e-4)
     assert WALL.centroid_height + run.pose[-1, 0, 1] == pytest.approx(0.3, abs=1e-3)
@@ -80,7 +80,7 @@ def test_effects_act_as_in_models_of_contact_points(name):
     case = released(effects=EFFECTS[name], duration=0.5)
     plain, points = (mr.simulate(case, LAW, ledger=True, collisions=given) for given in (True, False))
     late = np.interp(plain.t, points.t, points.theta)
-    np.testing.assert_allclose(plain.theta, late, atol=2e-3 * WALL.alpha)
+    np.testing.assert_allclose(plain.theta, late, atol=5e-3 * WALL.alpha)
     for part in ("ties", "dashpots"):
         for of, account in getattr(points.ledger, part).items():
             mine = getattr(plain.ledger, part)[of][-1]
