@@ -52,7 +52,7 @@ TOOLS = (
 STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
 LINKS = (
-    "distinct/links.py",
+    "distinct/kinds/lists.py",
     "distinct/supports.py",
     *(f"distinct/kinds/{name}.py" for name in ("link", "ties", "dampers", "actuators", "constant_forces")),
 )
@@ -82,7 +82,7 @@ OWN = {
     **{f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion") for kind in ("wall", "masonry")},
     "result/forces.py": ("joint_frames", "forces"),
     "distinct/slowing.py": ("push",),
-    "distinct/contacts/bonds.py": ("bonds", "bonded_masonry"),
+    "distinct/kinds/mortar.py": ("bonds", "bonded_masonry"),
     "problem/masonry/laws/bond_law.py": ("bond_law", "bonds", "bonded_masonry"),
     "problem/masonry/laws/bond.py": ("bond_law", "bonds", "first_cracks", "masonry_inputs"),
     "problem/masonry/blocks/compound.py": ("compound", "compound_blocks"),
@@ -121,7 +121,7 @@ OWN = {
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 BY_HAND: dict[str, tuple[str, ...]] = {
-    "distinct/contacts/bonds.py": ("bonds_of_lines",),
+    "distinct/kinds/mortar.py": ("bonds_of_lines",),
     "distinct/search/clipping.py": ("clipping",),
     "distinct/contacts/contact.py": ("contact_lines",),
     "distinct/contacts/faces.py": ("outlines",),
