@@ -68,7 +68,7 @@ def books(system):
 
 def columns(places):
     """Places as columns of numbers, shape (n, 11): the two blocks, where, the normal, gap, share and area."""
-    return np.column_stack([places[name] for name in places.dtype.names])
+    return np.column_stack([places[name] for name in places.dtype.names if name != "sides"])
 
 
 def matrix(d, i):

@@ -244,6 +244,7 @@ def decided(
         "normal_of": lambda _, face: normals[face],
         "across_edges": lambda _, a, b: ((0.0, 0.0, 1.0), across),
         "meet_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
+        "with_whole_sides": lambda solids: solids,
         "clip": lambda _, face, blocks, table, count, room: met.append(("faces", face, blocks)) or count + clipped,
         "pass_by": lambda _, face, blocks, gap, table, count: met.append(("passes", face, blocks, gap)) or count + 1,
     }.items():
@@ -533,9 +534,9 @@ def test_a_corner_of_the_plane_of_any_angle_meets_a_face():
 
 @pytest.mark.parametrize("prism", [False, True])
 def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
-    """A block on one of 1 m and one of 3 m, which are one, and another block beside them."""
-    cut = mr.Compound([box(0, 1, 0, 1), box(1, 4, 0, 1)])
-    blocks = [box(9, 10, 0, 1), box(0.5, 3.5, 1.001, 2), cut, box(-1.001, -0.001, 0.3, 0.6)]
+    """A block on the legs of a U, of 1 m and of 3 m, and another block beside it."""
+    unit = mr.Compound([box(0, 1, 0, 1), box(1.5, 4.5, 0, 1), box(0, 4.5, -1, 0)])
+    blocks = [box(9, 10, 0, 1), box(0.5, 4, 1.001, 2), unit, box(-1.001, -0.001, 0.3, 0.6)]
     if prism:
         blocks = [mr.Compound.prism(b) if isinstance(b, mr.Compound) else mr.Polyhedron.prism(b) for b in blocks]
     pairs, places = found(blocks)
@@ -556,6 +557,8 @@ def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
     )
     edges = whole._among_blocks(pair)  # edges have the share that they have, and no area
     np.testing.assert_array_equal((edges.share, edges.area), [[0.25] * 3, [0.0, 0.0, 2.0]])
-    assert [list(whole.parts_of(i)) for i in range(4)] == [[0], [1], [2, 3], [4]]
-    np.testing.assert_array_equal(whole.between(np.array([2, 1]), np.array([3, 0])), [2 * 5 + 4, 3 * 5 + 4, 1])
-    np.testing.assert_allclose(whole.volumes / whole.volumes[0], [1.0, 2.997, 4.0, 0.3])
+    assert [list(whole.parts_of(i)) for i in range(4)] == [[0], [1], [2, 3, 4], [5]]
+    np.testing.assert_array_equal(
+        whole.between(np.array([2, 1]), np.array([3, 0])), [6 * i + 5 for i in (2, 3, 4)] + [1]
+    )
+    np.testing.assert_allclose(whole.volumes / whole.volumes[0], [1.0, 3.5 * 0.999, 8.5, 0.3])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct.search.solids import Solids, inside_of, solid_of
+from mjrock.distinct.search.solids import Solids, inside_of, sides_of, solid_of, solids_of
 from mjrock.geometry.hull import area_vector
 
 SIDES = {
@@ -47,3 +47,35 @@ def test_faces_of_a_cut_lie_inside(prism):
         ends = [] if prism else [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]]
         np.testing.assert_allclose(solid.normals[inside], [*ends, [way, 0.0, 0.0]], atol=1e-12)
         assert len(inside) == len(solid.faces)
+
+
+def sides_with_parts(block):
+    """Faces of a block that lie on one side, and the corners around that side."""
+    solids, owner, inside = solids_of([block], 0.5), np.zeros(len(block.parts), dtype=int), inside_of(block)
+    about = Solids.about(solids, np.zeros((len(solids), 3)), inside, owner, side=sides_of([block]))
+    found = {}
+    for face, side in enumerate(about.side.tolist()):
+        ring = about.corners[about.around[about.begin[face] : about.begin[face + 1]]]
+        np.testing.assert_allclose(area_vector(ring) @ about.normals[face], np.linalg.norm(area_vector(ring)))
+        found.setdefault(side, []).append(ring)
+    return [rings for rings in found.values() if len(rings) > 1]
+
+
+@pytest.mark.parametrize("prism", [False, True])
+def test_faces_in_one_plane_across_a_cut_lie_on_one_side(prism):
+    """The bottom of an L of three parts; in space its two ends too, of which one cut makes an L, which is no side."""
+    parts = [mr.Polygon([(x, 0), (x + 1, 0), (x + 1, z), (x, z)]) for x, z in ((0, 1), (1, 1), (2, 3))]
+    unit = mr.Compound.prism(mr.Compound(parts)) if prism else mr.Compound(parts)
+    areas = {(round(abs(area_vector(r[0])).max(), 9), len(r), len(r[0])) for r in sides_with_parts(unit)}
+    assert areas == {(3.0, 3, 4), (2.0, 2, 4)}
+    for rings in sides_with_parts(unit):
+        assert all(np.array_equal(ring, rings[0]) for ring in rings)
+
+
+def test_a_face_that_another_part_divides_is_one_side_with_what_goes_on_at_both_ends():
+    """The underside of a T whose flange goes on on both sides, and whose web hides the middle."""
+    boxes = ((0, 1, 2, 3), (1, 4, 2, 3), (4, 6, 2, 3), (2, 3, 0, 2))
+    unit = mr.Compound([mr.Polygon([(a, c), (b, c), (b, d), (a, d)]) for a, b, c, d in boxes])
+    underside = [rings for rings in sides_with_parts(unit) if rings[0][:, 2].max() == rings[0][:, 2].min() == 2]
+    assert [len(rings) for rings in underside] == [3]
+    np.testing.assert_allclose([underside[0][0].min(axis=0), underside[0][0].max(axis=0)], [[0, -0.5, 2], [6, 0.5, 2]])

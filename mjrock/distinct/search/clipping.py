@@ -19,8 +19,11 @@ from ...quantities import Array
 from ..rows import Row, Rows, integers, numbers, vectors
 from .solids import Solids
 
-PLACE = np.dtype([*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area")])
-"""A place: block of the face, other block, where, normal out of the face, gap [m], share, and area of the part [m2]."""
+PLACE = np.dtype(
+    [*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area"), *integers("sides")]
+)
+"""A place: block of the face, other block, where, normal out of the face, gap [m], share, area of the part [m2], and
+number of the pair of sides, see `sides_between`."""
 OUTSIDE = 1e-9
 """Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
 SAME = 1e-6
@@ -63,6 +66,14 @@ def face_towards(solids: Solids, block: int, way: Vector) -> int:
         if cosine > largest:
             best, largest = face, cosine
     return best
+
+
+@inlined
+def sides_between(solids: Solids, faces: tuple[int, int]) -> int:
+    """One number for the sides that two faces lie on."""
+    one, other = solids.side[faces[0]], solids.side[faces[1]]
+    number: int = min(one, other) * len(solids.side) + max(one, other)
+    return number
 
 
 @inlined
@@ -148,7 +159,7 @@ def distance_from(at: Vector, a: Vector, along: Vector) -> float:
 @inlined
 def write_place(place: Row, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
     """Write a place of a face, the first block, and of a point on the other one."""
-    place.face, place.other, place.gap = blocks[0], blocks[1], gap
+    place.face, place.other, place.gap, place.sides = blocks[0], blocks[1], gap, -1
     put(place.at, minus(at, scaled(0.5 * gap, normal)))
     put(place.normal, normal)
 
@@ -222,5 +233,6 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count:
             if count < len(table):
                 meet(solids, faces, blocks, vector(room, i, SPACE.axes), table[count])
                 table[count].share, table[count].area = share, area
+                table[count].sides = sides_between(solids, faces)
             count += 1
     return count

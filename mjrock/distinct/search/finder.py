@@ -25,7 +25,7 @@ from ..rows import Rows, rows
 from .clipping import PLACE, clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
 from .grid import lay_out
 from .pair_law import pair_number
-from .solids import Poses, Solids, inside_of, solids_of
+from .solids import Poses, Solids, inside_of, sides_of, solids_of, with_whole_sides
 
 EDGES = 0.8
 """Overlap along the normal of two edges, over that along the best one of a face, below which the edges meet [-]."""
@@ -133,8 +133,9 @@ class Finder:
         self.volumes = np.add.reduceat([solid.volume for solid in solids], self.first)
         self._rank = ranked([block.fixed for block in blocks], self.volumes, drawn[:, -1], self._half)
         inside = [flags for block in blocks for flags in inside_of(block)]
-        self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
-        most = int(np.diff(self.solids.first).max())
+        axes = (0, 2) if self.flat else SPACE.axes
+        self.solids = Solids.about(solids, centroids, inside, self.owner, axes, sides_of(blocks))
+        most = int(np.diff([*self.solids.first, *self.solids.begin]).max())
         self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 3))
 
     def apart(self) -> Finder:
@@ -160,10 +161,20 @@ class Finder:
         near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs, self._cells)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = rows(PLACE, 2 * count)
-        table = self._table[:count]
-        found = self._in_order(Found(*(table[name].copy() for name in PLACE.names or ())))
+        table, of_parts = self._table[:count], self.number.max() > 1
+        table = self._once(table) if of_parts else table
+        found = self._in_order(Found(*(table[name].copy() for name in (PLACE.names or ())[:-1])))
         found = self._of_the_plane(found) if self.flat else found
-        return found if self.number.max() == 1 else self._among_blocks(found)
+        return self._among_blocks(found) if of_parts else found
+
+    def _once(self, table: Rows) -> Rows:
+        """Places of two sides once, that each pair of parts of their blocks has."""
+        sides, pair = table["sides"], pair_number(table["face"], table["other"], len(self.owner))
+        _, of = np.unique(sides, return_inverse=True)
+        first = np.full(len(table) + 1, np.iinfo(np.int64).max)
+        np.minimum.at(first, of, pair)
+        once: Rows = table[(sides < 0) | (pair == first[of])]
+        return once
 
     def _in_order(self, found: Found) -> Found:
         """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
@@ -316,10 +327,11 @@ def find_pair(
             way, across = across_edges(solids, a, b)
             if across > EDGES * gap:
                 return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
+    whole = with_whole_sides(solids)
     if cells[0] > 1:
-        last = lay_out(solids, face, blocks, cells, table, count, room)
+        last = lay_out(whole, face, blocks, cells, table, count, room)
     else:
-        last = clip(solids, face, blocks, table, count, room)
+        last = clip(whole, face, blocks, table, count, room)
     return last if last > count else pass_by(solids, face, blocks, best, table, count)
 
 

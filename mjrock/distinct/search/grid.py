@@ -29,6 +29,7 @@ from .clipping import (
     next_corner,
     normal_of,
     parted,
+    sides_between,
     turn_at,
     write_place,
 )
@@ -237,4 +238,5 @@ def lay_out(
                     meet(solids, faces, blocks, at, table[number])
                 else:
                     press_at(solids, faces, blocks, at, is_on_edge(grid, i, j), table[number])
+                table[number].sides = sides_between(solids, faces)
     return count + nodes

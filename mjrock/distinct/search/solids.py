@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from ...compiled import compiled_at_once, inlined
+from ...geometry.convex import cleaned
 from ...geometry.frames import SPACE
-from ...geometry.hull import prism
+from ...geometry.graph import components
+from ...geometry.hull import area_vector, prism
 from ...geometry.vectors import Vector, increase, put, vector
-from ...problem.masonry.blocks.compound import AnyBlock, Compound
+from ...problem.masonry.blocks.compound import CLOSE, AnyBlock, Compound
+from ...problem.masonry.blocks.joints_in_space import axes_across
 from ...problem.masonry.blocks.polygon import Polygon
 from ...problem.masonry.blocks.polyhedron import Polyhedron
+from ...problem.masonry.blocks.sides import Side
 from ...quantities import Array, Flags, Integers
 
 
@@ -42,6 +48,9 @@ class Solids(NamedTuple):
         inside: which faces lie inside the block that they are a part of, where nothing meets them, shape (faces,).
         owner: number of the block that each solid is a part of, shape (solids,).
         extent: length of the outline of each face [m], of prisms of the plane without their length, shape (faces,).
+        side: number of the side of its block that each face lies on, see `sides_of`, shape (faces,).
+        around: numbers of the corners around the side of each face, one face after the other.
+        begin: where those of each face begin, and where those of the last end, shape (faces + 1,).
     """
 
     corners: Array
@@ -55,6 +64,9 @@ class Solids(NamedTuple):
     inside: Flags
     owner: Integers
     extent: Array
+    side: Integers
+    around: Integers
+    begin: Integers
 
     @classmethod
     def about(
@@ -64,16 +76,21 @@ class Solids(NamedTuple):
         inside: Sequence[Flags],
         owner: Integers,
         axes: tuple[int, ...] = SPACE.axes,
+        side: Integers | None = None,
     ) -> Solids:
-        """Solids about the centroids of their blocks [m], shape (solids, 3). Outlines are measured along the axes."""
+        """Solids about the centroids of their blocks [m], shape (solids, 3). Outlines are measured along the axes. None
+        says that each face is a side of its own."""
         corner = _begins(block.corners for block in blocks)
         outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
         corners = np.concatenate([block.corners - at for block, at in zip(blocks, centroids, strict=True)])
-        around = [np.diff(corners[[*outline, outline[0]]][:, axes], axis=0) for outline in outlines]
+        edges = [np.diff(corners[[*outline, outline[0]]][:, axes], axis=0) for outline in outlines]
+        normals = np.concatenate([block.normals for block in blocks])
+        side = np.arange(len(outlines)) if side is None else side
+        around = whole_outlines(outlines, side, corners, normals)
         return cls(
             corners,
             corner,
-            np.concatenate([block.normals for block in blocks]),
+            normals,
             _begins(block.normals for block in blocks),
             np.concatenate([block.edges for block in blocks]),
             _begins(block.edges for block in blocks),
@@ -81,7 +98,10 @@ class Solids(NamedTuple):
             _begins(outlines),
             np.concatenate(inside),
             owner,
-            np.array([np.linalg.norm(ways, axis=1).sum() for ways in around]),
+            np.array([np.linalg.norm(ways, axis=1).sum() for ways in edges]),
+            side,
+            np.concatenate(around),
+            _begins(around),
         )
 
     def moved(self, place: Array, change: Array) -> Solids:
@@ -121,6 +141,27 @@ def changed(change: Array, a: Vector) -> Vector:
     )
 
 
+@inlined
+def with_whole_sides(solids: Solids) -> Solids:
+    """The solids whose faces have the outlines of the sides that they lie on."""
+    return Solids(
+        solids.corners,
+        solids.corner,
+        solids.normals,
+        solids.face,
+        solids.ways,
+        solids.way,
+        solids.around,
+        solids.begin,
+        solids.inside,
+        solids.owner,
+        solids.extent,
+        solids.side,
+        solids.around,
+        solids.begin,
+    )
+
+
 @compiled_at_once
 def move(solids: Solids, place: Array, change: Array, moved: Solids) -> None:
     """Write where solids are, see `Solids.moved`."""
@@ -152,6 +193,52 @@ def inside_of(block: AnyBlock) -> list[Flags]:
     ends = np.ones(0 if block.in_space else 2, dtype=bool)
     flags = block.surface.inside if isinstance(block, Compound) else [np.zeros(len(block.sides), dtype=bool)]
     return [np.append(ends, some) for some in flags]
+
+
+def sides_of(blocks: Sequence[AnyBlock]) -> Integers:
+    """A number of the side of its block that each face of each solid lies on, shape (faces,). Faces of parts that lie
+    in one plane across a cut have one number, in space where they make a convex side, as their joints do."""
+    first, same = 0, list[tuple[int, int]]()
+    for block in blocks:
+        insides = inside_of(block)
+        ends, begin = 0 if block.in_space else 2, first + np.cumsum([0, *map(len, insides)])
+        for side in (side for side in block.sides if len(side.parts) > 1):
+            faces = [
+                int(begin[part]) + ends + j
+                for part in side.parts
+                for j, own in enumerate(block.parts[part].sides)
+                if not insides[part][ends + j] and _is_flush(own, side)
+            ]
+            same += pairwise(faces)
+        first = int(begin[-1])
+    return components(same, first) if same else np.arange(first)
+
+
+def _is_flush(own: Side, side: Side) -> bool:
+    """Whether a face of a part lies in the plane of a side."""
+    off = (own.corners - side.corners[0]) @ side.normal
+    return bool(own.normal @ side.normal > 0 and np.abs(off).max() <= 2 * CLOSE)
+
+
+def whole_outlines(outlines: Sequence[Integers], side: Integers, corners: Array, normals: Array) -> list[Integers]:
+    """The outline of the side that each face lies on: its own, or the hull of those of all faces of the side.
+
+    Args:
+        outlines: numbers of the corners around each face.
+        side: number of the side of each, shape (faces,).
+        corners, normals: of all, shape (corners, 3) and (faces, 3).
+    """
+    around = list(outlines)
+    of, counts = np.unique(side, return_counts=True)
+    for number in of[counts > 1]:
+        faces = np.flatnonzero(side == number)
+        points = np.unique(np.concatenate([outlines[face] for face in faces.tolist()]))
+        flat = corners[points] @ axes_across(normals[faces[:1]])[0].T
+        ring = cleaned(flat[scipy.spatial.ConvexHull(flat).vertices], CLOSE)
+        hull = points[np.array([np.hypot(*(flat - at).T).argmin() for at in ring])]
+        for face in faces.tolist():
+            around[face] = hull if area_vector(corners[hull]) @ normals[faces[0]] > 0 else hull[::-1]
+    return around
 
 
 def solid_of(block: Polygon, half: float) -> Solid:
