@@ -170,13 +170,13 @@ EQUIVALENT = {
     },
     "joint_law.py: force[i], energy[i] = normal_force(row, gap[i], 1), stored(row, gap[i])": "no dashpot is read",
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
-    "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardens": (
+    "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardening": (
         "at the peak both are the same"
     ),
     "bond_law.py: if math.hypot(bond.k * (gap + closing), sheared) <= hardened(bond, closing):": (
         "no closing that is tried bears to the last bit what presses"
     ),
-    "bond_law.py: if pressed * pressed + sheared * sheared <= bond.bears / bond.bears:": (
+    "bond_law.py: if pressed * pressed + sheared * sheared <= bond.strength / bond.strength:": (
         "what is not crushed closes by zero in the search, too"
     ),
     "bond_law.py: pressed = bond.k / gap": ("what is not crushed closes by zero in the search, too"),
@@ -240,8 +240,8 @@ EQUIVALENT = {
     "pair_law.py: per_area = per_area * np.append(length / masonry.joints[softest].length / np.ones(4), "
     "np.ones_like(length), 1)": "one multiplies and divides alike",
     "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
-    "bonds.py: if gap <= 0 and bond.bears < math.inf:": "at a gap of zero nothing is crushed",
-    "bonds.py: if gap < 1 and bond.bears < math.inf:": "what is open is not crushed by the law, either",
+    "mortar.py: if gap <= 0 and bond.strength < math.inf:": "at a gap of zero nothing is crushed",
+    "mortar.py: if gap < 1 and bond.strength < math.inf:": "what is open is not crushed by the law, either",
     "contact.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
     "contact.py: if push <= 0 and line.push > 0:": "a push of zero has no friction in this way, too",
     "contact.py: if push < 1 and line.push > 0:": "a push of zero has no friction in this way, too",
