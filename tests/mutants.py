@@ -80,7 +80,7 @@ OWN = {
     "distinct/contacts/touches.py": ("touches_inside_a_step", "books_close"),
     **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py")},
     **{
-        f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion", "test_standing")
+        f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion", "what_stands")
         for kind in ("wall", "masonry")
     },
     "result/forces.py": ("joint_frames", "forces"),
