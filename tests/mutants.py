@@ -79,7 +79,10 @@ OWN = {
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
     "distinct/contacts/touches.py": ("touches_inside_a_step", "books_close"),
     **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py")},
-    **{f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion") for kind in ("wall", "masonry")},
+    **{
+        f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion", "what_stands")
+        for kind in ("wall", "masonry")
+    },
     "result/forces.py": ("joint_frames", "forces"),
     "distinct/slowing.py": ("push",),
     "distinct/kinds/mortar.py": ("bonds", "bonded_masonry"),

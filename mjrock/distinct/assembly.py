@@ -15,7 +15,7 @@ from ..problem.masonry.support import Support
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene
-from .contacts.faces import edges_of, margins, outlines_of_joints
+from .contacts.faces import edges_of, margins
 from .kinds.link import put_on_supports
 from .kinds.lists import no_laws
 from .rows import Rows, joined, kinds, rows
@@ -68,7 +68,7 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
         edges_of(face, origins[block], met)
-        for joint, faces in zip(masonry.joints, outlines_of_joints(masonry), strict=True)
+        for joint, faces in zip(masonry.joints, scene.standing.faces, strict=True)
         for block, face, met in zip((joint.below, joint.above), faces, faces[::-1], strict=True)
     ]
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
