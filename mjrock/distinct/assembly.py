@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,9 @@ from ..problem.masonry.support import Support
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene
-from .contacts.faces import edges_of, margins, outlines_of_joints
+from .contacts.faces import edges_of, margins
 from .kinds.link import put_on_supports
+from .kinds.lists import no_laws
 from .rows import Rows, joined, kinds, rows
 from .supports import moving
 from .system import System
@@ -33,7 +35,7 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
     acting = (), np.zeros(0, dtype=np.int64), Ground.of(None), moving((), d)
-    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), rows(kind.bond, 0), *acting)
+    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), no_laws(d), *acting)
     return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
 
@@ -66,7 +68,7 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
         edges_of(face, origins[block], met)
-        for joint, faces in zip(masonry.joints, outlines_of_joints(masonry), strict=True)
+        for joint, faces in zip(masonry.joints, scene.standing.faces, strict=True)
         for block, face, met in zip((joint.below, joint.above), faces, faces[::-1], strict=True)
     ]
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
@@ -123,9 +125,10 @@ def guided_as(bodies: Rows, others: Rows) -> None:
 
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    tables = ("bodies", "lines", "edges", "ways", "bonds")
-    links = tuple(table._replace(rows=table.rows.copy()) for table in system.links)
-    return system._replace(links=links, **{name: getattr(system, name).copy() for name in tables})
+    tables: dict[str, Any] = {name: getattr(system, name).copy() for name in ("bodies", "lines", "edges", "ways")}
+    for name in ("laws", "links"):
+        tables[name] = tuple(table._replace(rows=table.rows.copy()) for table in getattr(system, name))
+    return system._replace(**tables)
 
 
 def take_grips(lines: Rows, drag: Array) -> None:

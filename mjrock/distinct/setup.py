@@ -22,10 +22,9 @@ from ..scene.explicit_step import SHARE
 from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
 from ..scene.scene import Scene
 from .assembly import copied, guide, moved_by, started, system_of, take_grips
-from .contacts.bonds import bonded
 from .impacts import Impacts
+from .kinds.lists import laws_of, links_of
 from .limit import longest_step
-from .links import links_of
 from .memory import Memory, memory_of, recalled
 from .search.encounters import Encounters
 from .system import System
@@ -147,7 +146,7 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
     step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
-    share, system = step / limit, bonded(system, masonry, scene.contacts.joint)
+    share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
     of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)

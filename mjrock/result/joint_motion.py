@@ -12,8 +12,8 @@ from ..geometry.frames import frames_of, inverse_rotation_change, take_frames
 from ..geometry.kinematics import Meeting, Places, meeting
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.faces_of_joints import faces_of_joints, travels
 from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.standing import MasonryStanding, travels
 from ..problem.masonry.support import Support
 from ..quantities import Array, Flags, Integers
 from ..scene.scene import Scene
@@ -71,7 +71,7 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
         pose: at these times, shape (steps, n nq).
     """
     masonry, points = case.masonry, JointPoints.of(case, scene)
-    slid_off = _slid_off_in_space(masonry) if masonry.in_space else _slid_off_in_plane(masonry)
+    slid_off = _slid_off_in_space(case.standing) if masonry.in_space else _slid_off_in_plane(masonry)
     widths = np.array([each.width for each in masonry.joints])
 
     def look(some: Array, shift: Array) -> JointRecord:
@@ -112,8 +112,8 @@ def _slid_off_in_plane(masonry: Masonry) -> SlidOff:
     return slid_off
 
 
-def _slid_off_in_space(masonry: Masonry) -> SlidOff:
-    widths, faces = np.array([joint.width for joint in masonry.joints]), faces_of_joints(masonry)
+def _slid_off_in_space(standing: MasonryStanding) -> SlidOff:
+    widths, faces = np.array([joint.width for joint in standing.joints]), standing.faces
 
     def slid_off(slid: Array) -> tuple[Array, Flags]:
         far = np.linalg.norm(slid, axis=2)

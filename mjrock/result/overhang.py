@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import scipy
 
-from ..problem.masonry.faces_of_joints import faces_of_joints
-from ..problem.masonry.lines import edge_ends
 from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.standing import MasonryStanding
 from ..quantities import Array, Integers, named
 from .joint_motion import JointRecord
 
@@ -22,20 +21,20 @@ UPRIGHT = 1e-9
 
 
 def past_support(
-    masonry: Masonry, centroids: Array, motion: JointRecord, slips: Callable[[Integers], Array]
+    standing: MasonryStanding, motion: JointRecord, slips: Callable[[Integers], Array]
 ) -> dict[str, float]:
     """How far the weight of each block has passed the edge of the faces that it stands on [m], at most, by its name.
 
     Blocks that stand on horizontal joints alone are looked at. What overhangs as it is drawn counts from there.
 
     Args:
-        masonry: the masonry.
-        centroids: of all blocks with the masses that are added to them [m], shape (blocks, d).
+        standing: the masonry at rest.
         motion: what the joints did.
         slips: from the numbers of some steps, how far the block above each joint has slid on the one below [m], shape
             (steps, joints, d).
     """
-    faces, found = _faces_below(masonry), {}
+    masonry, centroids, found = standing.masonry, standing.centroids, {}
+    faces = [below.corners[:, :-1] for below, _ in standing.faces]
     looks = np.unique(np.linspace(0, len(motion.off) - 1, LOOKS).astype(int))
     for block, beds in _beds(masonry).items():
         weight = centroids[block, :-1]
@@ -75,17 +74,6 @@ def _beds(masonry: Masonry) -> dict[int, list[int]]:
         elif not joint.is_bed and abs(up) > UPRIGHT:
             inclined |= {joint.below, joint.above}
     return {block: on for block, on in beds.items() if block not in inclined}
-
-
-def _faces_below(masonry: Masonry) -> list[Array]:
-    """Corners of the face of the block below each joint in plan [m], shape (corners, d - 1) each."""
-    if masonry.in_space:
-        return [below.corners[:, :2] for below, _ in faces_of_joints(masonry)]
-    return [
-        joint.middle[:1]
-        + np.outer(edge_ends(masonry.polygons[joint.below].sides[joint.sides[0]], joint), joint.along[:1])
-        for joint in masonry.plane_joints
-    ]
 
 
 def _beyond(point: Array, corners: Array) -> float:

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
@@ -53,7 +54,7 @@ def system(d, lines=1, edges=0, still=False):
         lines=rows(kind.line, lines, face=-1, support=-1, k_s=np.inf, margin=np.inf, sense=1.0),
         edges=rows(kind.edge, edges),
         ways=rows(kind.way, (d - 1) * lines),
-        bonds=rows(kind.bond, lines),
+        laws=(Bonds(Bonds.table(d, lines)),),
         links=(),
         guided=np.zeros(0, dtype=np.int64),
         ground=Ground.of(None),

@@ -22,7 +22,6 @@ from ...problem.masonry.laws.joint_law import Law, stored_along
 from ...problem.masonry.lines import free_numbers
 from ...problem.masonry.masonry import Masonry
 from ...quantities import Array, Flags, Integers
-from ..contacts.bonds import holding, released
 from ..rows import chosen, joined, rows, unsound
 from ..supports import surges
 from ..system import Books, System
@@ -203,8 +202,8 @@ class Encounters:
         worn, left = np.zeros(len(met.handed), dtype=bool), np.zeros(self.count, dtype=bool)
         if wears(system, wear):
             worn = wear.leave() & ~met.handed
-            if len(system.bonds):
-                worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
+            for law in system.laws:
+                worn[wear.pairs[: len(law.rows)][law.holding()]] = False
             left[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
         return worn, left
 
@@ -222,8 +221,8 @@ class Encounters:
         lines, sheared = np.asarray(system.lines), in_shear(system)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
-        if len(system.bonds):
-            released(joints, system.bonds, worn)
+        for law in system.laws:
+            law.release(joints[: len(law.rows)], worn[: len(law.rows)])
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
@@ -274,9 +273,9 @@ class Encounters:
 
 
 def in_shear(system: System) -> float:
-    """Energy in the shear springs of all lines and bonds [J]."""
+    """Energy in the shear springs of all lines and of the laws of their joints [J]."""
     energy = 0.0
-    for table in (system.lines, system.bonds):
+    for table in (system.lines, *(law.rows for law in system.laws)):
         sprung = np.asarray(table)[np.isfinite(table["k_s"])]
         energy += float(np.sum(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0))))
     return energy

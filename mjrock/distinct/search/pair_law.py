@@ -23,8 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.hull import area_vector
-from ...problem.masonry.blocks.sides import Side
+from ...geometry.hull import Side, area_vector
 from ...problem.masonry.masonry import Masonry
 from ...quantities import Array, Flags, Integers
 from ..rows import Rows
