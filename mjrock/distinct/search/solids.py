@@ -13,13 +13,12 @@ from ...compiled import compiled_at_once, inlined
 from ...geometry.convex import cleaned
 from ...geometry.frames import SPACE
 from ...geometry.graph import components
-from ...geometry.hull import area_vector, prism
+from ...geometry.hull import Side, area_vector, prism
 from ...geometry.vectors import Vector, increase, put, vector
 from ...problem.masonry.blocks.compound import CLOSE, AnyBlock, Compound
 from ...problem.masonry.blocks.joints_in_space import axes_across
 from ...problem.masonry.blocks.polygon import Polygon
 from ...problem.masonry.blocks.polyhedron import Polyhedron
-from ...problem.masonry.blocks.sides import Side
 from ...quantities import Array, Flags, Integers
 
 

@@ -64,7 +64,7 @@ class PlainModel:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The solids."""
-        return pieces_of(self.problem.case, self.scene)
+        return pieces_of(self.scene)
 
     @cached_property
     def pairs(self) -> Pairs:
@@ -195,7 +195,7 @@ class PlainRun:
         pulled = {name: ties[name].force for name in scene.links.sprung.names}
         pulled |= dict(zip(scene.links.damped.names, np.array([s.pulled for s in self.samples]).T, strict=True))
         loads, held = (np.array([getattr(sample, name) for sample in self.samples]) for name in ("loads", "held"))
-        return forces_of(case, case.frames, Gathered(self.t, self.pose, loads, held, pulled))
+        return forces_of(case, case.standing.frames, Gathered(self.t, self.pose, loads, held, pulled))
 
 
 class Wanted(NamedTuple):
@@ -229,7 +229,7 @@ def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
     require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
     expect(interpreted_seconds(scene, course.duration, spacing))
     model, watch = PlainModel(problem, scene, course), Stopwatch()
-    frames = case.frames
+    frames = case.standing.frames
     gathers = JointForces(model.pairs.joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:
