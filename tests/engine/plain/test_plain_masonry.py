@@ -64,12 +64,14 @@ def test_an_arch_of_hulls_bears_its_weight_with_the_thrust_that_explicit_steps_f
 
 
 def test_a_unit_of_several_parts_meets_with_each():
-    """An L on the ground, both feet of which carry: its weight, and where it acts."""
+    """An L on the ground, both feet of which carry. Its joint has half of its stiffness against turning there, since
+    its middle carries too, so that it sways a little: its mean force is its weight, and acts below its centroid."""
     masonry, weight = mr.Masonry([GROUND, L_BLOCK], k_n=1e9, friction=0.7), L_BLOCK.mass * mr.GRAVITY
-    run = mr.simulate(mr.MasonryCase(masonry, 0.1), **PLAIN)
-    assert run.reactions["ground"][-1] == pytest.approx((0.0, weight), rel=1e-6, abs=1e-4 * weight)
-    assert run.forces.eccentricity[-1, 0] == pytest.approx(L_BLOCK.centroid[0] - masonry.joints[0].middle[0], abs=1e-4)
-    assert np.abs(run.velocity[-1]).max() < 1e-4
+    run = mr.simulate(mr.MasonryCase(masonry, 0.5), **PLAIN)
+    assert run.reactions["ground"][:, 1].mean() == pytest.approx(weight, rel=5e-3)
+    at = (run.forces.eccentricity[:, 0] * run.forces.normal[:, 0]).mean() / run.forces.normal.mean()
+    assert at == pytest.approx(L_BLOCK.centroid[0] - 1.0, abs=0.01)
+    assert run.peak[0] < 1e-3
 
 
 def test_a_support_that_moves_carries_what_stands_on_it():
