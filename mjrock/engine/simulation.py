@@ -156,7 +156,7 @@ def simulate(
         method: the constants of the method, see `mjrock.method`, for studies that vary them.
         collisions: whether MuJoCo finds the contacts itself, between boxes and hulls, so that blocks meet wherever they
             are and run on when they have fallen, see `mjrock.engine.plain`. Steps have one length; None stands for 0.1
-            over the highest frequency of the closed contacts for a wall, and 2 over it for masonry. It does not go with
+            over the highest frequency of the closed contacts for a wall, and 1 over it for masonry. It does not go with
             accuracy, newmark_beta, coulomb and method.
 
     Returns:

@@ -38,7 +38,7 @@ from .pairs import Pairs
 from .pieces import Piece, pieces_of
 from .text import plain_text
 
-RESOLVED, RESOLVED_OF_MANY = 0.1, 2.0
+RESOLVED, RESOLVED_OF_MANY = 0.1, 1.0
 """omega h of the step that is taken where none is asked for, omega the highest frequency of the closed contacts, of one
 body and of several [-] (`scripts/studies/plain_models.py`)."""
 OPEN = 0.01

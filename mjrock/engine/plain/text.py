@@ -116,7 +116,7 @@ def plain_text(
         "  " + element("camera", name="front", pos=place, xyaxes=(1, 0, 0, 0, 0.1, 1), fovy="28"),
         *(f"  {line}" for line in _world(scene, pieces, moved)),
         "</worldbody>",
-        *section("contact", (f"  {line}" for line in _pairs(pieces, pairs, laws))),
+        *section("contact", (f"  {line}" for line in [*_pairs(pieces, pairs, laws), *_apart(moved)])),
         *section("tendon", links(scene)),
         *section("actuator", forces(scene)),
         *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
@@ -188,6 +188,13 @@ def _pairs(pieces: list[Piece], pairs: Pairs, laws: list[dict[str, object]]) -> 
         else:
             yield f"<!-- {_said(pairs, i)} -->"
             yield element("pair", **names, **laws[i])
+
+
+def _apart(moved: Mapping[str, Array]) -> Iterator[str]:
+    """What stands fixed does not meet what is moved."""
+    for i, name in enumerate(moved):
+        for other in ("world", *list(moved)[:i]):
+            yield element("exclude", body1=other, body2=name)
 
 
 def _world(scene: Scene, pieces: list[Piece], moved: Mapping[str, Array]) -> Iterator[str]:
