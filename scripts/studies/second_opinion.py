@@ -29,7 +29,7 @@ SPACING = 5e-3
 """Of the samples [s]."""
 NUDGE = 1e-3
 """Largest speed by which starts differ [m/s]."""
-SOFT = {"k_n": 1e9, "friction": 0.6, "xi": 0.05, "frequency": 200.0}
+JOINTS = mr.Dry(1e9, 0.6, xi=0.05, frequency=200.0)
 """Joints of walls and heaps. Friction sticks rigidly in both codes: MuJoCo has no k_s."""
 RESOLVED = 0.5
 """omega h of the plain models, omega the highest frequency of the closed contacts [-]."""
@@ -54,7 +54,7 @@ SLAB = cuboid((0, 0, -0.25), (12, 12, 0.5), fixed=True, name="slab")
 def off_a_table() -> mr.MasonryCase:
     """A block that slides off a table."""
     table = cuboid((0, 0, 0.5), (1, 1, 1), fixed=True, name="table")
-    masonry = mr.Masonry([SLAB, table, cuboid((0.3, 0, 1.15), (0.3, 0.3, 0.3), name="die")], **SOFT)
+    masonry = mr.Masonry([SLAB, table, cuboid((0.3, 0, 1.15), (0.3, 0.3, 0.3), name="die")], joints=JOINTS)
     return mr.MasonryCase(masonry, 2.0, velocity=[(2.0, 0, 0, 0, 0, 0)])
 
 
@@ -63,7 +63,7 @@ def thrown() -> mr.MasonryCase:
     rng = np.random.default_rng(4)
     blocks = [cuboid((0.6 * i, 0, 0.1), (0.4, 0.3, 0.2), name=f"block_{i}") for i in range(5)]
     velocity = np.column_stack([rng.uniform(-1, 1, (5, 2)), rng.uniform(2, 4, 5), rng.uniform(-4, 4, (5, 3))])
-    return mr.MasonryCase(mr.Masonry([SLAB, *blocks], **SOFT), 2.0, velocity=velocity)
+    return mr.MasonryCase(mr.Masonry([SLAB, *blocks], joints=JOINTS), 2.0, velocity=velocity)
 
 
 def dominoes() -> mr.MasonryCase:
@@ -72,7 +72,7 @@ def dominoes() -> mr.MasonryCase:
     ground = block(-2, 5, -0.5, 0, length=0.2, fixed=True, name="ground")
     velocity = np.zeros((10, 3))
     velocity[0] = (0.5, 0.0, 1.5)
-    return mr.MasonryCase(mr.Masonry([ground, *blocks], **SOFT), 2.0, velocity=velocity)
+    return mr.MasonryCase(mr.Masonry([ground, *blocks], joints=JOINTS), 2.0, velocity=velocity)
 
 
 def wheel() -> mr.MasonryCase:
@@ -97,33 +97,33 @@ def heap() -> mr.MasonryCase:
         cuboid((*rng.uniform(-0.2, 0.2, 2), 0.125 + 0.45 * i), (0.35, 0.3, 0.25), name=f"block_{i}") for i in range(12)
     ]
     velocity = np.column_stack([np.zeros((12, 3)), rng.uniform(-1, 1, (12, 3))])
-    return mr.MasonryCase(mr.Masonry([SLAB, *blocks], **SOFT), 3.0, velocity=velocity, settled=False)
+    return mr.MasonryCase(mr.Masonry([SLAB, *blocks], joints=JOINTS), 3.0, velocity=velocity, settled=False)
 
 
 def arch() -> mr.MasonryCase:
     """An arch whose right abutment moves away by half a metre in a second, on ground to fall on."""
     arch = mr.Masonry.arch(radius=2.0, thickness=0.3, voussoirs=11, k_n=1e9, friction=0.6)
     ground = block(-6, 6, -1.5, -1.0, fixed=True, name="ground")
-    masonry = mr.Masonry([*arch.blocks, ground], **SOFT)
+    masonry = mr.Masonry([*arch.blocks, ground], joints=JOINTS)
     return mr.MasonryCase(masonry, 2.0, supports={"right_abutment": ([0.2, 1.2], [0.0, 0.5], [0.0, 0.0])})
 
 
 def tilting_panel() -> mr.MasonryCase:
     """A panel in running bond on a table that tilts to 35 degrees in a second."""
-    panel = mr.Masonry.running_bond(1.5, 1.25, (0.5, 0.25), thickness=0.3, **SOFT)
+    panel = mr.Masonry.running_bond(1.5, 1.25, (0.5, 0.25), thickness=0.3, joints=JOINTS)
     return mr.MasonryCase(panel, 1.6, tilt=([0.0, 1.0], [0.0, math.radians(35.0)]))
 
 
 def facade() -> mr.MasonryCase:
     """A facade with a window and two return walls under a sine out of its plane."""
     window = mr.Opening(width=0.4, height=0.4, sill=0.2)
-    walls = mr.Masonry.facade(1.6, 0.8, 0.8, (0.4, 0.2), openings=[(0.0, window)], **SOFT)
+    walls = mr.Masonry.facade(1.6, 0.8, 0.8, (0.4, 0.2), openings=[(0.0, window)], joints=JOINTS)
     return mr.MasonryCase(walls, 2.0, motion=mr.GroundMotion.sine(-9.0, 0.5))
 
 
 def two_storeys() -> mr.MasonryCase:
     """A wall of two storeys in small, in running bond, under a sine in its plane."""
-    wall = mr.Masonry.running_bond(2.0, 2.0, (0.5, 0.25), thickness=0.3, **SOFT)
+    wall = mr.Masonry.running_bond(2.0, 2.0, (0.5, 0.25), thickness=0.3, joints=JOINTS)
     return mr.MasonryCase(wall, 2.0, motion=mr.GroundMotion.sine(10.0, 0.7))
 
 
@@ -136,7 +136,7 @@ def pier() -> mr.MasonryCase:
     ]
     beam = block(-1.4, 1.4, 0.0, 0.25, length=0.5, name="lintel")
     load = [block(-1.2 + 0.6 * i, -0.65 + 0.6 * i, 0.25, 0.65, length=0.5, name=f"load_{i}") for i in range(4)]
-    masonry = mr.Masonry([ground, *piers, beam, *load], **SOFT)
+    masonry = mr.Masonry([ground, *piers, beam, *load], joints=JOINTS)
     return mr.MasonryCase(masonry, 2.0, supports={"right": ([0.1, 0.3], [0.0, 0.0], [0.0, -0.5])})
 
 

@@ -82,10 +82,7 @@ class PlainModel:
 
     def text(self, timestep: float, keyframe: Keyframe | None = None) -> str:
         """The model text at a step [s]; without a keyframe its velocities are those of the release."""
-        moved = {
-            support.block: next(piece.middle for piece in self.pieces if piece.block == support.block)
-            for support in self.problem.case.supports
-        }
+        moved = tuple(support.block for support in self.problem.case.supports)
         key = Keyframe(*self.start, np.empty(0)) if keyframe is None else keyframe
         return plain_text(self.scene, self.pieces, self.pairs, timestep, key, moved)
 

@@ -8,13 +8,13 @@ release, where MuJoCo's Euler step keeps them.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
 from ..._version import __version__
 from ...geometry.frames import PLANE
-from ...quantities import GRAVITY, Array
+from ...quantities import GRAVITY
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
 from ..mjcf import SPARSE_FROM, Keyframe, forces, links
@@ -65,7 +65,7 @@ def element(kind: str, within: str = "", /, **attributes: object) -> str:
 
 
 def plain_text(
-    scene: Scene, pieces: list[Piece], pairs: Pairs, timestep: float, keyframe: Keyframe, moved: Mapping[str, Array]
+    scene: Scene, pieces: list[Piece], pairs: Pairs, timestep: float, keyframe: Keyframe, moved: tuple[str, ...]
 ) -> str:
     """The plain model of a scene as MJCF text. The same arguments give the same bytes.
 
@@ -77,7 +77,7 @@ def plain_text(
         scene, pieces, pairs: what stands.
         timestep: MuJoCo's step [s].
         keyframe: of the release, as MuJoCo keeps it: qpos, qvel and the state of ties.
-        moved: fixed blocks that are moved, and the middle of each [m], by name.
+        moved: names of fixed blocks that are moved. Each is a body whose frame is that of the world at rest.
     """
     rows = pairs.rows(timestep)
     corners = np.concatenate(
@@ -190,32 +190,32 @@ def _pairs(pieces: list[Piece], pairs: Pairs, laws: list[dict[str, object]]) -> 
             yield element("pair", **names, **laws[i])
 
 
-def _apart(moved: Mapping[str, Array]) -> Iterator[str]:
+def _apart(moved: tuple[str, ...]) -> Iterator[str]:
     """What stands fixed does not meet what is moved."""
     for i, name in enumerate(moved):
-        for other in ("world", *list(moved)[:i]):
+        for other in ("world", *moved[:i]):
             yield element("exclude", body1=other, body2=name)
 
 
-def _world(scene: Scene, pieces: list[Piece], moved: Mapping[str, Array]) -> Iterator[str]:
+def _world(scene: Scene, pieces: list[Piece], moved: tuple[str, ...]) -> Iterator[str]:
     """What stands fixed, fixed blocks that are moved, and the bodies."""
     for piece in pieces:
         if piece.body == GROUND and piece.block not in moved:
-            yield _geom(piece, np.zeros(3), rgba=PLASTER)
+            yield _geom(piece, rgba=PLASTER)
     yield from sites(scene, GROUND)
-    for name, middle in moved.items():
-        yield element("body", name=name, pos=middle, gravcomp="1").removesuffix("/>") + ">"
+    for name in moved:
+        yield element("body", name=name, gravcomp="1").removesuffix("/>") + ">"
         yield "  " + element("inertial", pos=(0, 0, 0), mass=SUPPORT_MASS, diaginertia=np.full(3, SUPPORT_MASS))
         yield "  " + "".join(element("joint", name=f"{name}_{axis}", type="slide", axis=way) for axis, _, way in BALL)
-        yield from (f"  {_geom(piece, middle, rgba=PLASTER)}" for piece in pieces if piece.block == name)
+        yield from (f"  {_geom(piece, rgba=PLASTER)}" for piece in pieces if piece.block == name)
         yield "</body>"
     shades = tints(scene)
     for j, name in enumerate(scene.bodies.names):
         yield from _body(scene, j, name, [piece for piece in pieces if piece.body == j], shades[j])
 
 
-def _geom(piece: Piece, origin: Array, **attributes: object) -> str:
-    """A piece as a geom in a frame whose origin lies at a place [m]."""
+def _geom(piece: Piece, **attributes: object) -> str:
+    """A piece as a geom in the frame of its body, or of the world."""
     attributes = {"name": piece.name} | attributes
     if not piece.meets:
         attributes |= {"contype": "0", "conaffinity": "0"}
@@ -224,8 +224,8 @@ def _geom(piece: Piece, origin: Array, **attributes: object) -> str:
     if piece.is_ground:
         return element("geom", type="plane", size=(0, 0, 1), pos=(0, 0, piece.shape.corners[:, 2].max()), **attributes)
     if piece.shape.box is not None:
-        return element("geom", type="box", size=piece.shape.box[1], pos=piece.middle - origin, **attributes)
-    return element("geom", type="mesh", mesh=piece.name, pos=-origin, **attributes)
+        return element("geom", type="box", size=piece.shape.box[1], pos=piece.middle, **attributes)
+    return element("geom", type="mesh", mesh=piece.name, **attributes)
 
 
 def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, object]) -> Iterator[str]:
@@ -244,7 +244,7 @@ def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, obj
         yield "  " + element("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **inertia_of_body(scene, j))
         weight = {}
     for piece in own:
-        yield "  " + _geom(piece, np.zeros(3), **weight, **(tint or {"rgba": BRICK}))
+        yield "  " + _geom(piece, **weight, **(tint or {"rgba": BRICK}))
     yield from (f"  {site}" for site in sites(scene, j))
     yield "</body>"
 
