@@ -202,15 +202,6 @@ EQUIVALENT = {
         f"limit_state.py: if turn % EVERY {which}:": "other turns are as good to start from as every third one"
         for which in ("!= EVERY - 1", "== EVERY - 2")
     },
-    **{
-        f"limit_state.py: if len(shared) > {most} and shared[-3] {gained}:": "more turns take time only"
-        for most, gained in (
-            ("6", "- shared[-1] < 0.01 * SHARED"),
-            ("3", "- shared[-1] <= 0.01 * SHARED"),
-            ("3", "+ shared[-1] < 0.01 * SHARED"),
-            ("3", "- shared[-1] < 0.02 * SHARED"),
-        )
-    },
     "lines.py: beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) <= LEVEL and not "
     "below.fixed else ()": "no joint leans by the bound to the last bit",
     'record_sets.py: members = [other for other in (key.replace("?", one, 2) for one in letters) if other in names]': (
