@@ -90,7 +90,7 @@ class PlainEngine:
     @cached_property
     def thickness(self) -> Array:
         """The smallest extent of each piece along the axes at rest, that of the ground without end [m], (pieces,)."""
-        return np.array([np.inf if piece.is_ground else 2 * piece.half.min() for piece in self.pieces])
+        return np.array([piece.thickness for piece in self.pieces])
 
     @property
     def driven(self) -> int:

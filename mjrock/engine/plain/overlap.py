@@ -36,10 +36,10 @@ class Overlap(NamedTuple):
         """Volume that they have in common, over that of the smaller one [-]."""
         planes = []
         for piece, place, turn in zip(self.pieces, self.place, self.turn, strict=True):
-            normals = piece.planes[:, :3] @ turn.T
-            own = np.column_stack([normals, piece.planes[:, 3] - normals @ place])
+            normals = piece.shape.normals @ turn.T
+            own = np.column_stack([normals, -piece.shape.offsets - normals @ place])
             planes.append(own[own[:, 2] > 0.5] if piece.is_ground else own)  # of the ground its top alone
-        least = min(piece.volume for piece in self.pieces if not piece.is_ground)
+        least = min(piece.shape.bulk.volume for piece in self.pieces if not piece.is_ground)
         return common_volume(np.concatenate(planes)) / least
 
 

@@ -24,6 +24,8 @@ HELD_MASSES = 100.0
 """Inertia of a friction row of several bodies in masses of the body that it holds [-]. Under an acceleration a along
 its face a contact that sticks creeps at a h / HELD_MASSES. With ten times as much a step of thirty blocks takes 1.7
 times as long."""
+NOTHING = -2
+"""The body of what is only seen."""
 POINTS = 4
 """Points that MuJoCo finds where two faces lie on each other [-]."""
 
@@ -106,7 +108,7 @@ def _nearest(pieces: list[Piece], body: Integers, points: Array, normals: Array)
     """The piece of its body on which each point lies, shape (m,), from points in the frame of the body [m] and the
     normals of the body there."""
     chosen, points, normals = np.zeros(len(points), dtype=np.int64), _in_space(points), _in_space(normals)
-    carrier = np.array([piece.body for piece in pieces])
+    carrier = np.array([piece.body if piece.meets else NOTHING for piece in pieces])
     for j in np.unique(body):
         own, here = np.flatnonzero(carrier == j), body == j
         far = np.array([pieces[i].beside(points[here], normals[here]) for i in own])

@@ -15,6 +15,7 @@ from ...patience import expect
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, require_size, require_within
 from ...result.bodies import Moving
+from ...result.ending import Outcome
 from ...result.forces import Forces, Gathered, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
 from ...result.motion import SampledMotion
@@ -24,7 +25,7 @@ from ...result.response import End, Response, State
 from ...result.samples import required_spacing
 from ...result.start import require_unbreakable
 from ...result.stopwatch import Stopwatch
-from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties
+from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
 from ...scene.course import Course
 from ...scene.scene import Scene
 from ...scene.structure import energies
@@ -63,7 +64,7 @@ class PlainModel:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The solids."""
-        return pieces_of(self.problem.case, self.scene)
+        return pieces_of(self.scene)
 
     @cached_property
     def pairs(self) -> Pairs:
@@ -194,7 +195,7 @@ class PlainRun:
         pulled = {name: ties[name].force for name in scene.links.sprung.names}
         pulled |= dict(zip(scene.links.damped.names, np.array([s.pulled for s in self.samples]).T, strict=True))
         loads, held = (np.array([getattr(sample, name) for sample in self.samples]) for name in ("loads", "held"))
-        return forces_of(case, case.frames, Gathered(self.t, self.pose, loads, held, pulled))
+        return forces_of(case, case.standing.frames, Gathered(self.t, self.pose, loads, held, pulled))
 
 
 class Wanted(NamedTuple):
@@ -228,7 +229,7 @@ def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
     require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
     expect(interpreted_seconds(scene, course.duration, spacing))
     model, watch = PlainModel(problem, scene, course), Stopwatch()
-    frames = case.frames
+    frames = case.standing.frames
     gathers = JointForces(model.pairs.joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:
@@ -236,7 +237,10 @@ def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
     except StepError as error:
         raise SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; halve the step") from None
     stats = {"steps": steps, "timestep": h, "resolved": h * scene.highest_frequency, **watch.stepping()}
-    return response_of_plain(run, stats, wanted)
+    response = response_of_plain(run, stats, wanted)
+    if response.outcome is not Outcome.OVERTURNED:
+        warn_of_ties(case, response.plastic)
+    return response
 
 
 def plain_timestep(scene: Scene, duration: float) -> float:

@@ -104,7 +104,7 @@ def plain_text(
         key["plastic"] = keyframe.plastic
     place = middle + half * np.array((0.4, -6.0, 0.6))
     memory = [element("size", memory=f"{int(8 + MEMORY_OF_PIECE * len(pieces))}M")] if mixes else []
-    shapes = [element("mesh", name=piece.name, vertex=piece.corners) for piece in pieces if not piece.has_shape]
+    shapes = [element("mesh", name=piece.name, vertex=piece.shape.corners) for piece in pieces if piece.has_mesh]
     body = [
         *memory,
         element("statistic", center=middle, extent=2 * half),
@@ -126,8 +126,8 @@ def plain_text(
 
 def _meets_others(pieces: list[Piece], pairs: Pairs) -> bool:
     """Whether two pieces may meet that are no neighbours at rest."""
-    bodies = np.array([piece.body for piece in pieces])
-    low, high = np.triu_indices(len(pieces), 1)
+    bodies = np.array([piece.body for piece in pieces if piece.meets])
+    low, high = np.triu_indices(len(bodies), 1)
     may = int((bodies[low] != bodies[high]).sum())
     return may > len(pairs.pieces)
 
@@ -209,14 +209,16 @@ def _world(scene: Scene, pieces: list[Piece], moved: Mapping[str, Array]) -> Ite
 
 def _geom(piece: Piece, origin: Array, **attributes: object) -> str:
     """A piece as a geom in a frame whose origin lies at a place [m]."""
-    at = piece.middle - origin
+    attributes = {"name": piece.name} | attributes
+    if not piece.meets:
+        attributes |= {"contype": "0", "conaffinity": "0"}
+    if not piece.is_seen:
+        attributes |= {"group": "3"}
     if piece.is_ground:
-        return element(
-            "geom", name=piece.name, type="plane", size=(0, 0, 1), pos=(0, 0, piece.corners[:, 2].max()), **attributes
-        )
-    if piece.is_box:
-        return element("geom", name=piece.name, type="box", size=piece.half, pos=at, **attributes)
-    return element("geom", name=piece.name, type="mesh", mesh=piece.name, pos=-origin, **attributes)
+        return element("geom", type="plane", size=(0, 0, 1), pos=(0, 0, piece.shape.corners[:, 2].max()), **attributes)
+    if piece.shape.box is not None:
+        return element("geom", type="box", size=piece.shape.box[1], pos=piece.middle - origin, **attributes)
+    return element("geom", type="mesh", mesh=piece.name, pos=-origin, **attributes)
 
 
 def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, object]) -> Iterator[str]:
@@ -242,9 +244,10 @@ def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, obj
 
 def _is_uniform_box(scene: Scene, j: int, own: list[Piece]) -> bool:
     """Whether a body is one box about its centroid whose moments of inertia are those of an even density."""
-    if len(own) > 1 or not own[0].is_box or np.abs(own[0].middle).max() > 1e-12 * own[0].half.max():
+    box = own[0].shape.box
+    if len(own) > 1 or box is None or np.abs(box[0]).max() > 1e-12 * box[1].max():
         return False
-    square = own[0].half ** 2
+    square = box[1] ** 2
     even = scene.bodies.mass[j] / 3 * np.array([square[1] + square[2], square[0] + square[2], square[0] + square[1]])
     held = np.array([scene.bodies.inertia[j]]) if scene.freedom == PLANE else np.diagonal(scene.bodies.inertia[j])
     return bool(np.allclose(held, even[1:2] if scene.freedom == PLANE else even, rtol=1e-9))
