@@ -231,7 +231,7 @@ EQUIVALENT = {
     "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > ALIKE:": (
         "a sense is 1 or -1"
     ),
-    "pair_law.py: per_area = per_area * np.append(length / masonry.joints[softest].length / np.ones(4), "
+    "pair_law.py: per_area = per_area * np.append(length / of_joint / np.ones(4), "
     "np.ones_like(length), 1)": "one multiplies and divides alike",
     "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
     "mortar.py: if gap <= 0 and bond.strength < math.inf:": "at a gap of zero nothing is crushed",
@@ -339,7 +339,7 @@ EQUIVALENT = {
     "supports.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
         "a history of one sample has one place"
     ),
-    "softening.py: d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
+    "softening.py: nv, share = 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
         "the last share is read, and more of them are one"
     ),
     "impacts.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (

@@ -134,7 +134,7 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     pulled, driven = run.forces_of("links", -samples.pulled), run.forces_of("actuators", samples.pulled)
     damage = None
     if any(len(law.rows) for law in run.followed.system.laws):
-        dry = [bond is None for bond in run.case.bonds]
+        dry = [bond is None for bond in run.scene.contacts.bonds]
         damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
     jacks = np.array([*driven.values()]).T.copy() if driven else None

@@ -9,6 +9,7 @@ from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
 from mjrock.distinct.turning import take_inverse_inertia, take_turn
 from mjrock.geometry.frames import PLANE, SPACE
+from mjrock.problem.wall.standing import Solid, in_space
 from mjrock.scene.ground import Ground
 
 TURNS = Rotation.from_rotvec([[0.7, -0.4, 0.3], [-0.2, 0.5, 0.6]])
@@ -60,6 +61,24 @@ def system(d, lines=1, edges=0, still=False):
         ground=Ground.of(None),
         supports=supports,
     )
+
+
+def stood(blocks):
+    """Blocks as solids of a scene, free ones as bodies in their order."""
+    free = np.cumsum([not block.fixed for block in blocks]) - 1
+    return [
+        Solid(
+            str(i),
+            i,
+            -1 if block.fixed else int(free[i]),
+            in_space(np.array(block.centroid)),
+            block.solids,
+            block.inside,
+            block.sides,
+            block.size,
+        )
+        for i, block in enumerate(blocks)
+    ]
 
 
 def books(system):

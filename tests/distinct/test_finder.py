@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from by_hand import columns
+from by_hand import columns, stood
 from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
@@ -331,10 +331,10 @@ def test_fixed_blocks_come_first_then_the_largest_and_then_the_lowest():
     fixed, volumes = [False, False, True, False, False, False], np.array([1.0, 1.0, 0.1, 2.0, 1.0, 1.0])
     heights = np.array([0.5, 0.2, 5.0, 3.0, 0.2, 0.2])
     expected = [5, 2, 0, 1, 3, 4]
-    assert finder.ranked(fixed, volumes, heights, 0.5).tolist() == expected
+    assert finder.ranked(np.array(fixed), volumes, heights, 0.5).tolist() == expected
     for seed in range(5):  # rounding decides nothing
         off = 1e-12 * np.random.default_rng(seed).normal(size=(2, 6))
-        assert finder.ranked(fixed, volumes * (1 + off[0]), heights + off[1], 0.5).tolist() == expected
+        assert finder.ranked(np.array(fixed), volumes * (1 + off[0]), heights + off[1], 0.5).tolist() == expected
 
 
 def test_places_do_not_depend_on_the_numbers_of_blocks_nor_on_what_is_far_away():
@@ -407,7 +407,7 @@ def poses_of(blocks, by=None, change=None):
 def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(), room=None):
     """Where blocks meet, as pairs of a face and another block, and the places. Pairs of blocks are skipped."""
     drawn, poses = poses_of(blocks, by, change)
-    whole = Finder(blocks, drawn)
+    whole = Finder(stood(blocks), flat=drawn.shape[1] == 2)
     if room:
         whole._table = rows(PLACE, room)
     which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
@@ -550,7 +550,7 @@ def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
     np.testing.assert_allclose(places.share[~over], 1 / (~over).sum(), rtol=1e-9)
     np.testing.assert_allclose(places.area[~over], 0.3, rtol=1e-9)
     drawn, _ = poses_of(blocks)
-    whole = Finder(blocks, drawn)
+    whole = Finder(stood(blocks), flat=drawn.shape[1] == 2)
     each = np.ones(3)
     pair = Found(
         *(np.array(of) for of in ([3, 1, 1], [1, 3, 2])), each, each, each, 0.25 * each, np.array([0.0, 0.0, 2.0])

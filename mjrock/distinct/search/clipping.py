@@ -13,11 +13,10 @@ import math
 import numpy as np
 
 from ...compiled import inlined
-from ...geometry.frames import SPACE
 from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
 from ...quantities import Array
 from ..rows import Row, Rows, integers, numbers, vectors
-from .solids import Solids
+from .solids import Solids, triple
 
 PLACE = np.dtype(
     [*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area"), *integers("sides")]
@@ -36,7 +35,7 @@ do not meet as edges [-]."""
 @inlined
 def corner_of(solids: Solids, number: int) -> Vector:
     """Where a corner of an outline is [m]."""
-    return vector(solids.corners, solids.outline[number], SPACE.axes)
+    return triple(solids.corners, solids.outline[number])
 
 
 @inlined
@@ -48,7 +47,7 @@ def next_corner(solids: Solids, face: int, number: int) -> Vector:
 @inlined
 def normal_of(solids: Solids, face: int) -> Vector:
     """The normal of a face."""
-    return vector(solids.normals, face, SPACE.axes)
+    return triple(solids.normals, face)
 
 
 @inlined
@@ -124,7 +123,7 @@ def parted(polygon: Array, count: int) -> int:
     """Leave out the corners of a polygon that fall on those before them. Returns how many are left."""
     left = 0
     for i in range(count):
-        at, last = vector(polygon, i, SPACE.axes), vector(polygon, left - 1 if left else count - 1, SPACE.axes)
+        at, last = triple(polygon, i), triple(polygon, left - 1 if left else count - 1)
         if length_of(minus(at, last)) > OUTSIDE * (length_of(at) + length_of(last)):
             put(polygon[left], at)
             left += 1
@@ -134,18 +133,18 @@ def parted(polygon: Array, count: int) -> int:
 @inlined
 def turn_at(polygon: Array, count: int, i: int) -> float:
     """The angle by which the outline of a polygon turns at a corner, over a whole turn."""
-    at = vector(polygon, i, SPACE.axes)
-    before = minus(at, vector(polygon, i - 1 if i else count - 1, SPACE.axes))
-    after = minus(vector(polygon, (i + 1) % count, SPACE.axes), at)
+    at = triple(polygon, i)
+    before = minus(at, triple(polygon, i - 1 if i else count - 1))
+    after = minus(triple(polygon, (i + 1) % count), at)
     return math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
 
 
 @inlined
 def area_of(polygon: Array, count: int) -> float:
     """Area of a polygon [m2]."""
-    first, area = vector(polygon, 0, SPACE.axes), 0.0
+    first, area = triple(polygon, 0), 0.0
     for i in range(1, count - 1):
-        one, next_one = vector(polygon, i, SPACE.axes), vector(polygon, i + 1, SPACE.axes)
+        one, next_one = triple(polygon, i), triple(polygon, i + 1)
         area += 0.5 * length_of(spun(minus(one, first), minus(next_one, first)))
     return area
 
@@ -231,7 +230,7 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count:
         share = turn_at(room, corners, i)
         if share > SAME:
             if count < len(table):
-                meet(solids, faces, blocks, vector(room, i, SPACE.axes), table[count])
+                meet(solids, faces, blocks, triple(room, i), table[count])
                 table[count].share, table[count].area = share, area
                 table[count].sides = sides_between(solids, faces)
             count += 1
