@@ -8,12 +8,10 @@ from .animation import animate, animate_bodies
 from .browser import view
 from .earthquakes import fragility, incremental, spectra
 from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
-from .masonry import blocks
-from .mechanism import mechanism
+from .masonry import blocks, mechanism, thrust
 from .pushing import moment_rotation, push, pushover
 from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
-from .thrust import thrust
 from .tornado import tornado
 
 __all__ = [

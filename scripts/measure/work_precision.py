@@ -32,10 +32,9 @@ from mjrock.engine.model import Engine
 from mjrock.engine.points import inverse_weights
 from mjrock.engine.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.stepping import fixed_steps
-from mjrock.result.history import rocking_history
 from mjrock.result.ledger import StepError
 from mjrock.result.response import Response
-from mjrock.result.rocking import Rocking, peak_energies, restitution_of
+from mjrock.result.rocking import Rocking, peak_energies, restitution_of, rocking_history
 from mjrock.scene.wall import wall_course
 from mjrock.theory.motion import RigidMotion
 from scripts.shared import accuracy, cli

@@ -26,8 +26,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
-from mjrock.result.history import rocking_history
-from mjrock.result.rocking import peak_energies, restitution_of
+from mjrock.result.rocking import peak_energies, restitution_of, rocking_history
 from scripts.peers.codes.question import Question
 from scripts.peers.codes.worker import Task
 from scripts.shared import accuracy, cli
