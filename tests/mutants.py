@@ -34,7 +34,7 @@ OTHERS = (
     "engine/solref.py",
     "scene/masonry.py",
     "scene/rest.py",
-    "result/history.py",
+    "result/rocking.py",
     "reference/equations.py",
     *(
         f"problem/masonry/{name}.py"
@@ -45,8 +45,8 @@ OTHERS = (
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
-    *("contact", "make", "geoms", "mixing", "inspect", "felt", "holding", "row_of_model"),
-    *("filters", "meeting", "others"),
+    *("contact", "make", "geoms", "inspect", "felt", "holding", "row_of_model"),
+    *("meeting", "others"),
 )
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
@@ -102,9 +102,8 @@ OWN = {
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
     "problem/masonry/limit/joint_forces.py": ("collapse_without_dilatancy",),
     "problem/masonry/laws/joint_law.py": ("joint_law", "explicit", "encounters"),
-    "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space"),
+    "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space", "fallen"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
-    "result/fallen.py": ("fallen",),
     "result/ledger.py": ("ledger",),
     **{f"result/{name}.py": ("files_of_motion", "joint_frames") for name in ("bodies", "gltf", "vtk")},
     "result/ties.py": ("ties", "ties_that_break", "friction_damper", "masonry_effects"),

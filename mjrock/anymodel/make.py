@@ -19,7 +19,6 @@ from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
 from .meeting import Company, PairMeeting, Pose, meeting, other_keyframes
-from .mixing import Grip, unused
 from .notes import (
     RESOLVED,
     UNSOUND,
@@ -28,7 +27,7 @@ from .notes import (
     rounded_down,
     stiffest,
 )
-from .row_of_model import ModelRow
+from .row_of_model import Grip, ModelRow, unused
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""

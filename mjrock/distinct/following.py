@@ -12,7 +12,7 @@ import numpy as np
 from tqdm import tqdm
 
 from ..quantities import Array
-from ..result.samples import intervals
+from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
 from .loop import Clock, advance
 from .memory import Memory, remember

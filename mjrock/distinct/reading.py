@@ -16,11 +16,10 @@ from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers
 from ..result.forces import Forces, Gathered, forces_of
 from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
-from ..result.motion import SampledMotion
+from ..result.motion import SampledMotion, thinned
 from ..result.problem import problem_of
 from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
-from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene

@@ -12,13 +12,12 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
-from ..result.ending import Outcome
+from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.ledger import StepError
 from ..result.problem import Problem, problem_of
 from ..result.response import End, Response, State
 from ..result.start import require_unbreakable, required_start
-from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
@@ -15,10 +14,7 @@ from numpy.typing import ArrayLike
 from ..problem.wall.case import Case
 from ..quantities import (
     Array,
-    require_array,
-    require_flag,
     require_kind,
-    require_real,
     require_reals,
     require_row,
     require_text,
@@ -73,27 +69,6 @@ def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
         given = ", ".join(f"{name} has the shape {shape}" for name, shape in shapes.items())
         raise ValueError(f"{given}; rows of one length are needed")
     return tuple(checked.values())
-
-
-def two_texts(name: str, value: Any) -> None:
-    """Two texts."""
-    if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 2:
-        raise TypeError(f"{name} = {shown(value)} are not two texts")
-    for text in value:
-        require_text(name, text)
-
-
-def two_numbers(name: str, value: Any) -> None:
-    """Two positive numbers that increase, such as limits of a logarithmic axis."""
-    low, high = require_array(name, value, (2,))
-    if not 0 < low < high:
-        raise ValueError(f"{name} = {shown(value)} are not two positive numbers that increase")
-
-
-def size(name: str, value: Any) -> None:
-    """Width and height of a figure [inch]."""
-    for extent in require_array(name, value, (2,)):
-        require_within(name, extent, 0.1, 200.0, "inch")
 
 
 def anything(name: str, value: Any) -> None:
@@ -155,44 +130,21 @@ def number(name: str, value: Any) -> None:
     require_within(name, value, -1e9, 1e9)
 
 
-def positive(name: str, value: Any) -> None:
-    """A positive finite number."""
-    if not 0 < require_real(name, value) < math.inf:
-        raise ValueError(f"{name} = {shown(value)} is outside the valid range, which is above 0")
-
-
 CHECKS: dict[str, Check] = {
-    "arguments": require_flag,
     "ax": kind(Axes),
     "case": kind(Case),
     "closed": mapping(pair(anything, anything), least=0),
     "columns": lambda name, value: require_whole(name, value, 1, MOST_COLUMNS),
     "draw": drawing,
     "drawings": listed(pair(require_text, drawing)),
-    "errors": mapping(row),
-    "figure": kind(Figure),
     "fit": kind(Fragility),
     "intensity": row,
     "labels": listed(require_text),
-    "least": positive,
-    "levels": row,
-    "limits": two_numbers,
-    "marker": require_text,
-    "most": positive,
-    "names": two_texts,
-    "order": lambda name, value: require_within(name, value, -20.0, 20.0),
     "panels": listed(pair(require_text, listed(of_wall))),
     "peaks": table,
     "responses": listed(of_wall),
-    "shares": row,
-    "size": size,
-    "solver": require_text,
-    "steps": row,
     "title": require_text,
-    "top": positive,
-    "unit": require_text,
     "until": number,
-    "values": table,
 }
 """The check of each argument that means the same in every picture."""
 

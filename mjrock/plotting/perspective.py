@@ -56,9 +56,8 @@ def in_three(ax: Axes) -> Any:
 def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     """Draw blocks in space, true to scale, and the ground below them.
 
-    Blocks, and the convex parts of one that is not convex, are drawn from the farthest to the nearest. Of two with a
-    joint the one on the far side of it comes first, and otherwise the one with the farther centroid; blocks that have
-    moved far can hide what lies before them. What has sunk below the ground is left out.
+    Blocks, and the convex parts of one that is not convex, are drawn from the farthest to the nearest, see
+    `Solids.order`. What has sunk below the ground is left out.
     """
     space = in_three(ax)
     low, high = bodies.extent()

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ..files import aligned, csv_text
 from ..quantities import require_flag, require_kind, require_path, require_size, require_text, shown
-from ..result.table import aligned, csv_text
 from .campaign.campaign import completed
 from .campaign.grid import label_of, labelled
 from .campaign.task import Row, Task

@@ -15,16 +15,14 @@ from ...patience import expect
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, require_size, require_within
 from ...result.bodies import Moving
-from ...result.ending import Outcome
+from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, Gathered, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
-from ...result.motion import SampledMotion
+from ...result.motion import SampledMotion, required_spacing
 from ...result.problem import Problem
 from ...result.reading import BesidePoses
 from ...result.response import End, Response, State
-from ...result.samples import required_spacing
 from ...result.start import require_unbreakable
-from ...result.stopwatch import Stopwatch
 from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
 from ...scene.course import Course
 from ...scene.scene import Scene

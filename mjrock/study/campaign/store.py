@@ -9,10 +9,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...files import require_file
+from ...files import require_file, written
 from ...quantities import require_path, spelt
-from ...result.table import written
-from .values import checksum, plain, table_text
+from .task import checksum, plain, table_text
 
 if TYPE_CHECKING:
     import pandas

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import chdtri, log_ndtr, ndtr, ndtri, stdtrit
 
-from ...files import write_text
+from ...files import csv_text, write_text
 from ...quantities import Array, Flags, require_path, require_plain, require_reals, require_whole, require_within, shown
-from ...result.table import csv_text
 
 FEWEST_GROUPS = 5
 """Fewest groups that are resampled."""
