@@ -43,7 +43,7 @@ class EngineRun:
         broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
         scale: energy of the release, of the springs at rest, or at most where they start as drawn, and of what the
-            ground put in or took [J].
+            ground put in or took, or the largest kinetic energy if that is more [J].
         gain: energy that has appeared from nowhere after the first block fell, or None.
     """
 
@@ -75,7 +75,8 @@ class EngineRun:
         work = ground_work(scene, course, steps)
         drawn = not problem.case.settled  # its springs hold nothing at the start
         elastic = float(stored[:count, 2].max()) if drawn else float(scene.rest_energies[2])
-        scale = max(float(energy[0]), 0.0) + float(np.abs(work[:count]).sum()) + elastic
+        given = max(float(energy[0]), 0.0) + float(np.abs(work[:count]).sum()) + elastic
+        scale = max(given, float(stored[:count, 0].max()))  # what falls below its rest has more
         require_no_gain(steps.windows.t[marks], balance(scene, steps, work, marks), scale)
         gain = None
         if reading.joints is not None:
