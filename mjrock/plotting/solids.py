@@ -15,6 +15,7 @@ from ..geometry.frames import SPACE
 from ..geometry.hull import unlike_ways
 from ..geometry.poses import displaced
 from ..problem.masonry.blocks.compound import SolidBlock
+from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers, keep, require_array, require_within
@@ -125,7 +126,7 @@ class Solids:
         limits: ArrayLike | None = None,
     ) -> Solids:
         """The blocks of a response in space."""
-        return cls(response.of_masonry, response.t, response.pose, magnify, camera, limits)  # type: ignore[arg-type]
+        return cls(response.of_masonry, response.t, response.pose, magnify, camera, required_limits(limits, "xyz"))
 
     @property
     def masonry(self) -> Masonry:
@@ -240,7 +241,7 @@ class Solids:
     def _parts(self) -> Parts:
         """The convex parts of the blocks that are shown."""
         body = np.repeat(np.arange(len(self._blocks)), [len(block.parts) for block in self._blocks])
-        parts = [part for block in self._blocks for part in block.parts]
+        parts = [part for block in self._blocks for part in block.parts if isinstance(part, Polyhedron)]
         corners = evened([part.corners for part in parts]) - self.rests[body, None]
         normals = evened([unlike_ways(part.normals) for part in parts])
         return Parts(body, corners, normals, evened([part.edges for part in parts]))
