@@ -57,7 +57,7 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
         plastic: what ties have yielded.
     """
     chosen, sample = np.unique(np.searchsorted(steps.windows.t, t, side="right") - 1, return_inverse=True)
-    frames, contacts, d = case.frames, scene.contacts, scene.freedom.translations
+    frames, contacts, d = case.standing.frames, scene.contacts, scene.freedom.translations
     room = np.zeros((len(chosen), len(frames.names), scene.freedom.nv)), np.zeros((len(chosen), len(frames.blocks), d))
     sense = np.where(frames.above[contacts.joint] == contacts.body, 1.0, -1.0)
     loads = Loads(chosen, contacts.joint, sense, frames.fixed, frames.rest, *room)

@@ -1,7 +1,9 @@
-"""The convex hull of points in space: its faces, and the volume, centroid and inertia of the body that it bounds."""
+"""Convex bodies: their faces, the hull of points, and volume, centroid and second moments."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -40,6 +42,86 @@ class Bulk(NamedTuple):
     volume: float
     centroid: Array
     second: Array
+
+
+class Side(NamedTuple):
+    """A plane piece of the surface of a body.
+
+    Args:
+        corners: in the plane the two ends of an edge, counterclockwise about the body [m], shape (2, 2). In space
+            those of a convex polygon, counterclockwise as seen from outside [m], shape (n, 3).
+        normal: unit vector out of the body, shape (d,).
+        parts: numbers of the convex parts of the body that it bounds.
+    """
+
+    corners: Array
+    normal: Array
+    parts: tuple[int, ...] = (0,)
+
+
+@dataclass(frozen=True, eq=False)
+class Convex:
+    """A convex body of plane faces.
+
+    Args:
+        corners: [m], shape (n, 3).
+        faces: numbers of the corners of each face, counterclockwise as seen from outside.
+        normals: unit normals out of the faces, shape (faces, 3).
+    """
+
+    corners: Array
+    faces: Faces
+    normals: Array
+
+    @classmethod
+    def between(cls, ring: Array, other: Array) -> Convex:
+        """The body between two plane polygons of as many corners, (n, 3) each, clockwise as seen from the other one.
+
+        Corners of the second may coincide, as in a wedge. Faces are the two polygons, and then one for each edge.
+        """
+        n, points = len(ring), np.concatenate([ring, other])
+        corners, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
+        order = np.argsort(first)
+        number = np.argsort(order)[number.ravel()]
+        rings = (range(n), range(2 * n - 1, n - 1, -1), *_sides(n))
+        faces = [tuple(dict.fromkeys(number[list(ring)].tolist())) for ring in rings]
+        corners, kept = corners[order], tuple(face for face in faces if len(face) > 2)
+        vectors = np.array([area_vector(corners[list(face)]) for face in kept])
+        return cls(corners, kept, vectors / np.linalg.norm(vectors, axis=1)[:, None])
+
+    def about(self, point: Array) -> Convex:
+        """The same from another origin [m], shape (3,)."""
+        return Convex(self.corners - point, self.faces, self.normals)
+
+    @cached_property
+    def offsets(self) -> Array:
+        """Where the faces are along their normals, by the mean of their corners [m], shape (faces,)."""
+        pairs = zip(self.faces, self.normals, strict=True)
+        return np.array([float((self.corners[list(face)] @ normal).mean()) for face, normal in pairs])
+
+    def depth(self, points: Array) -> float:
+        """How deep points reach behind a face [m], the least over the faces, negative for none."""
+        return float((self.offsets - (points @ self.normals.T).min(axis=0)).min())
+
+    @cached_property
+    def edges(self) -> Array:
+        """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
+        pairs = {(min(i, j), max(i, j)) for face in self.faces for i, j in zip(face, face[1:] + face[:1], strict=True)}
+        ways = np.array([self.corners[j] - self.corners[i] for i, j in sorted(pairs)])
+        return unlike_ways(ways / np.linalg.norm(ways, axis=1)[:, None])
+
+    @cached_property
+    def bulk(self) -> Bulk:
+        """Volume, centroid and second moments."""
+        return bulk_of(self.corners, self.faces)
+
+    @cached_property
+    def box(self) -> tuple[Array, Array] | None:
+        """Middle and half sizes of a box along the axes [m], shape (3,) each; None of any other body."""
+        low, high = self.corners.min(axis=0), self.corners.max(axis=0)
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        off = np.abs(np.abs(self.corners - middle) - half).max()
+        return (middle, half) if len(self.corners) == 8 and off <= 1e-12 * np.abs(self.corners).max() else None
 
 
 def hull_of(points: Array) -> Hull:
@@ -121,8 +203,12 @@ def prism(outline: Array, length: float) -> tuple[Array, Faces]:
     """Corners and faces of a convex outline x, z, counterclockwise with z upwards, over a length along y about 0."""
     n, (x, z) = len(outline), outline.T
     corners = np.concatenate([np.column_stack([x, np.full(n, y), z]) for y in (-0.5 * length, 0.5 * length)])
-    sides = tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
-    return corners, (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *sides)
+    return corners, (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *_sides(n))
+
+
+def _sides(n: int) -> Faces:
+    """Numbers of the corners of the faces between two polygons of n corners, one for each edge."""
+    return tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
 
 
 def unlike_ways(ways: Array) -> Array:

@@ -171,12 +171,7 @@ def _elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
     half_length = 0.5 * wall.front.long(levels)
     front = np.column_stack([np.append(-half_length, half_length[::-1]), np.append(levels, levels[::-1])])
     ax.add_patch(Polygon(front, facecolor=STONE, edgecolor="0.15"))
-    sills = [opening.sill for opening in wall.openings if opening.at is None]
-    for i, opening in enumerate(wall.openings):
-        middle, before = opening.at, [other.sill for other in wall.openings[:i] if other.at is None]
-        if middle is None:
-            wide = float(wall.front.long(np.array(opening.head)))
-            middle = wide * ((before.count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5)
+    for opening, middle in zip(wall.openings, wall.front.places, strict=True):
         hole: Patch = Rectangle((middle - 0.5 * opening.width, opening.sill), opening.width, opening.height)
         if opening.round:
             hole = Ellipse((middle, opening.sill + 0.5 * opening.height), opening.width, opening.height)

@@ -134,7 +134,7 @@ def bodies_of(case: AnyCase, t: Array, pose: Array, velocity: Array) -> list[Bod
         spin = (rotations(pose) @ velocity[..., 3:, None])[..., 0]
         velocity = np.concatenate([velocity[..., :3], spin], axis=-1)
     bodies = []
-    for solid in case.solids:
+    for solid in case.standing.solids:
         body, support = case.body_of(solid.block), case.support_of(solid.block)
         where, rate = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
         if body is not None:

@@ -188,7 +188,7 @@ def required_room(case: AnyCase, samples: float) -> tuple[int, int, int, int]:
     Raises:
         ValueError: if their forces at so many samples do not fit into memory.
     """
-    frames = case.frames
+    frames = case.standing.frames
     d, driven = frames.middle.shape[1], len(case.actuators)
     counts = len(frames.names), len(frames.blocks), len(case.links), driven
     numbers = samples * (counts[0] * 4 * (d - 1) + counts[1] * d + counts[2] + driven * (1 if d == 2 else 3))

@@ -15,9 +15,8 @@ from ..geometry.graph import components, nearest_roots
 from ..geometry.kinematics import Meeting, Places, meeting
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.faces_of_joints import faces_of_joints, travels
-from ..problem.masonry.lines import edge_ends
 from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.standing import MasonryStanding, travels
 from ..problem.masonry.support import Support
 from ..quantities import Array, Flags, Integers, named
 from ..scene.scene import Scene
@@ -203,7 +202,7 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
         pose: at these times, shape (steps, n nq).
     """
     masonry, points = case.masonry, JointPoints.of(case, scene)
-    slid_off = _slid_off_in_space(masonry) if masonry.in_space else _slid_off_in_plane(masonry)
+    slid_off = _slid_off_in_space(case.standing) if masonry.in_space else _slid_off_in_plane(masonry)
     widths = np.array([each.width for each in masonry.joints])
 
     def look(some: Array, shift: Array) -> JointRecord:
@@ -244,8 +243,8 @@ def _slid_off_in_plane(masonry: Masonry) -> SlidOff:
     return slid_off
 
 
-def _slid_off_in_space(masonry: Masonry) -> SlidOff:
-    widths, faces = np.array([joint.width for joint in masonry.joints]), faces_of_joints(masonry)
+def _slid_off_in_space(standing: MasonryStanding) -> SlidOff:
+    widths, faces = np.array([joint.width for joint in standing.joints]), standing.faces
 
     def slid_off(slid: Array) -> tuple[Array, Flags]:
         far = np.linalg.norm(slid, axis=2)
@@ -347,20 +346,20 @@ UPRIGHT = 1e-9
 
 
 def past_support(
-    masonry: Masonry, centroids: Array, motion: JointRecord, slips: Callable[[Integers], Array]
+    standing: MasonryStanding, motion: JointRecord, slips: Callable[[Integers], Array]
 ) -> dict[str, float]:
     """How far the weight of each block has passed the edge of the faces that it stands on [m], at most, by its name.
 
     Blocks that stand on horizontal joints alone are looked at. What overhangs as it is drawn counts from there.
 
     Args:
-        masonry: the masonry.
-        centroids: of all blocks with the masses that are added to them [m], shape (blocks, d).
+        standing: the masonry at rest.
         motion: what the joints did.
         slips: from the numbers of some steps, how far the block above each joint has slid on the one below [m], shape
             (steps, joints, d).
     """
-    faces, found = _faces_below(masonry), {}
+    masonry, centroids, found = standing.masonry, standing.centroids, {}
+    faces = [below.corners[:, :-1] for below, _ in standing.faces]
     looks = np.unique(np.linspace(0, len(motion.off) - 1, LOOKS).astype(int))
     for block, beds in _beds(masonry).items():
         weight = centroids[block, :-1]
@@ -400,17 +399,6 @@ def _beds(masonry: Masonry) -> dict[int, list[int]]:
         elif not joint.is_bed and abs(up) > UPRIGHT:
             inclined |= {joint.below, joint.above}
     return {block: on for block, on in beds.items() if block not in inclined}
-
-
-def _faces_below(masonry: Masonry) -> list[Array]:
-    """Corners of the face of the block below each joint in plan [m], shape (corners, d - 1) each."""
-    if masonry.in_space:
-        return [below.corners[:, :2] for below, _ in faces_of_joints(masonry)]
-    return [
-        joint.middle[:1]
-        + np.outer(edge_ends(masonry.polygons[joint.below].sides[joint.sides[0]], joint), joint.along[:1])
-        for joint in masonry.plane_joints
-    ]
 
 
 def _beyond(point: Array, corners: Array) -> float:

@@ -141,7 +141,7 @@ def _past_edges(
     case: MasonryCase, scene: Scene, t: Array, pose: Array, joints: JointRecord, fallen: dict[str, float]
 ) -> dict[str, float]:
     """How far the weight of each block that has not fallen has passed the edge of what it stands on [m]."""
-    past = past_support(case.masonry, case.centroids, joints, lambda some: slips(case, scene, t[some], pose[some]))
+    past = past_support(case.standing, joints, lambda some: slips(case, scene, t[some], pose[some]))
     return {name: far for name, far in past.items() if name not in fallen}
 
 

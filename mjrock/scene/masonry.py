@@ -14,6 +14,7 @@ from ..problem.masonry.effects import applied, laden, placed
 from ..problem.masonry.limit.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.standing import MasonryStanding
 from ..problem.masonry.tilt import motions_of_tilt
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
@@ -21,7 +22,7 @@ from ..quantities import GRAVITY, Array, Integers, named, require_kind
 from .attachments import attachments
 from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints, Limits
+from .parts import Bodies, ContactPoints, JointSprings, Limits
 from .rest import UnsettledError
 from .scene import Scene
 
@@ -207,6 +208,15 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
         ),
         *attachments(effects, number, lambda effect: placed(masonry, effect), centroids[free]),
         limits=limits,
+        made_of=MasonryStanding(masonry, centroids),
+        springs=JointSprings(
+            masonry.joint_stiffness,
+            masonry.joint_shear,
+            masonry.retardation,
+            masonry.joint_friction,
+            masonry.residual_friction,
+            np.full(len(masonry.joints), masonry.points),
+        ),
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
     )
 

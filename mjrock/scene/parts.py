@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -269,6 +269,25 @@ class ConstantForces:
         keep_array(self, "body", (f,), kind=np.int64)
         for name in ("at", "force"):
             keep_array(self, name, (f, directions))
+
+
+class JointSprings(NamedTuple):
+    """What the joints are made of, per area, in the order of their names, shape (joints,) each.
+
+    Args:
+        k_n, k_s: stiffness along the normal and along the face [N/m3], k_s infinite where the joint sticks rigidly.
+        retardation: dashpot over spring, c/k [s].
+        friction: coefficient [-].
+        residual: the same of a joint that has lost its bond [-].
+        points: contact lines of a joint of the plane, and of each side of a joint in space.
+    """
+
+    k_n: Array
+    k_s: Array
+    retardation: Array
+    friction: Array
+    residual: Array
+    points: Integers
 
 
 @dataclass(frozen=True)

@@ -21,12 +21,13 @@ import numpy as np
 from ..geometry.frames import Freedom, frames_of
 from ..geometry.kinematics import AppliedForces, Places, Ties, gaps
 from ..geometry.links import ends
+from ..problem.wall.standing import Standing
 from ..quantities import Array, Integers, frozen
 from .checks import require_on
 from .dampers import Dampers
 from .frequencies import highest_frequency, rocking_frequency, tie_frequency
 from .masses import kinetic_energies
-from .parts import Bodies, ConstantForces, ContactPoints, Limits, Links
+from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links
 from .potential import Potential
 from .rest import lowered, settled
 from .structure import Structure, energies
@@ -49,6 +50,8 @@ class Scene:
         limits: how far a run follows the bodies.
         title: what the scene is, in words, for the model text.
         facts: numbers and texts that the model records.
+        made_of: solids and joints of the bodies and of what they stand on; None of a scene that is written by hand.
+        springs: what the joints are made of, or None.
 
     Raises:
         ValueError: for parts that do not fit the bodies, two things of one name, or bodies that do not stand.
@@ -62,6 +65,8 @@ class Scene:
     limits: Limits = field(default_factory=Limits)
     title: str = "Rigid bodies on compliant contacts"
     facts: Mapping[str, float | str] = field(default_factory=dict)
+    made_of: Standing | None = None
+    springs: JointSprings | None = None
 
     def __repr__(self) -> str:
         parts = len(self.bodies.names), len(self.contacts.k), len(self.links.names)
@@ -83,6 +88,17 @@ class Scene:
     def freedom(self) -> Freedom:
         """How the bodies may move: in the plane or in space."""
         return self.bodies.freedom
+
+    @property
+    def standing(self) -> Standing:
+        """Solids and joints of the bodies and of what they stand on.
+
+        Raises:
+            ValueError: for a scene that is written by hand, which has none.
+        """
+        if self.made_of is None:
+            raise ValueError("the scene is written by hand and has no solids; give made_of, or take scene_of(case)")
+        return self.made_of
 
     @property
     def radius(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -9,14 +10,16 @@ import numpy as np
 
 from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
+from ..problem.damping.interface import Interface
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
+from ..problem.wall.standing import WallStanding
 from ..quantities import Array, require_kind
 from .attachments import attachments
 from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints
+from .parts import Bodies, ContactPoints, JointSprings
 from .rest import held
 from .scene import Scene
 
@@ -132,11 +135,23 @@ def standing_wall(
         settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]) if even else None,
         title=_title(wall, stop_top),
         facts=facts,
+        made_of=WallStanding(wall, stop_top),
+        springs=_springs([contacts.base] if stop_top is None else [contacts.base, contacts.side_up_to(stop_top)]),
     )
     if even:
         return scene
     on_base = replace(scene.contacts, friction=np.where(scene.contacts.joint == 0, friction, 0.0))
     return replace(scene, settled=held(scene.potential, on_base))
+
+
+def _springs(interfaces: Sequence[Interface]) -> JointSprings:
+    """What the base and the side stop are made of. Friction of a base that holds is infinite."""
+    without = np.inf, 0.0  # what None stands for, of the base and of the side
+    given = [none if one.friction is None else one.friction for one, none in zip(interfaces, without, strict=False)]
+    friction = np.array(given)
+    k_n, retardation = np.array([(one.k_n, one.retardation) for one in interfaces]).T
+    points = np.array([each.points for each in interfaces])
+    return JointSprings(k_n, np.full(len(interfaces), np.inf), retardation, friction, friction, points)
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

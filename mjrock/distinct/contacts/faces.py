@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ...compiled import inlined
 from ...geometry.vectors import Vector, components, dot, minus, scaled
-from ...problem.masonry.blocks.joints_in_space import Face
-from ...problem.masonry.faces_of_joints import faces_of_joints
-from ...problem.masonry.lines import edge_ends
-from ...problem.masonry.masonry import Masonry
+from ...problem.wall.standing import Face
 from ...quantities import Array
 from ..rows import Rows, kinds, rows
 
@@ -24,37 +19,7 @@ ROUNDS = 3
 for a rectangle."""
 
 
-class Outline(NamedTuple):
-    """A face of a block: corners [m], shape (n, d), its normal, and normals of its edges in its plane, (edges, d)."""
-
-    corners: Array
-    normal: Array
-    ways: Array
-
-
-def outlines_of_joints(masonry: Masonry) -> list[tuple[Outline, Outline]]:
-    """The whole faces that make each joint, of which it covers a part: of the block below and of the block above."""
-    if masonry.in_space:
-        return [(_polygonal(below), _polygonal(above)) for below, above in faces_of_joints(masonry)]
-    pairs = []
-    for joint in masonry.plane_joints:
-        ways, normal = np.array([-joint.along, joint.along]), np.array([-joint.along[1], joint.along[0]])
-        below, above = (
-            Outline(
-                joint.middle + np.outer(edge_ends(masonry.polygons[block].sides[side], joint), joint.along), way, ways
-            )
-            for block, side, way in zip((joint.below, joint.above), joint.sides, (normal, -normal), strict=True)
-        )
-        pairs.append((below, above))
-    return pairs
-
-
-def _polygonal(face: Face) -> Outline:
-    ways = np.cross(np.roll(face.corners, -1, axis=0) - face.corners, face.normal)
-    return Outline(face.corners, face.normal, ways / np.linalg.norm(ways, axis=1)[:, None])
-
-
-def edges_of(face: Outline, origin: Array, met: Outline) -> Rows:
+def edges_of(face: Face, origin: Array, met: Face) -> Rows:
     """The edges of a face, which is taken to be longer by `OVERHANG` at either end, from a point of its block [m].
 
     A joint is made by this face and another that is `met`.

@@ -7,12 +7,12 @@ that it has on one of its sides, twice over, as a block between two others.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from ...problem.masonry.blocks.compound import AnyBlock
-from ...problem.masonry.lines import free_numbers
-from ...problem.masonry.masonry import Masonry
+from ...problem.wall.standing import Solid
 from ...quantities import Array
 from ..limit import longest_step
 from ..rows import chosen, joined, rows
@@ -23,26 +23,27 @@ SIDES = 2.0
 """On how many others a block lies at once."""
 
 
-def longest_step_of_loose(masonry: Masonry, law: PairLaw, system: System) -> float:
+def longest_step_of_loose(solids: Sequence[Solid], law: PairLaw, system: System) -> float:
     """The longest stable step [s] of loose blocks on their springs, infinite where there are none."""
-    body, tables, kept = free_numbers(masonry.blocks), [rows(system.lines.dtype, 0)], list[int]()
+    tables, kept, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
     for i in np.flatnonzero(law.loose & ~law.fixed).tolist():
-        block, centroid = masonry.blocks[i], np.asarray(masonry.centroids[i])
-        for corners, normal, shared in _springs(block, law.of_block[0][i]):
+        solid = solids[i]
+        centroid = solid.rest if in_space else solid.rest[::2]
+        for corners, normal, shared in _springs(solid, law.of_block[0][i]):
             columns = dict(zip(SHARED, shared, strict=True))
-            ends = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
+            ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
             tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
-            kept.append(int(body[i]))
+            kept.append(solid.body)
     if not kept:
         return math.inf
     return longest_step(system._replace(bodies=chosen(system.bodies, np.array(kept)), lines=joined(*tables), links=()))
 
 
-def _springs(block: AnyBlock, shared: Array) -> list[tuple[Array, Array, Array]]:
+def _springs(solid: Solid, shared: Array) -> list[tuple[Array, Array, Array]]:
     """The corners of each side of a loose block [m], its normal, and the springs and dashpots that each corner has."""
     springs = []
-    for side in block.sides:
-        over = np.array([side_area(side, in_space=block.in_space) / shared[-1]])
+    for side in solid.sides:
+        over = np.array([side_area(side) / shared[-1]])
         part = SIDES * float(part_of_face(over)[0]) / len(side.corners)
         springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
     return springs

@@ -23,10 +23,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.hull import area_vector
-from ...problem.masonry.blocks.sides import Side
-from ...problem.masonry.masonry import Masonry
+from ...geometry.hull import Side, area_vector
 from ...quantities import Array, Flags, Integers
+from ...scene.scene import Scene
 from ..rows import Rows
 
 SHARED = ("k", "c", "k_s", "c_s")
@@ -81,22 +80,25 @@ class PairLaw(NamedTuple):
     loose: Flags
 
     @classmethod
-    def of_joints(cls, masonry: Masonry, lines: Rows, joint: Integers) -> PairLaw:
-        """The law of masonry, from the lines of its joints and the number of the joint of each."""
-        blocks, joints = len(masonry.blocks), len(masonry.joints)
-        below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
-        areas = np.array([each.area if masonry.in_space else each.width for each in masonry.joints])
+    def of_joints(cls, scene: Scene, lines: Rows) -> PairLaw:
+        """The law of the joints of a scene, from their lines."""
+        solids, springs, joint = scene.standing.solids, scene.springs, scene.contacts.joint
+        in_space = len(scene.freedom.axes) == 3
+        assert springs is not None
+        blocks, joints = len(solids), len(scene.standing.joints)
+        below, above = np.array([(each.below, each.above) for each in scene.standing.joints]).T
+        areas = np.array([each.area if in_space else each.width for each in scene.standing.joints])
         sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED), areas])
         friction = np.zeros(joints)
-        friction[joint] = np.minimum(lines["friction"], masonry.residual_friction[joint])
+        friction[joint] = np.minimum(lines["friction"], springs.residual[joint])
         jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
         in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
         least = np.full(len(jointed), np.inf)
         np.minimum.at(least, of, friction)
         shared, rough = _of_blocks(np.append(below, above), sums, friction, blocks)
         loose = shared[:, 0] == 0
-        shared[loose], rough[loose] = _of_loose(masonry, sums, friction, loose)
-        fixed = np.array([block.fixed for block in masonry.blocks])
+        shared[loose], rough[loose] = _of_loose(scene, sums, friction, loose)
+        fixed = np.array([solid.fixed for solid in solids])
         return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose)
 
     @property
@@ -140,9 +142,10 @@ def part_of_face(over: Array) -> Array:
     return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
 
 
-def side_area(side: Side, *, in_space: bool) -> float:
+def side_area(side: Side) -> float:
     """Area of a side of a block [m2], in the plane its length [m]."""
-    return float(np.linalg.norm(area_vector(side.corners) if in_space else np.subtract(*side.corners)))
+    flat = side.corners.shape[1] == 2
+    return float(np.linalg.norm(np.subtract(*side.corners) if flat else area_vector(side.corners)))
 
 
 def _sums(of: Integers, values: Array, count: int) -> Array:
@@ -161,16 +164,17 @@ def _of_blocks(block: Integers, joints: Array, friction: Array, blocks: int) -> 
     return share[:, None] * sums, least
 
 
-def _of_loose(masonry: Masonry, joints: Array, friction: Array, loose: Flags) -> tuple[Array, Array]:
+def _of_loose(scene: Scene, joints: Array, friction: Array, loose: Flags) -> tuple[Array, Array]:
     """What loose blocks have over their largest faces. Of joints that are as soft, the softest along the face counts,
     then the least damped and the smoothest one."""
-    known = masonry.joint_stiffness, masonry.joint_shear, masonry.retardation, friction
+    assert scene.springs is not None
+    springs, solids = scene.springs, [scene.standing.solids[i] for i in np.flatnonzero(loose)]
+    known = springs.k_n, springs.k_s, springs.retardation, friction
     softest = int(np.lexsort(known[::-1])[0])
-    blocks = [block for block, alone in zip(masonry.blocks, loose.tolist(), strict=True) if alone]
-    areas = [max(side_area(side, in_space=block.in_space) for side in block.sides) for block in blocks]
-    largest = np.reshape(areas, (-1, 1))
+    largest = np.reshape([max(side_area(side) for side in solid.sides) for solid in solids], (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
-    if not masonry.in_space:
-        length = np.array([block.length for block in masonry.polygons])[loose][:, None]
-        per_area = per_area * np.append(length / masonry.joints[softest].length * np.ones(4), np.ones_like(length), 1)
-    return largest * per_area, np.full(len(blocks), friction[softest])
+    if len(scene.freedom.axes) == 2:
+        length = np.array([[np.ptp(solid.drawn[0].corners[:, 1])] for solid in solids]).reshape(-1, 1)
+        of_joint = scene.standing.joints[softest].length
+        per_area = per_area * np.append(length / of_joint * np.ones(4), np.ones_like(length), 1)
+    return largest * per_area, np.full(len(solids), friction[softest])

@@ -28,7 +28,6 @@ from ..wall.case import Case
 from ..wall.effect import Anchored, Effect
 from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import require_in_plane
-from ..wall.standing import JointFrames, Solid
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
@@ -36,7 +35,7 @@ from .effects import laden, numbered, placed, require_anchored, require_in_space
 from .laws.bond import Bond
 from .masonry import Masonry
 from .plausible import doubts
-from .standing import joints_of, solids_of
+from .standing import MasonryStanding
 from .support import Support, supports_of
 from .tilt import tilt_of
 
@@ -221,15 +220,10 @@ class MasonryCase(Carrying):
         """Corners of each fixed block [m], by its number."""
         return {i: block.corners for i, block in enumerate(self.masonry.blocks) if block.fixed}
 
-    @property
-    def solids(self) -> list[Solid]:
-        """The blocks at rest."""
-        return solids_of(self.masonry, self.centroids)
-
-    @property
-    def frames(self) -> JointFrames:
-        """The joints at rest."""
-        return joints_of(self.masonry, self.centroids)
+    @cached_property
+    def standing(self) -> MasonryStanding:
+        """The blocks and their joints at rest."""
+        return MasonryStanding(self.masonry, self.centroids)
 
     def held_by(self, link: Anchored) -> Array:
         """The point that a link holds, at rest [m], shape (d,)."""

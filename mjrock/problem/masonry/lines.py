@@ -17,7 +17,6 @@ from .blocks.compound import AnyBlock
 from .blocks.joints import LEVEL, Joint
 from .blocks.joints_in_space import SpaceJoint, axes_across
 from .blocks.polygon import Polygon
-from .blocks.sides import Side
 
 RIGID = 1e-12
 """Square of a frequency, over that of the highest, below which a mode is a motion that no joint resists [-]."""
@@ -139,12 +138,6 @@ def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -
     for place, stiffness, on_edge in zip(joint.outline[0] + flat @ joint.axes, k, edges.tolist(), strict=True):
         apart = np.abs(joint.outline - place).max(axis=1)
         yield place, stiffness, on_edge or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
-
-
-def edge_ends(edge: Side, joint: Joint) -> tuple[float, float]:
-    """Where an edge that makes a joint ends, from the middle of the joint along it [m]."""
-    low, high = sorted(((edge.corners - joint.middle) @ joint.along).tolist())
-    return low, high
 
 
 def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_array:

@@ -2,55 +2,86 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
-from ...geometry.hull import Faces, prism
+from ...geometry.hull import Side
 from ...quantities import Array
-from ..wall.standing import JointFrames, Solid, in_space
-from .blocks.compound import AnyBlock
-from .blocks.polygon import Polygon
+from ..wall.standing import Face, JointFrames, Solid, in_space
+from .blocks.joints import Joint
+from .blocks.joints_in_space import SpaceJoint
 from .limit.joint_forces import axes_of
 from .lines import free_numbers
 from .masonry import Masonry
 
 
-def solids_of(masonry: Masonry, centroids: Array) -> list[Solid]:
-    """The blocks in their order; those of the plane are prisms of their length.
+@dataclass(frozen=True, eq=False)
+class MasonryStanding:
+    """Masonry, and the centroids of all blocks with the masses that are added to them [m], shape (blocks, d)."""
 
-    Args:
-        masonry: the masonry.
-        centroids: of all blocks with the masses that are added to them [m], shape (blocks, d).
+    masonry: Masonry
+    centroids: Array
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """The blocks in their order; those of the plane are prisms of their length."""
+        blocks, body = self.masonry.blocks, free_numbers(self.masonry.blocks).tolist()
+        return tuple(
+            Solid(name, i, body[i], rest, block.solids, block.inside, block.sides, block.size)
+            for i, (name, block, rest) in enumerate(
+                zip(self.masonry.names, blocks, in_space(self.centroids), strict=True)
+            )
+        )
+
+    @property
+    def joints(self) -> tuple[Joint | SpaceJoint, ...]:
+        """The joints of the masonry."""
+        return self.masonry.joints
+
+    @property
+    def frames(self) -> JointFrames:
+        """Where they are."""
+        masonry = self.masonry
+        number, fixed = free_numbers(masonry.blocks), np.array([block.fixed for block in masonry.blocks])
+        below, above = np.array([(joint.below, joint.above) for joint in masonry.joints]).T
+        of_fixed = np.where(fixed, np.cumsum(fixed) - 1, -1)
+        return JointFrames(
+            tuple(joint.name for joint in masonry.joints),
+            np.array([joint.middle for joint in masonry.joints]),
+            axes_of(masonry),
+            number[below],
+            number[above],
+            of_fixed[below],
+            tuple(name for name, held in zip(masonry.names, fixed, strict=True) if held),
+            self.centroids[list(masonry.free)],
+        )
+
+    @cached_property
+    def faces(self) -> tuple[tuple[Face, Face], ...]:
+        """The whole faces that make each joint, of the blocks below and above."""
+        sides = [block.sides for block in self.masonry.blocks]
+        pairs = []
+        for joint in self.masonry.joints:
+            below, above = sides[joint.below][joint.sides[0]], sides[joint.above][joint.sides[1]]
+            if isinstance(joint, SpaceJoint):
+                pairs.append((Face.in_space(below), Face.in_space(above)))
+            else:
+                pairs.append((_edge(below, joint, 1.0), _edge(above, joint, -1.0)))
+        return tuple(pairs)
+
+
+def _edge(side: Side, joint: Joint, sense: float) -> Face:
+    """An edge that makes a joint, along the line of the joint, see `Face.in_plane`."""
+    low, high = sorted(((side.corners - joint.middle) @ joint.along).tolist())
+    return Face.in_plane(joint.middle, joint.along, (low, high), sense)
+
+
+def travels(faces: tuple[Face, Face], ways: Array) -> Array:
+    """How far the face above can slide along unit vectors until it has left the face below [m], shape (n,).
+
+    The two faces then touch along a line square to the way at most.
     """
-    solids, parts = [], zip(masonry.names, masonry.blocks, in_space(centroids), strict=True)
-    for i, (name, block, rest) in enumerate(parts):
-        corners, faces = faces_of(block)
-        solids.append(Solid(name, i, corners - rest, faces, rest, block.fixed))
-    return solids
-
-
-def faces_of(block: AnyBlock) -> tuple[Array, Faces]:
-    """Corners of a block in space [m], shape (corners, 3), and its faces: those of each of its convex parts."""
-    corners, faces = list[Array](), list[tuple[int, ...]]()
-    for part in block.parts:
-        before = sum(map(len, corners))
-        own, rings = prism(part.corners, part.length) if isinstance(part, Polygon) else (part.corners, part.faces)
-        corners.append(own)
-        faces += [tuple(before + i for i in ring) for ring in rings]
-    return np.concatenate(corners), tuple(faces)
-
-
-def joints_of(masonry: Masonry, centroids: Array) -> JointFrames:
-    """The joints; arguments are those of `solids_of`."""
-    number, fixed = free_numbers(masonry.blocks), np.array([block.fixed for block in masonry.blocks])
-    below, above = np.array([(joint.below, joint.above) for joint in masonry.joints]).T
-    of_fixed = np.where(fixed, np.cumsum(fixed) - 1, -1)
-    return JointFrames(
-        tuple(joint.name for joint in masonry.joints),
-        np.array([joint.middle for joint in masonry.joints]),
-        axes_of(masonry),
-        number[below],
-        number[above],
-        of_fixed[below],
-        tuple(name for name, held in zip(masonry.names, fixed, strict=True) if held),
-        centroids[list(masonry.free)],
-    )
+    below, above = faces
+    return np.asarray((below.corners @ ways.T).max(axis=0) - (above.corners @ ways.T).min(axis=0))

@@ -28,7 +28,7 @@ from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
 from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
-from .standing import JointFrames, Solid, joints_of_wall, solids_of_wall
+from .standing import WallStanding
 from .ties_on_wall import TiePull, limits, stored, taken, yielded
 
 
@@ -160,15 +160,10 @@ class Case(Carrying):
         """Corners of the wall about its centroid [m]."""
         return (self.wall.outline,)
 
-    @property
-    def solids(self) -> list[Solid]:
+    @cached_property
+    def standing(self) -> WallStanding:
         """The wall and what it stands on and against, at rest."""
-        return solids_of_wall(self.wall, self.stop_top)
-
-    @property
-    def frames(self) -> JointFrames:
-        """Its base and its side stop as joints, at rest."""
-        return joints_of_wall(self.wall, self.stop_top, self.rests)
+        return WallStanding(self.wall, self.stop_top)
 
     def held_by(self, link: Anchored) -> Array:
         """The point that a link holds, at rest [m], shape (2,)."""

@@ -37,8 +37,8 @@ class Opening:
         height: its own height [m], 0.01 to 200.
         sill: height of its lower edge above the base [m], 0 to 200; 0 is a door, which shortens the base too.
         round: whether it is a circle, or an ellipse where width and height differ, such as a rose window.
-        at: where its middle lies along the wall, from the middle of the wall [m], -500 to 500, for pictures. None draws
-            openings of one sill at equal distances.
+        at: where its middle lies along the wall, from the middle of the wall [m], -500 to 500, for solids and pictures.
+            None has openings of one sill at equal distances.
 
     Raises:
         ValueError: for a value outside its range.
@@ -148,6 +148,21 @@ class Front(NamedTuple):
     def eaves(self) -> float:
         """Height at which the gable begins, or that of the wall [m]."""
         return self.height - (0.0 if self.gable is None else self.gable.height)
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Where the middle of each opening is along the wall, from its middle [m]. Those of one sill that say nothing
+        are at equal distances."""
+        sills = [opening.sill for opening in self.openings if opening.at is None]
+        places, before = list[float](), list[float]()
+        for opening in self.openings:
+            if opening.at is not None:
+                places.append(opening.at)
+                continue
+            wide = float(self.long(np.array(opening.head)))
+            places.append(wide * ((before.count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5))
+            before.append(opening.sill)
+        return tuple(places)
 
     def long(self, z: Array) -> Array:
         """Length of the wall at heights above the base, its openings not taken off [m], shape (n,)."""

@@ -1,34 +1,71 @@
-"""What stands in a case at rest: solids with their faces, and joints with their axes; those of a wall."""
+"""What stands in a case at rest: solids of convex parts, joints with their axes and faces; those of a wall."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ...geometry.hull import Faces, prism
-from ...quantities import Array, Integers
+from ...geometry.hull import Convex, Faces, Side
+from ...quantities import Array, Flags, Integers
 from .block import Block
 
+ROUND = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 13))
+"""Heights between which a round opening has straight sides, over its height [-]."""
+THIN = 1e-9
+"""Width of what is left of a wall beside an opening, over the length of the wall, that is nothing [-]."""
 
-class Solid(NamedTuple):
-    """A body at rest.
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A block at rest: convex parts that move as one.
 
     Args:
         name: of the block, "wall", "base" or "side".
         block: number of its block, None of what a wall stands on or against.
-        corners: about its centroid [m], shape (corners, 3).
-        faces: numbers of the corners of each, counterclockwise as seen from outside.
-        rest: its centroid [m], shape (3,).
-        fixed: whether it is the ground, or a fixed block.
+        body: number of its body, -1 of what is fixed.
+        rest: its centroid with the masses that are added to it [m], shape (3,).
+        drawn: its convex parts where they are drawn [m]. Blocks of the plane reach over their length about y = 0.
+        inside: of each part, which faces nothing meets: those within the block, and the ends of prisms, (faces,).
+        sides: its surface in plane pieces, in the plane edges; none of a wall.
+        size: largest distance of a corner from the centroid without added masses [m].
     """
 
     name: str
     block: int | None
-    corners: Array
-    faces: Faces
+    body: int
     rest: Array
-    fixed: bool
+    drawn: tuple[Convex, ...]
+    inside: tuple[Flags, ...]
+    sides: tuple[Side, ...]
+    size: float
+
+    @property
+    def fixed(self) -> bool:
+        """Whether it is the ground, or a fixed block."""
+        return self.body < 0
+
+    @cached_property
+    def parts(self) -> tuple[Convex, ...]:
+        """Its convex parts about `rest` [m], which is the origin of its body."""
+        return tuple(part.about(self.rest) for part in self.drawn)
+
+    @property
+    def corners(self) -> Array:
+        """Corners of all parts about `rest` [m], shape (corners, 3)."""
+        return np.concatenate([part.corners for part in self.parts])
+
+    @property
+    def faces(self) -> Faces:
+        """Numbers of the corners of each face of a part, counterclockwise as seen from outside."""
+        before = np.cumsum([0, *(len(part.corners) for part in self.drawn)]).tolist()
+        pairs = zip(before, self.drawn, strict=False)
+        return tuple(tuple(first + i for i in face) for first, part in pairs for face in part.faces)
 
 
 class JointFrames(NamedTuple):
@@ -60,46 +97,201 @@ class JointFrames(NamedTuple):
         return np.concatenate([arm[:, None], self.axes], axis=1)
 
 
+class Face(NamedTuple):
+    """A whole face that makes a joint, of which the joint covers a part.
+
+    Args:
+        corners: in the plane its two ends [m], shape (2, 2), in space counterclockwise from outside, shape (n, 3).
+        normal: unit vector out of its block, shape (d,).
+        ways: unit vectors out of the face, square to its edges in its plane, in the plane along it, shape (edges, d).
+    """
+
+    corners: Array
+    normal: Array
+    ways: Array
+
+    @classmethod
+    def in_plane(cls, origin: Array, along: Array, ends: tuple[float, float], sense: float) -> Face:
+        """An edge from a point along a unit vector, shape (2,), between two ends [m]. Its normal is to the left of
+        that vector where `sense` is 1, and to the right where it is -1."""
+        corners = origin + np.outer(ends, along)
+        return cls(corners, sense * np.array([-along[1], along[0]]), np.array([-along, along]))
+
+    @classmethod
+    def in_space(cls, side: Side) -> Face:
+        """A side of a block in space."""
+        ways = np.cross(np.roll(side.corners, -1, axis=0) - side.corners, side.normal)
+        return cls(side.corners, side.normal, ways / np.linalg.norm(ways, axis=1)[:, None])
+
+
+class Meeting(Protocol):
+    """What a joint says of what it joins: `Joint` and `SpaceJoint` of masonry, `WallJoint` of a wall."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def below(self) -> int:
+        """Number of the solid below, whose face points to the other one."""
+
+    @property
+    def above(self) -> int:
+        """Number of the solid above."""
+
+    @property
+    def sides(self) -> tuple[int, int]:
+        """Numbers of the sides of the solids below and above that make it."""
+
+    @property
+    def width(self) -> float:
+        """Its extent in the plane, in space the smallest one [m]."""
+
+    @property
+    def length(self) -> float:
+        """Its extent out of the plane [m]."""
+
+    @property
+    def area(self) -> float:
+        """Its area [m2]."""
+
+
+class WallJoint(NamedTuple):
+    """The base of a wall, or its side stop, see `Meeting`."""
+
+    name: str
+    below: int
+    above: int
+    width: float
+    length: float
+    sides: tuple[int, int] = (0, 0)
+
+    @property
+    def area(self) -> float:
+        """Its area [m2]."""
+        return self.width * self.length
+
+
+class Standing(Protocol):
+    """What stands: its solids and joints, of a wall or of masonry. What is not asked for is not made."""
+
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        """The blocks in their order, fixed ones too; of a wall that one and what it stands on and against."""
+
+    @property
+    def joints(self) -> Sequence[Meeting]:
+        """The joints, with the numbers of the solids that they join."""
+
+    @property
+    def frames(self) -> JointFrames:
+        """Where the joints are."""
+
+    @property
+    def faces(self) -> tuple[tuple[Face, Face], ...]:
+        """Of each joint the whole faces of the solids below and above."""
+
+
 def in_space(vectors: Array) -> Array:
     """Vectors of the plane x, z with y = 0, shape (..., 3); those of space as they are."""
     return vectors if vectors.shape[-1] == 3 else np.insert(vectors, 1, 0.0, axis=-1)
 
 
-def solids_of_wall(wall: Block, stop_top: float | None) -> list[Solid]:
-    """The wall without its openings, a slab below it, and where it has a side stop one beside it."""
-    b, length, rest = wall.b, wall.length, np.array([wall.centroid_offset, 0.0, wall.centroid_height])
-    outer = wall.outline[1:-1]
-    if wall.gable is not None:
-        z = np.sort(np.append(outer[:, 1], wall.front.eaves - rest[2]))
-        outer = np.column_stack([np.interp(z, outer[:, 1], outer[:, 0]), z])
-    inner = np.column_stack([np.full(len(outer), wall.outline[0, 0]), outer[:, 1]])
-    corners, n = prism(np.concatenate([outer, inner[::-1]]), length)[0], 2 * len(outer)
-    corners[:, 1] *= wall.front.long(corners[:, 2] + rest[2]) / length
-    ends = [(i, i + 1, n - 2 - i, n - 1 - i) for i in range(len(outer) - 1)]  # the outline of a profile is not convex
-    rim = [(i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n)]
-    faces = (*ends, *(tuple(n + i for i in end[::-1]) for end in ends), *rim)
-    solids = [Solid("wall", 0, corners, faces, rest, False)]
-    slabs = {"base": (-3 * b, 3 * b, -b, 0.0)}
-    slabs |= {} if stop_top is None else {"side": (-3 * b, -b, 0.0, stop_top)}
-    for name, (left, right, low, high) in slabs.items():
-        slab = prism(np.array([(left, low), (right, low), (right, high), (left, high)]), length)
-        solids.append(Solid(name, None, *slab, np.zeros(3), True))
-    return solids
+@dataclass(frozen=True, eq=False)
+class WallStanding:
+    """A wall on a slab, and where it has a side stop against one of a height [m]."""
+
+    wall: Block
+    stop_top: float | None
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """The wall without its openings, the slab below it, and the one beside it."""
+        wall, b = self.wall, self.wall.b
+        slabs = [("base", -3 * b, 3 * b, -b, 0.0)]
+        slabs += [] if self.stop_top is None else [("side", -3 * b, -b, 0.0, self.stop_top)]
+        rest = in_space(np.array([wall.centroid_offset, wall.centroid_height]))
+        solids = [Solid("wall", 0, 0, rest, parts := parts_of_wall(wall), _met(parts), (), math.hypot(b, wall.h))]
+        for name, left, right, low, high in slabs:
+            ends = [(z, -0.5 * wall.length, 0.5 * wall.length) for z in (low, high)]
+            slab = (_slab(ends[0], ends[1], [(left, right)] * 2),)
+            size = 0.5 * math.hypot(right - left, high - low)
+            solids.append(Solid(name, None, -1, np.zeros(3), slab, _met(slab), (), size))
+        return tuple(solids)
+
+    @property
+    def joints(self) -> tuple[WallJoint, ...]:
+        """The base and the side stop."""
+        base = WallJoint("base", 1, 0, 2 * self.wall.half_base, self.wall.base_length)
+        return (base,) if self.stop_top is None else (base, WallJoint("side", 2, 0, self.stop_top, self.wall.length))
+
+    @property
+    def frames(self) -> JointFrames:
+        """Where they are."""
+        sides, top = len(self.joints), self.stop_top or 0.0
+        names, numbers = ("base", "side")[:sides], np.arange(sides)
+        middle = np.array([(0.0, 0.0), (-self.wall.b, 0.5 * top)])[:sides]
+        axes = np.array([[(0.0, 1.0), (1.0, 0.0)], [(1.0, 0.0), (0.0, -1.0)]])[:sides]
+        rest = np.array([[self.wall.centroid_offset, self.wall.centroid_height]])
+        return JointFrames(names, middle, axes, 0 * numbers - 1, 0 * numbers, numbers, names, rest)
+
+    @property
+    def faces(self) -> tuple[tuple[Face, Face], ...]:
+        """Those of the slabs and of the wall."""
+        b, foot, right, down = self.wall.b, np.array([-self.wall.b, 0.0]), np.array([1.0, 0.0]), np.array([0.0, -1.0])
+        reaches = [(right, (-2 * b, 4 * b), (0.0, 2 * b))]
+        if self.stop_top is not None:
+            reaches.append((down, (-self.stop_top, 0.0), (-2 * self.wall.h, 0.0)))
+        return tuple(
+            (Face.in_plane(foot, way, below, 1.0), Face.in_plane(foot, way, above, -1.0))
+            for way, below, above in reaches
+        )
 
 
-def joints_of_wall(wall: Block, stop_top: float | None, rests: Array) -> JointFrames:
-    """The base of a wall, and its side stop where it has one; its centroid at rest has the shape (1, 2) [m]."""
-    sides = 1 if stop_top is None else 2
-    middle = np.array([(0.0, 0.0), (-wall.b, 0.5 * (stop_top or 0.0))])[:sides]
-    axes = np.array([[(0.0, 1.0), (1.0, 0.0)], [(1.0, 0.0), (0.0, -1.0)]])[:sides]
-    names, numbers = ("base", "side")[:sides], np.arange(sides)
-    return JointFrames(
-        names,
-        middle,
-        axes,
-        0 * numbers - 1,
-        0 * numbers,
-        numbers,
-        names,
-        np.array([[wall.centroid_offset, wall.centroid_height]]),
-    )
+def _met(parts: Sequence[Convex]) -> tuple[Flags, ...]:
+    """No faces that nothing meets."""
+    return tuple(np.zeros(len(part.faces), dtype=bool) for part in parts)
+
+
+def parts_of_wall(wall: Block) -> tuple[Convex, ...]:
+    """The convex parts that a wall is made of [m]: what is left of it beside its openings, between heights at which its
+    thickness, its length or an opening has a corner. Round openings have straight sides between some heights."""
+    profile, front, parts = wall.profile or ((0.0, 2 * wall.b), (2 * wall.h, 2 * wall.b)), wall.front, list[Convex]()
+    heights = front.corners | {
+        float(opening.sill + share * opening.height) for opening in front.openings if opening.round for share in ROUND
+    }
+    for (low, t_low), (high, t_high) in pairwise(profile):
+        for ends in pairwise(sorted({low, high} | {z for z in heights if low < z < high})):
+            thick = [t_low + (t_high - t_low) * (z - low) / (high - low) for z in ends]
+            faces = [(-wall.b, t - wall.b) for t in thick]
+            for left, right in _beside_openings(wall, *ends):
+                bottom, top = ((z, a, b) for z, a, b in zip(ends, left, right, strict=True))
+                parts.append(_slab(bottom, top, faces))
+    return tuple(parts)
+
+
+def _beside_openings(wall: Block, low: float, high: float) -> list[tuple[Array, Array]]:
+    """Where each part that is left of a wall between two heights begins and ends along it [m], shape (2,) each: at both
+    heights."""
+    front, z = wall.front, np.array([low, high])
+    half, middle = 0.5 * front.long(z), 0.5 * (low + high)
+    left, pieces = -half, list[tuple[Array, Array]]()
+    for place, opening in sorted(zip(front.places, front.openings, strict=True), key=lambda pair: pair[0]):
+        if opening.sill < middle < opening.head:
+            across = 0.5 * (opening.across(z) if opening.round else np.full(2, opening.width))
+            pieces.append((left, np.clip(place - across, left, half)))
+            left = np.clip(place + across, left, half)
+    pieces.append((left, half))
+    return [piece for piece in pieces if (piece[1] - piece[0]).max() > THIN * wall.length]
+
+
+def _slab(
+    bottom: tuple[float, float, float], top: tuple[float, float, float], faces: Sequence[tuple[float, float]]
+) -> Convex:
+    """The body between two heights, each with where the body begins and ends along the wall there [m], and the x of its
+    inner and outer face at both [m]."""
+    rings = [
+        np.array([(inner, right, z), (outer, right, z), (outer, left, z), (inner, left, z)])
+        for (z, left, right), (inner, outer) in zip((bottom, top), faces, strict=True)
+    ]
+    return Convex.between(*rings)

@@ -10,16 +10,14 @@ from typing import Self
 import numpy as np
 
 from ....geometry.graph import components
-from ....quantities import Array, frozen, keep, require_flag, require_kind, shown
-from .joints import Joint, joints_in_plane
+from ....geometry.hull import Convex, Side
+from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, shown
+from .joints import CLOSE, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
 from .polygon import Polygon, checked_name
 from .polyhedron import Polyhedron, principal_of
-from .sides import Side
 from .surface import Surface, surface_in_plane, surface_in_space
 
-CLOSE = 1e-5
-"""Largest distance between the faces of two parts that are joined, and largest overlap of parts [m]."""
 MOST_PARTS = 1000
 """Most parts of a unit."""
 
@@ -117,6 +115,17 @@ class Compound:
     def sides(self) -> tuple[Side, ...]:
         """Its surface, in plane pieces."""
         return self.surface.sides
+
+    @property
+    def solids(self) -> tuple[Convex, ...]:
+        """Its parts in space, see `Polygon.solids`."""
+        return tuple(solid for part in self.parts for solid in part.solids)
+
+    @property
+    def inside(self) -> tuple[Flags, ...]:
+        """Of each part, which faces lie inside the unit, see `Polygon.inside`."""
+        ends = np.ones(0 if self.in_space else 2, dtype=bool)
+        return tuple(np.append(ends, inside) for inside in self.surface.inside)
 
     @cached_property
     def corners(self) -> Array:

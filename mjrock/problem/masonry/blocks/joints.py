@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from ....quantities import Array, Integers
-from .sides import Flat, Solid
+from .shape import Flat, Shape
 
 SHORTEST = 10.0
 """Length of the shortest joint, over the tolerance [-]. Blocks that share less than this touch at a corner only."""
@@ -20,6 +20,8 @@ PARALLEL = 0.05
 """Largest sine of the angle between two edges that make a joint [-]."""
 TOGETHER = 512
 """Pairs of blocks whose joints are found at once."""
+CLOSE = 1e-5
+"""Largest distance between the faces of two parts of a unit that are joined, and largest overlap of parts [m]."""
 LEVEL = 1e-6
 """Largest |x| of the normal of a bed joint, and largest |z| of that of a head joint [-]."""
 
@@ -87,12 +89,12 @@ AnyJoint = TypeVar("AnyJoint", bound=Any)
 """A joint of the plane or of space."""
 
 
-def names_of(blocks: Sequence[Solid]) -> tuple[str, ...]:
+def names_of(blocks: Sequence[Shape]) -> tuple[str, ...]:
     """Names of the blocks: their own, or `block_` and their number."""
     return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
 
 
-def numbered_parts(blocks: Sequence[Solid]) -> tuple[Integers, Integers]:
+def numbered_parts(blocks: Sequence[Shape]) -> tuple[Integers, Integers]:
     """Where the convex parts of each block begin among those of all, and how many it has, shape (blocks,) each."""
     count = np.array([len(block.parts) for block in blocks])
     return np.cumsum(count) - count, count
@@ -131,7 +133,7 @@ class Edges(NamedTuple):
     number: Integers
 
     @classmethod
-    def of(cls, blocks: Sequence[Solid]) -> Edges:
+    def of(cls, blocks: Sequence[Shape]) -> Edges:
         """The edges of blocks."""
         count = np.array([len(block.sides) for block in blocks])
         starts, ends = np.array([side.corners for block in blocks for side in block.sides]).swapaxes(0, 1)
@@ -269,7 +271,7 @@ def require_apart(name: str, other: str, deep: float, tolerance: float) -> None:
         raise ValueError(f"{overlap}; the valid range is up to the tolerance, {tolerance:g} m")
 
 
-def neighbours(blocks: Sequence[Solid], tolerance: float) -> Integers:
+def neighbours(blocks: Sequence[Shape], tolerance: float) -> Integers:
     """Pairs of blocks, not both fixed, whose bounding boxes touch, in the order of the blocks, shape (pairs, 2).
 
     Along the longest axis the blocks are sorted by where they begin. Of those that begin before one ends, the rest of

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ....geometry import convex
+from ....geometry.hull import Convex, Side
 from ....quantities import Array, frozen
 from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart, unlike_named
-from .polyhedron import Polyhedron, Vertices
-from .sides import Side, Solid
+from .polyhedron import Vertices
+from .shape import Shape
 
 OPPOSITE = -1 + 1e-3
 """Largest cosine of the angle between the normals of two faces that make a joint [-]."""
@@ -90,8 +91,11 @@ class SpaceJoint:
         return bool(np.abs(self.normal[:2]).max() < LEVEL)
 
 
-class Face(NamedTuple):
-    """A face of a block: corners counterclockwise from outside [m], (n, 3), normal out of it, n.x on it, two axes."""
+class Facing(NamedTuple):
+    """A side of a block that may face another one.
+
+    Corners counterclockwise from outside [m], (n, 3), normal out of it, n.x on it, and two axes in its plane.
+    """
 
     corners: Array
     normal: Array
@@ -118,16 +122,16 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     return first, np.cross(normals, first)
 
 
-def joints_in_space(blocks: Sequence[Solid], tolerance: float) -> tuple[SpaceJoint, ...]:
+def joints_in_space(blocks: Sequence[Shape], tolerance: float) -> tuple[SpaceJoint, ...]:
     """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
 
     Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
     which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
     names = names_of(blocks)
-    faces = [faces_of(block.sides) for block in blocks]
+    faces = [facing(block.sides) for block in blocks]
     normals = [np.array([face.normal for face in of_block]) for of_block in faces]
-    solids = [[Convex.of(part) for part in block.parts] for block in blocks]
+    solids = [block.solids for block in blocks]
     joints: list[SpaceJoint] = []
     for i, j in neighbours(blocks, tolerance).tolist():
         deep = max(_depth(part, other, tolerance) for part in solids[i] for other in solids[j])
@@ -139,37 +143,20 @@ def joints_in_space(blocks: Sequence[Solid], tolerance: float) -> tuple[SpaceJoi
     return unlike_named(joints)
 
 
-def faces_of(sides: Sequence[Side]) -> list[Face]:
-    """The faces of a block from its sides."""
+def facing(sides: Sequence[Side]) -> list[Facing]:
+    """The sides of a block with their axes."""
     axes = axes_across(np.array([side.normal for side in sides]))
     pairs = zip(sides, axes, strict=True)
-    return [Face(side.corners, side.normal, float((side.corners @ side.normal).mean()), way) for side, way in pairs]
-
-
-class Convex(NamedTuple):
-    """A convex part of a block, and where its faces are along their normals [m], shape (faces,)."""
-
-    part: Polyhedron
-    offsets: Array
-
-    @classmethod
-    def of(cls, part: Polyhedron) -> Convex:
-        """With the mean of the corners of each face, which lie in a plane but for rounding."""
-        pairs = zip(part.faces, part.normals, strict=True)
-        return cls(part, np.array([float((part.corners[list(face)] @ normal).mean()) for face, normal in pairs]))
-
-    def before(self, corners: Array) -> float:
-        """How deep corners reach behind a face [m], the least over the faces."""
-        return float((self.offsets - (corners @ self.part.normals.T).min(axis=0)).min())
+    return [Facing(side.corners, side.normal, float((side.corners @ side.normal).mean()), way) for side, way in pairs]
 
 
 def _depth(one: Convex, other: Convex, tolerance: float) -> float:
     """How deep two convex parts lie inside each other [m], negative where they are apart."""
-    deep = min(one.before(other.part.corners), other.before(one.part.corners))
-    return min(deep, _depth_across_edges(one.part, other.part)) if deep > tolerance else deep
+    deep = min(one.depth(other.corners), other.depth(one.corners))
+    return min(deep, _depth_across_edges(one, other)) if deep > tolerance else deep
 
 
-def _depth_across_edges(block: Polyhedron, neighbour: Polyhedron) -> float:
+def _depth_across_edges(block: Convex, neighbour: Convex) -> float:
     """The least depth by which two blocks overlap along the products of an edge of each [m].
 
     Beside the normals of their faces these are the directions in which convex bodies can be apart (Gottschalk,
@@ -186,9 +173,9 @@ def _depth_across_edges(block: Polyhedron, neighbour: Polyhedron) -> float:
 
 
 def _between(
-    blocks: Sequence[Solid],
+    blocks: Sequence[Shape],
     pair: tuple[int, int],
-    faces: tuple[Face, Face],
+    faces: tuple[Facing, Facing],
     sides: tuple[int, int],
     names: Sequence[str],
     tolerance: float,
@@ -212,7 +199,7 @@ def _between(
     if blocks[above].fixed or (upwards < 0 and not blocks[below].fixed):
         below, above, normal, places, sides = above, below, -normal, places[::-1], sides[::-1]
 
-    def is_corner(block: Solid, place: Array) -> bool:
+    def is_corner(block: Shape, place: Array) -> bool:
         return bool(np.linalg.norm(block.corners - place, axis=1).min() < SHORTEST * tolerance)
 
     yield SpaceJoint(

@@ -10,8 +10,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ....quantities import Array, frozen, keep, require_flag, require_reals, require_text, require_within, shown
-from .sides import Side
+from ....geometry.hull import Convex, Side, prism
+from ....quantities import Array, Flags, frozen, keep, require_flag, require_reals, require_text, require_within, shown
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST = 1e4
@@ -85,6 +85,19 @@ class Polygon:
         """Its edges, in the order of `normals`."""
         ends = np.stack([self.corners, np.roll(self.corners, -1, axis=0)], axis=1)
         return tuple(Side(*edge) for edge in zip(ends, self.normals, strict=True))
+
+    @property
+    def solids(self) -> tuple[Convex, ...]:
+        """The prism that it is, over its length along y about 0."""
+        corners, faces = prism(self.corners, self.length)
+        across, normals = np.array([(0.0, -1.0, 0.0), (0.0, 1.0, 0.0)]), np.zeros((len(self.corners), 3))
+        normals[:, ::2] = self.normals
+        return (Convex(corners, faces, np.concatenate([across, normals])),)
+
+    @property
+    def inside(self) -> tuple[Flags, ...]:
+        """Of the prism, which faces nothing meets: its two ends, before its sides, shape (faces,)."""
+        return (np.arange(2 + len(self.corners)) < 2,)
 
     @property
     def in_space(self) -> bool:

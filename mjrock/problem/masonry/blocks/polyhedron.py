@@ -11,10 +11,9 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from ....geometry.hull import Bulk, Hull, bulk_of, hull_of, unlike_ways
-from ....quantities import Array, frozen, keep, require_array, require_flag, require_kind, require_within
+from ....geometry.hull import Convex, Hull, Side, hull_of
+from ....quantities import Array, Flags, frozen, keep, require_array, require_flag, require_kind, require_within
 from .polygon import FARTHEST, Polygon, checked_name, required_vertices
-from .sides import Side
 
 Vertices = tuple[tuple[float, float, float], ...]
 DENTED = 1e-4
@@ -139,20 +138,24 @@ class Polyhedron:
         return True
 
     @cached_property
+    def solids(self) -> tuple[Convex, ...]:
+        """The convex body that it is."""
+        return (Convex(self.corners, self.faces, self.normals),)
+
+    @property
+    def inside(self) -> tuple[Flags, ...]:
+        """Which faces nothing meets: none, shape (faces,)."""
+        return (np.zeros(len(self.faces), dtype=bool),)
+
+    @property
     def edges(self) -> Array:
         """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
-        pairs = {(min(i, j), max(i, j)) for face in self.faces for i, j in zip(face, face[1:] + face[:1], strict=True)}
-        ways = np.array([self.corners[j] - self.corners[i] for i, j in sorted(pairs)])
-        return unlike_ways(ways / np.linalg.norm(ways, axis=1)[:, None])
-
-    @cached_property
-    def _bulk(self) -> Bulk:
-        return bulk_of(self.corners, self.faces)
+        return self.solids[0].edges
 
     @property
     def volume(self) -> float:
         """Volume [m3]."""
-        return self._bulk.volume
+        return self.solids[0].bulk.volume
 
     @property
     def mass(self) -> float:
@@ -162,12 +165,12 @@ class Polyhedron:
     @property
     def centroid(self) -> Array:
         """The centroid at rest [m], shape (3,)."""
-        return np.array(self._bulk.centroid)
+        return np.array(self.solids[0].bulk.centroid)
 
     @cached_property
     def inertia(self) -> Array:
         """Tensor of inertia about the centroid, in the axes of the world [kg m2], shape (3, 3)."""
-        second = self.density * self._bulk.second
+        second = self.density * self.solids[0].bulk.second
         return frozen(np.trace(second) * np.eye(3) - second)
 
     @cached_property

@@ -10,12 +10,12 @@ import numpy as np
 import scipy
 
 from ....geometry import convex
+from ....geometry.hull import Side
 from ....quantities import Array, Flags
 from .joints import SHORTEST, Joint
 from .joints_in_space import SpaceJoint, axes_across
 from .polygon import Polygon
 from .polyhedron import Polyhedron
-from .sides import Side
 
 WITHIN = 1e-6
 """Part of the area of a side that may be left of one that lies inside [-]."""

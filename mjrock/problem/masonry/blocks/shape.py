@@ -1,28 +1,14 @@
-"""Sides: the plane pieces of the surface of a block, and what the rooms that find joints ask of any block."""
+"""What the rooms that find joints, and all that shows or steps blocks, ask of any block."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
-from ....quantities import Array
-
-
-class Side(NamedTuple):
-    """A plane piece of the surface of a block.
-
-    Args:
-        corners: in the plane the two ends of an edge, counterclockwise about the block [m], shape (2, 2). In space
-            those of a convex polygon, counterclockwise as seen from outside [m], shape (n, 3).
-        normal: unit vector out of the block, shape (d,).
-        parts: numbers of the convex parts of the block that it bounds.
-    """
-
-    corners: Array
-    normal: Array
-    parts: tuple[int, ...] = (0,)
+from ....geometry.hull import Convex, Side
+from ....quantities import Array, Flags
 
 
-class Solid(Protocol):
+class Shape(Protocol):
     """What a block says of itself, convex or not: `Polygon`, `Polyhedron` or `Compound`."""
 
     @property
@@ -45,8 +31,16 @@ class Solid(Protocol):
     def sides(self) -> tuple[Side, ...]:
         """Its surface, in plane pieces."""
 
+    @property
+    def solids(self) -> tuple[Convex, ...]:
+        """Its convex parts in space, of a block of the plane prisms over its length."""
 
-class Flat(Solid, Protocol):
+    @property
+    def inside(self) -> tuple[Flags, ...]:
+        """Of each of these, which faces nothing meets: those within the block, and the ends of prisms, (faces,)."""
+
+
+class Flat(Shape, Protocol):
     """A block of the plane."""
 
     @property
