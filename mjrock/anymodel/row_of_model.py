@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -115,7 +115,7 @@ class Grip(NamedTuple):
     impratio: float = 1.0
 
     @classmethod
-    def of(cls, pair: GeomPair, friction: Any = None) -> Grip:
+    def of(cls, pair: GeomPair, friction: object = None) -> Grip:
         """Friction of the model, in which one coefficient replaces the two of sliding, and five replace all.
 
         A contact without friction gets condim 3, and one whose sliding friction is zero gets condim 1.

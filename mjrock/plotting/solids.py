@@ -125,7 +125,7 @@ class Solids:
         limits: ArrayLike | None = None,
     ) -> Solids:
         """The blocks of a response in space."""
-        return cls(response.of_masonry, response.t, response.pose, magnify, camera, limits)  # type: ignore[arg-type]
+        return cls(response.of_masonry, response.t, response.pose, magnify, camera, required_limits(limits, "xyz"))
 
     @property
     def masonry(self) -> Masonry:

@@ -57,6 +57,8 @@ WRITES = {
     "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
     "collapse": {"collapse.csv", "collapse.txt"},
+    "plain_models": {f"plain_models.{ending}" for ending in ("png", "csv", "txt")},
+    "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
     "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
     "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
@@ -229,6 +231,8 @@ LONG = {
     "shear_wall",
     "first_minute",
     "collapse",
+    "plain_models",
+    "second_opinion",
 }
 """Scripts that take a while even with --quick."""
 

@@ -17,7 +17,7 @@ from ...geometry.frames import PLANE
 from ...quantities import GRAVITY
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
-from ..mjcf import SPARSE_FROM, Keyframe, forces, links
+from ..mjcf import SPARSE_FROM, Keyframe, forced, linked
 from ..shapes import BALL, HINGE, in_space, inertia_of_body, sites, tints
 from ..tags import section, tag
 from .pairs import POINTS, PairRows, Pairs
@@ -117,8 +117,8 @@ def plain_text(
         *(f"  {line}" for line in _world(scene, pieces, moved)),
         "</worldbody>",
         *section("contact", (f"  {line}" for line in [*_pairs(pieces, pairs, laws), *_apart(moved)])),
-        *section("tendon", links(scene)),
-        *section("actuator", forces(scene)),
+        *section("tendon", linked(scene)),
+        *section("actuator", forced(scene)),
         *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
