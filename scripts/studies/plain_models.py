@@ -29,8 +29,8 @@ STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
 RESOLVED = (0.5, 0.2, 0.1)
 """omega h of the walls of Table 1 [-]."""
 WALLS = 30
-FIRST = 1.6
-"""Time in which a wall that is released at half of its slenderness comes back twice, times p [-]."""
+DOWN, REBOUND = 1.4, 1.4
+"""Times in which a wall released at half of its slenderness comes down, and rebounds once, at most, times p [-]."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Released:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of slendernesses at the rim of the fit
             law = mr.Contacts.from_law(wall, e, k_base=k_n, k_side=k_n if one_sided else None)
-        duration = FIRST * rebounds / wall.p * (1.0 if one_sided else 1.6)
+        duration = (DOWN + REBOUND * rebounds) / wall.p
         return cls(name, mr.Case(wall, 0.5 * wall.alpha, duration, side_stop=one_sided), law, e)
 
     @property
