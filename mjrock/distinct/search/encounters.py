@@ -109,7 +109,7 @@ class Encounters:
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
         self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
-        self.finder = Finder(blocks, drawn, masonry.points)
+        self.finder = Finder(blocks, drawn)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
         self.longest = longest_step_of_loose(masonry, self.law, system)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
@@ -117,8 +117,9 @@ class Encounters:
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
         np.minimum.at(left, of, LEFT * np.array([joint.width for joint in masonry.joints]))
         np.minimum.at(rolled, of, _rolled(masonry))
-        self.jointed = _jointed(masonry, self.finder, of)
-        self.finder.jointed = np.unique(self.jointed[1])
+        self.jointed, points = _jointed(masonry, self.finder, of)
+        self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
+        self.finder.points = np.maximum.reduceat(points, first)
         self.kind, start = system.lines.dtype, self.motion(system).poses
         look = longest_time(self.sizes[self.blocks.free])
         self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
@@ -295,16 +296,16 @@ def _rolled(masonry: Masonry) -> Array:
     return rolled
 
 
-def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:
+def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[tuple[Integers, Integers], Integers]:
     """Pairs of solids whose faces make a joint: the number of the pair of blocks among those with joints, and that of
-    the pair of solids, shape (n,) each.
+    the pair of solids, and the contact lines of the joint, shape (n,) each.
 
     Args:
         masonry, finder: the blocks.
         of: number of the pair of blocks of each joint, shape (joints,).
     """
-    pairs, numbers = list[int](), list[int]()
-    for joint, pair in zip(masonry.joints, of.tolist(), strict=True):
+    pairs, numbers, points = list[int](), list[int](), list[int]()
+    for joint, pair, count in zip(masonry.joints, of.tolist(), masonry.table.points.tolist(), strict=True):
         ends = (joint.below, joint.above)
         one, other = (
             [int(finder.first[block]) + part for part in masonry.blocks[block].sides[side].parts]
@@ -313,5 +314,6 @@ def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, 
         both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]
         pairs += [pair] * len(both)
         numbers += both
+        points += [count] * len(both)
     order = np.argsort(numbers, kind="stable")
-    return np.array(pairs)[order], np.array(numbers)[order]
+    return (np.array(pairs)[order], np.array(numbers)[order]), np.array(points)[order]
