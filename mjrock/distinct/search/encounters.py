@@ -43,8 +43,7 @@ from .looking import (
     watch,
     wears,
 )
-from .loose import longest_step_of_loose
-from .pair_law import SHARED, PairLaw, least_among, pair_number
+from .pair_law import SHARED, PairLaw, least_among, longest_step_of_loose, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
 
