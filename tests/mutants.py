@@ -131,7 +131,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/contacts/friction.py": ("friction_of_lines",),
     "distinct/gathering.py": ("forces_of_lines",),
     "distinct/search/handover.py": ("handing_over",),
-    "distinct/impacts.py": ("impacts",),
+    "distinct/limit.py": ("impacts",),
     **{name: ("pulls_of_links",) for name in LINKS},
     "distinct/search/looking.py": ("looking",),
     "distinct/loop.py": ("loop_of_steps",),
@@ -341,7 +341,7 @@ EQUIVALENT = {
     "softening.py: nv, share = 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
         "the last share is read, and more of them are one"
     ),
-    "impacts.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (
+    "limit.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (
         "any share of rounding serves"
     ),
     "softening.py: trace = 1": "the trace of the last square is taken",

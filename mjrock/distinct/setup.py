@@ -20,9 +20,8 @@ from ..scene.explicit_step import SHARE
 from ..scene.masonry import masonry_course, masonry_scene
 from ..scene.scene import Scene
 from .assembly import copied, guide, moved_by, started, system_of, take_grips
-from .impacts import Impacts
 from .kinds.lists import laws_of, links_of
-from .limit import longest_step
+from .limit import Impacts, longest_step
 from .memory import Memory, memory_of, recalled
 from .search.encounters import Encounters
 from .system import System

@@ -43,8 +43,7 @@ from .looking import (
     watch,
     wears,
 )
-from .loose import longest_step_of_loose
-from .pair_law import SHARED, PairLaw, least_among, pair_number
+from .pair_law import SHARED, PairLaw, least_among, longest_step_of_loose, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
 
@@ -110,8 +109,7 @@ class Encounters:
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
         self.blocks = Blocks(still, self.sizes, np.flatnonzero(body >= 0), body, fixed, np.full(self.count, -1))
-        assert scene.springs is not None
-        self.finder = Finder(solids, int(scene.springs.points.max()), flat=flat)
+        self.finder = Finder(solids, flat=flat)
         self.law = PairLaw.of_joints(scene, system.lines)
         self.longest = longest_step_of_loose(solids, self.law, system)
         below, above = np.array([(each.below, each.above) for each in joints]).T
@@ -119,8 +117,9 @@ class Encounters:
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
         np.minimum.at(left, of, LEFT * np.array([joint.width for joint in joints]))
         np.minimum.at(rolled, of, _rolled(scene.standing))
-        self.jointed = _jointed(scene.standing, self.finder, of)
-        self.finder.jointed = np.unique(self.jointed[1])
+        self.jointed, points = _jointed(scene, self.finder, of)
+        self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
+        self.finder.points = np.maximum.reduceat(points, first)
         self.kind, start = system.lines.dtype, self.motion(system).poses
         look = longest_time(self.sizes[self.blocks.free])
         self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
@@ -297,16 +296,18 @@ def _rolled(standing: Standing) -> Array:
     return rolled
 
 
-def _jointed(standing: Standing, finder: Finder, of: Integers) -> tuple[Integers, Integers]:
+def _jointed(scene: Scene, finder: Finder, of: Integers) -> tuple[tuple[Integers, Integers], Integers]:
     """Pairs of solids whose faces make a joint: the number of the pair of blocks among those with joints, and that of
-    the pair of solids, shape (n,) each.
+    the pair of solids, and the contact lines of the joint, shape (n,) each.
 
     Args:
-        standing, finder: the blocks and their joints.
+        scene, finder: the blocks and their joints.
         of: number of the pair of blocks of each joint, shape (joints,).
     """
-    pairs, numbers = list[int](), list[int]()
-    for joint, pair in zip(standing.joints, of.tolist(), strict=True):
+    assert scene.springs is not None
+    standing, of_joints = scene.standing, scene.springs.points.tolist()
+    pairs, numbers, points = list[int](), list[int](), list[int]()
+    for joint, pair, count in zip(standing.joints, of.tolist(), of_joints, strict=True):
         ends = (joint.below, joint.above)
         one, other = (
             [int(finder.first[block]) + part for part in standing.solids[block].sides[side].parts]
@@ -315,5 +316,6 @@ def _jointed(standing: Standing, finder: Finder, of: Integers) -> tuple[Integers
         both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]
         pairs += [pair] * len(both)
         numbers += both
+        points += [count] * len(both)
     order = np.argsort(numbers, kind="stable")
-    return np.array(pairs)[order], np.array(numbers)[order]
+    return (np.array(pairs)[order], np.array(numbers)[order]), np.array(points)[order]

@@ -94,7 +94,7 @@ class Near(NamedTuple):
             the normal.
         skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
         jointed: numbers of pairs of solids that had a joint, increasing.
-        cells: of the grid of a joint, along x and z and along y.
+        cells: of the grids of these, along x and z and along y, shape (pairs, 2).
     """
 
     low: Array
@@ -107,7 +107,7 @@ class Near(NamedTuple):
     rank: Integers
     skipped: Integers
     jointed: Integers = NONE
-    cells: tuple[int, int] = (1, 1)
+    cells: Integers = np.ones((0, 2), dtype=np.int64)
 
 
 class Finder:
@@ -115,13 +115,14 @@ class Finder:
 
     Args:
         solids: the blocks.
-        points: of the joints of masonry. `jointed` has the numbers of the pairs of solids that had one, increasing.
+        flat: whether they are those of the plane.
+
+    `jointed` has the numbers of the pairs of solids that had a joint, increasing, and `points` the lines of each.
     """
 
-    def __init__(self, solids: Sequence[Solid], points: int = 2, *, flat: bool) -> None:
+    def __init__(self, solids: Sequence[Solid], *, flat: bool) -> None:
         self.flat = flat
-        self.jointed = NONE
-        self._cells = points - 1, 1 if self.flat else points - 1
+        self.jointed = self.points = NONE
         self._half = min(solid.size for solid in solids)  # of the length of a prism, which plays no part
         self.number = np.array([len(solid.drawn) for solid in solids])
         self.first = np.cumsum(self.number) - self.number
@@ -155,8 +156,9 @@ class Finder:
         low, high = (ends.reduceat(solids.corners, solids.corner[:-1]) for ends in (np.minimum, np.maximum))
         low, high = low - reach[:, None], high + reach[:, None]
         axis = int(np.ptp(low, axis=0).argmax())
-        order, pairs = np.argsort(low[:, axis]), (skipped, self.jointed)
-        near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs, self._cells)
+        order, cells = np.argsort(low[:, axis]), self.points - 1
+        pairs = skipped, self.jointed, np.column_stack([cells, np.ones_like(cells) if self.flat else cells])
+        near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = rows(PLACE, 2 * count)
         table, of_parts = self._table[:count], self.number.max() > 1
@@ -245,8 +247,8 @@ def steps_of(values: Array) -> Integers:
 
 
 @inlined
-def among(values: Integers, number: int) -> bool:
-    """Whether a number is among increasing values."""
+def among(values: Integers, number: int) -> int:
+    """Where a number is among increasing values, -1 where it is not."""
     low, high = 0, len(values)
     while low < high:
         middle = (low + high) // 2
@@ -254,7 +256,7 @@ def among(values: Integers, number: int) -> bool:
             low = middle + 1
         else:
             high = middle
-    return low < len(values) and values[low] == number
+    return low if low < len(values) and values[low] == number else -1
 
 
 @compiled_at_once
@@ -278,9 +280,10 @@ def find(solids: Solids, near: Near, table: Rows, room: Array) -> int:
                 continue
             pair = (a, b) if near.rank[a] < near.rank[b] else (b, a)
             number = min(a, b) * blocks + max(a, b)
-            if are_apart(near, a, b) or among(near.skipped, number):
+            if are_apart(near, a, b) or among(near.skipped, number) >= 0:
                 continue
-            cells = near.cells if among(near.jointed, number) else (1, 1)
+            had = among(near.jointed, number)
+            cells = (near.cells[had, 0], near.cells[had, 1]) if had >= 0 else (1, 1)
             count = find_pair(solids, near.reach[a] + near.reach[b], pair, table, count, room, cells)
     return count
 

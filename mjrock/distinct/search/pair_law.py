@@ -14,19 +14,25 @@ so that how many blocks stand on the ground plays no part.
 
 A corner or a small face of a loose block has a quarter of the largest face, and what is left of a joint that has slid
 has a quarter of the joint, with the same decrease for areas that are ten times smaller still. Otherwise they would sink
-in.
+in. The step of a run is found from the joints at rest, which loose blocks do not have. So `longest_step_of_loose` takes
+each with the springs that it has on one of its sides, twice over, as a block between two others.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...geometry.hull import Side, area_vector
+from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
-from ..rows import Rows
+from ..limit import longest_step
+from ..rows import Rows, chosen, joined, rows
+from ..system import System
 
 SHARED = ("k", "c", "k_s", "c_s")
 """What the places of a pair share."""
@@ -34,7 +40,8 @@ WHOLE = 0.1
 """Part of the area of a joint over which two faces that had none have all that a pair has [-]."""
 LEAST = 0.25
 """Part of what a loose block has over its largest face, or a pair over its joint, that a smaller area has too [-]."""
-
+SIDES = 2.0
+"""On how many others a block lies at once."""
 ROUNDED = 1e-9
 """Relative difference up to which what two blocks have is the same [-]."""
 
@@ -178,3 +185,29 @@ def _of_loose(scene: Scene, joints: Array, friction: Array, loose: Flags) -> tup
         of_joint = scene.standing.joints[softest].length
         per_area = per_area * np.append(length / of_joint * np.ones(4), np.ones_like(length), 1)
     return largest * per_area, np.full(len(solids), friction[softest])
+
+
+def longest_step_of_loose(solids: Sequence[Solid], law: PairLaw, system: System) -> float:
+    """The longest stable step [s] of loose blocks on their springs, infinite where there are none."""
+    tables, kept, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
+    for i in np.flatnonzero(law.loose & ~law.fixed).tolist():
+        solid = solids[i]
+        centroid = solid.rest if in_space else solid.rest[::2]
+        for corners, normal, shared in _springs(solid, law.of_block[0][i]):
+            columns = dict(zip(SHARED, shared, strict=True))
+            ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
+            tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
+            kept.append(solid.body)
+    if not kept:
+        return math.inf
+    return longest_step(system._replace(bodies=chosen(system.bodies, np.array(kept)), lines=joined(*tables), links=()))
+
+
+def _springs(solid: Solid, shared: Array) -> list[tuple[Array, Array, Array]]:
+    """The corners of each side of a loose block [m], its normal, and the springs and dashpots that each corner has."""
+    springs = []
+    for side in solid.sides:
+        over = np.array([side_area(side) / shared[-1]])
+        part = SIDES * float(part_of_face(over)[0]) / len(side.corners)
+        springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
+    return springs

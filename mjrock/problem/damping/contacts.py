@@ -44,7 +44,7 @@ def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: flo
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 
-def required_law(law: AnyLaw | str | None, points: int) -> AnyLaw:
+def required_law(law: AnyLaw | str | None, points: int = 2) -> AnyLaw:
     """A law, by its name too; None stands for the calibrated one of so many contact lines a face."""
     if law is None:
         return CALIBRATED if points == 2 else CALIBRATED_BED

@@ -20,7 +20,6 @@ from ...quantities import (
     Array,
     Implausible,
     Integers,
-    Within,
     frozen,
     keep,
     named,
@@ -69,18 +68,16 @@ from .laws.of_joint import (
     ByKind,
     Halved,
     OfBond,
+    OfCount,
     OfJoint,
     OrElse,
     properties_of,
-    required_points,
 )
 from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
 AnyPath = str | PathLike[str]
-LINES = Within(2, 1000, whole=True), Within(2, 50, whole=True)
-"""Valid `points` of a joint in the plane and in space."""
 
 
 @keywords_checked
@@ -113,13 +110,14 @@ class Masonry:
         frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed and none
             sliding. It is `reference_frequency` for one block on the ground. Where inclined faces leave no such motion,
             they slide on k_s, or freely where that is None.
-        points: contact lines of each joint, 2 to 1000; None takes 2. In space 2 to 50: two put a contact point on each
-            corner of the joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each
-            of their corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint
-            of n lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with
-            9. In space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint
-            with a bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I. A joint that
-            has slid keeps its lines and k_n, on the part of its faces that still lies over each other.
+        points: contact lines of each joint, 2 to 1000, or a function of the joint; None takes 2. In space 2 to 50: two
+            put a contact point on each corner of the joint, and more divide a joint of four corners into (points - 1)^2
+            cells with a point on each of their corners, and other joints alike. Each point has the stiffness of its
+            tributary area. A closed joint of n lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times
+            with 2, 1.5 with 3, 1.031 with 9. In space this holds for a rectangle both ways; a triangle on its corners
+            is 4 times as stiff. A joint with a bond takes 3 or more, and shares its area out to them so that it is as
+            stiff as k_n I. A joint that has slid keeps its lines and k_n, on the part of its faces that still lies over
+            each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
@@ -158,7 +156,7 @@ class Masonry:
     friction: OfJoint
     xi: OfJoint
     frequency: OfJoint | None
-    points: int
+    points: OfCount
     tolerance: float
     law: AnyLaw | str | None
     k_s: OfJoint | None
@@ -171,7 +169,7 @@ class Masonry:
         friction: OfJoint | None = None,
         xi: OfJoint | None = None,
         frequency: OfJoint | None = None,
-        points: int | None = None,
+        points: OfCount | None = None,
         tolerance: float = 1e-5,
         law: AnyLaw | str | None = None,
         k_s: OfJoint | None = None,
@@ -189,24 +187,24 @@ class Masonry:
                 f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
                 f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
             )
-        keep(self, points=required_points(self.points, self.joints, LINES[self.in_space]))
         if law is not None:
-            keep(self, law=required_law(law, self.points))
+            keep(self, law=required_law(law))
+        if len(counts := set(self.table.points.tolist())) == 1:
+            keep(self, points=counts.pop())
         for odd in self._doubts():
             warnings.warn(odd, Implausible, stacklevel=3)
 
     def __repr__(self) -> str:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
         size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
-        given = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
-        for name, left in (("k_s", np.isinf(self.joint_shear).all()), ("xi", self.law is not None)):
-            if left:
-                del given[name]
-        said = [f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in given.items()]
+        left = {"k_s": np.isinf(self.joint_shear).all(), "xi": self.law is not None}
+        names = (name for name in ("k_n", "k_s", "friction", "xi", "points") if not left.get(name))
+        given = ((name, getattr(self, name)) for name in names)
+        said = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in given]
         if self.law is not None:
-            said.append(f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
+            said.insert(-1, f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
         bonded = ", mortar" if any(self.bonds) else ""
-        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
+        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}{bonded}>"
 
     @property
     def in_space(self) -> bool:
@@ -279,7 +277,7 @@ class Masonry:
             return table
         if (known := table.frequency[~np.isnan(table.frequency)]).size:
             raise ValueError(f"frequency = {known[0]:g} rad/s is given with a law, which has its own; leave it")
-        xi, frequency = damping_by_law(self.blocks, self.joints, table.k_n, self.points, self.law)
+        xi, frequency = damping_by_law(self.blocks, self.joints, table.k_n, table.points, self.law)
         return table._replace(xi=xi, frequency=frequency)
 
     @property
@@ -320,7 +318,7 @@ class Masonry:
     def lines(self) -> Lines:
         """The contact lines of all joints."""
         bonded = [bond is not None for bond in self.bonds]
-        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points, bonded)
+        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.table.points, bonded)
 
     @cached_property
     def retardation(self) -> Array:

@@ -77,7 +77,8 @@ def matched_masonry(
     e = as_one(pile) if e is None else e
     if pile.sides:
         e.require_rebound()
-    frequency = reference_frequency(pile.wall, float(masonry.joint_stiffness[pile.base]), int(masonry.points))
+    table, base = masonry.table, pile.base
+    frequency = reference_frequency(pile.wall, float(table.k_n[base]), int(table.points[base]))
     xi = np.full(len(masonry.joints), 0.5 * frequency * strong(pile))
 
     def damped(whole: Masonry) -> Masonry:

@@ -7,13 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....quantities import Array, declared, require_kind
+from ....quantities import Array, Integers, Within, declared, require_kind
+from ..blocks.joints_in_space import SpaceJoint
 from .bond import Bond
 from .dry import Dry, Properties
 from .of_joint import AnyJoint, OfBond, OfJoint, asked
 
 WITHOUT = {"k_s": np.inf, "frequency": np.nan}
 """What stands for None in a table: a joint that sticks rigidly, and the lowest frequency of the masonry."""
+
+
+IN_SPACE = Within(2, 50, whole=True)
+"""Valid `points` of a joint in space. In the plane they are those of `Dry`."""
 
 
 class JointTable(NamedTuple):
@@ -25,6 +30,7 @@ class JointTable(NamedTuple):
         friction: coefficient [-], shape (joints,).
         xi: damping ratio [-], shape (joints,).
         frequency: to which it refers [rad/s], NaN for the lowest one of the masonry, shape (joints,).
+        points: contact lines, shape (joints,).
         bonds: what mortar holds, None where a joint is dry.
     """
 
@@ -33,6 +39,7 @@ class JointTable(NamedTuple):
     friction: Array
     xi: Array
     frequency: Array
+    points: Integers
     bonds: tuple[Bond | None, ...]
 
     @classmethod
@@ -44,11 +51,15 @@ class JointTable(NamedTuple):
                 cannot have.
         """
         columns = {name: _values(name, given[name], joints) for name in ("k_n", "k_s", "friction", "xi", "frequency")}
-        table = cls(**columns, bonds=_bonds(given["bond"], joints))
-        springs = zip(table.k_n.tolist(), table.k_s.tolist(), table.friction.tolist(), strict=True)
-        for joint, bond, (k_n, k_s, friction) in zip(joints, table.bonds, springs, strict=True):
+        points = _values("points", given["points"], joints).astype(int)
+        for joint, count in zip(joints, points.tolist(), strict=True):
+            if isinstance(joint, SpaceJoint):
+                IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
+        table = cls(**columns, points=points, bonds=_bonds(given["bond"], joints))
+        springs = (column.tolist() for column in (table.k_n, table.k_s, table.friction, points))
+        for joint, bond, *numbers in zip(joints, table.bonds, *springs, strict=True):
             if bond is not None:
-                bond.require_fit(joint.name, k_n, k_s, friction, given["points"])
+                bond.require_fit(joint.name, *numbers)
         return table
 
     @property

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from ....quantities import Within, declared, require_kind, shown
+from ....quantities import declared, require_kind, shown
 from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 from .bond import Bond
@@ -17,6 +17,8 @@ T = TypeVar("T")
 FunctionOfJoint = Callable[[Any], T]
 OfJoint = float | FunctionOfJoint[float]
 """A number, or a function of the joint that gives one."""
+OfCount = int | FunctionOfJoint[int]
+"""A whole number, or a function of the joint that gives one."""
 OfBond = Bond | FunctionOfJoint[Bond | None] | None
 """A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
 AnyJoints = Dry | Mortar | FunctionOfJoint[Dry | Mortar]
@@ -31,19 +33,6 @@ def asked(name: str, given: FunctionOfJoint[T], joint: AnyJoint) -> T:
         return given(joint)
     except TypeError as error:
         raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
-
-
-def required_points(given: int | FunctionOfJoint[int], joints: Sequence[AnyJoint], within: Within) -> int:
-    """The contact lines of all joints, within a range; a ValueError names joints that differ."""
-    if not callable(given):
-        return int(within.checked("points", given))
-    first, *others = [(joint.name, given(joint)) for joint in joints]
-    for name, points in others:
-        if points != first[1]:
-            raise ValueError(
-                f"points = {first[1]} of {first[0]} and {points} of {name}: all joints of masonry have as many"
-            )
-    return int(within.checked("points", first[1]))
 
 
 def properties_of(joints: AnyJoints | None, given: Properties) -> Properties:

@@ -10,7 +10,7 @@ from typing import TypedDict, TypeVar
 
 from ...damping.contacts import AnyLaw
 from .dry import Properties
-from .of_joint import PROPERTIES, AnyJoints, OfBond, OfJoint, properties_of
+from .of_joint import PROPERTIES, AnyJoints, OfBond, OfCount, OfJoint, properties_of
 
 Class = TypeVar("Class", bound=type)
 
@@ -23,7 +23,7 @@ class OtherOptions(TypedDict, total=False):
     xi: OfJoint | None
     k_s: OfJoint | None
     frequency: OfJoint | None
-    points: int | None
+    points: OfCount | None
     bond: OfBond
     law: AnyLaw | str | None
     tolerance: float
