@@ -6,7 +6,7 @@ import math
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,9 @@ from ...quantities import (
     Array,
     Flags,
     Implausible,
+    Within,
     keep,
+    keep_declared,
     require_array,
     require_flag,
     require_kind,
@@ -87,7 +89,7 @@ class MasonryCase(Carrying):
     rocks_on_moving_ground: ClassVar[bool] = False
 
     masonry: Masonry
-    duration: float
+    duration: Annotated[float, Within(1e-6, 1e6, "s")]
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None
@@ -99,7 +101,7 @@ class MasonryCase(Carrying):
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
-        keep(self, duration=require_within("duration", self.duration, 1e-6, 1e6, "s"))
+        keep_declared(self)
         for name in ("motion", "vertical", "transverse"):
             require_kind(name, getattr(self, name), GroundMotion, type(None))
         require_flag("settled", self.settled)

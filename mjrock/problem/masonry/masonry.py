@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Self, Unpack
+from typing import Annotated, Self, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,18 +18,18 @@ from numpy.typing import ArrayLike
 from ...files import write_text
 from ...quantities import (
     Array,
+    Density,
     Implausible,
     Integers,
+    Within,
     frozen,
     keep,
     named,
     require_flag,
     require_kind,
     require_path,
-    require_stiffness,
     require_text,
     require_whole,
-    require_within,
     shown,
 )
 from ..damping.contacts import AnyLaw, required_law
@@ -62,17 +62,7 @@ from .files.meshes import Mesh, blocks_of
 from .laws.bond import Bond
 from .laws.dry import Properties
 from .laws.joint_table import JointTable
-from .laws.of_joint import (
-    PROPERTIES,
-    AnyJoints,
-    ByKind,
-    Halved,
-    OfBond,
-    OfCount,
-    OfJoint,
-    OrElse,
-    properties_of,
-)
+from .laws.of_joint import PROPERTIES, AnyJoints, ByKind, Halved, OfBond, OfCount, OfJoint, OrElse, properties_of
 from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
@@ -170,15 +160,14 @@ class Masonry:
         xi: OfJoint | None = None,
         frequency: OfJoint | None = None,
         points: OfCount | None = None,
-        tolerance: float = 1e-5,
+        tolerance: Annotated[float, Within(1e-9, WIDEST, "m")] = 1e-5,
         law: AnyLaw | str | None = None,
         k_s: OfJoint | None = None,
         *,
         bond: OfBond = None,
         joints: AnyJoints | None = None,
     ) -> None:
-        keep(self, blocks=blocks_of_one_kind(blocks), law=law)
-        keep(self, tolerance=require_within("tolerance", tolerance, 1e-9, WIDEST, "m"))
+        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance)
         given = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
         keep(self, **properties_of(joints, given | {"bond": bond}))
         if not self.joints:
@@ -353,8 +342,8 @@ class Masonry:
         *,
         ground: bool = True,
         side_stop: bool | SideStop = False,
-        k_side: float | None = None,
-        side_friction: float = 0.0,
+        k_side: Annotated[float | None, Within(1e4, 1e14, "N/m3")] = None,
+        side_friction: Annotated[float, Within(0, 10)] = 0.0,
         **options: Unpack[OtherOptions],
     ) -> Self:
         """Rectangular blocks one on the other, centred, from the lowest upwards.
@@ -368,7 +357,7 @@ class Masonry:
             side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
                 reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
                 with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
-            k_side: stiffness of the joints with the side stop [N/m3]; None takes k_n.
+            k_side: stiffness of the joints with the side stop [N/m3], 1e4 to 1e14; None takes k_n.
             side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
             options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
                 joints refers to the lowest natural frequency without it.
@@ -376,9 +365,8 @@ class Masonry:
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        made, side_friction = stacked(blocks, ground), require_within("side_friction", side_friction, 0.0, 10.0)
+        made = stacked(blocks, ground)
         side = side_of(made, side_stop)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         given = one_by_one({**options, "k_n": k_n})
         if side is None:
             if k_side is not None or side_friction:
@@ -403,7 +391,7 @@ class Masonry:
         *,
         density: float = 2000.0,
         length: float = 1.0,
-        chords: int = 1,
+        chords: Annotated[int, Within(1, 50, whole=True)] = 1,
         ground: bool = False,
         **options: Unpack[JointOptions],
     ) -> Self:
@@ -434,7 +422,6 @@ class Masonry:
             >>> sorted(round(joint.width, 2) for joint in arch.joints)[::8]
             [0.6, 0.75, 0.9]
         """
-        chords = require_whole("chords", chords, 1, 50)
         voussoirs = require_whole("voussoirs", voussoirs, 1, 1000 // chords)
         blocks = curved(arch_of(radius, thickness, span_angle, voussoirs * chords, density, length), chords)
         return cls([*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks, **options)
@@ -447,9 +434,9 @@ class Masonry:
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
-        spans: int = 1,
+        spans: Annotated[int, Within(1, 50, whole=True)] = 1,
         pier_width: float,
-        pier_height: float,
+        pier_height: Annotated[float, Within(0.01, 1000, "m")],
         abutments: bool = True,
         density: float = 2000.0,
         length: float = 1.0,
@@ -479,10 +466,10 @@ class Masonry:
         cls,
         radius: float,
         thickness: Ends,
-        length: float,
+        length: Annotated[float, Within(0.01, 1000, "m")],
         unit: float,
         span_angle: float = math.pi,
-        courses: int = 17,
+        courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
         *,
         density: float = 2000.0,
         **options: Unpack[JointOptions],
@@ -510,7 +497,7 @@ class Masonry:
         length: float,
         unit: float,
         span_angle: float = math.pi,
-        courses: int = 17,
+        courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
         *,
         cut: bool = False,
         density: float = 2000.0,
@@ -608,8 +595,8 @@ class Masonry:
         thickness: float,
         density: float = 2000.0,
         *,
-        leaves: int = 1,
-        headers: int = 0,
+        leaves: Annotated[int, Within(1, 10, whole=True)] = 1,
+        headers: Annotated[int, Within(0, 1000, whole=True)] = 0,
         beam: bool = True,
         halves: Bond | None = None,
         **options: Unpack[JointOptions],
@@ -622,7 +609,8 @@ class Masonry:
             length, height, unit, thickness, density, halves: as of `running_bond`; units of several leaves are whole.
             leaves: wythes beside each other through the thickness, 1 to 10. The joints between them have the normal x,
                 so that a function of the joint gives them a bond of their own.
-            headers: every so many courses one of headers, half a unit long, that go through all leaves; 0 for none.
+            headers: every so many courses, 0 to 1000, one of headers, half a unit long, that go through all leaves;
+                0 for none.
             beam: whether a fixed beam lies on it, which the case leads by `supports={"beam": (t, dx, dy, dz)}`.
             options: further arguments of `Masonry`. The blocks are "base", the units as of `running_bond` with the
                 number of the leaf or a letter of the header, and "beam".
@@ -662,10 +650,10 @@ class Masonry:
     def column(
         cls,
         width: Ends,
-        height: float,
-        drums: int,
+        height: Annotated[float, Within(0.01, 1000, "m")],
+        drums: Annotated[int, Within(1, 1000, whole=True)],
         *,
-        sides: int = 4,
+        sides: Annotated[int, Within(3, 100, whole=True)] = 4,
         density: float = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
@@ -691,10 +679,10 @@ class Masonry:
         cls,
         radius: float,
         thickness: Ends,
-        lunes: int,
-        hoops: int,
+        lunes: Annotated[int, Within(4, 360, whole=True)],
+        hoops: Annotated[int, Within(1, 360, whole=True)],
         *,
-        oculus: float = 0.05,
+        oculus: Annotated[float, Within(0.01, 1.5, "rad")] = 0.05,
         density: float = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
@@ -723,7 +711,7 @@ class Masonry:
         depth: float,
         unit: tuple[float, float],
         *,
-        thickness: float | None = None,
+        thickness: Annotated[float | None, Within(0.01, 10, "m")] = None,
         returns: str = "both",
         openings: Sequence[tuple[float, Opening]] = (),
         gable: int = 0,
@@ -767,8 +755,8 @@ class Masonry:
         fixed: Sequence[str] = (),
         *,
         ground: bool = False,
-        density: float = 2000.0,
-        scale: float = 1.0,
+        density: Density = 2000.0,
+        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a Wavefront OBJ file: its objects, or the groups of them.
@@ -796,8 +784,8 @@ class Masonry:
         fixed: Sequence[str] = (),
         *,
         ground: bool = False,
-        density: float = 2000.0,
-        scale: float = 1.0,
+        density: Density = 2000.0,
+        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of an STL file, binary or text: its solids, or the closed bodies that it lists one after the other.
@@ -818,8 +806,8 @@ class Masonry:
         fixed: Sequence[str] = (),
         *,
         ground: bool = False,
-        density: float = 2000.0,
-        scale: float = 1.0,
+        density: Density = 2000.0,
+        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, or an `Assembly` of
@@ -844,7 +832,7 @@ class Masonry:
         ground: bool = False,
         density: OfLayer = 2000.0,
         length: OfLayer = 1.0,
-        scale: float | None = None,
+        scale: Annotated[float | None, Within(1e-6, 1e3, "m")] = None,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install 'mjrock[dxf]'`.
@@ -873,7 +861,7 @@ class Masonry:
         fixed, path = _names(fixed), require_path("path", path)
         ground = require_flag("ground", ground)
         outlines, unit = read_dxf(path)
-        unit = unit if scale is None else require_within("scale", scale, 1e-6, 1e3, "m")
+        unit = unit if scale is None else scale
         try:
             blocks = polygons_of(outlines, fixed, density, length, unit)
             if ground:
@@ -911,8 +899,6 @@ class Masonry:
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
         fixed = _names(fixed)
-        density = require_within("density", density, 100.0, 3e4, "kg/m3")
-        scale = require_within("scale", scale, 1e-6, 1e3, "m")
         ground, path = require_flag("ground", ground), require_path("path", path)
         meshes = [mesh._replace(vertices=scale * mesh.vertices) for mesh in read(path)]
         try:

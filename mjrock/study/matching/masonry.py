@@ -77,8 +77,8 @@ def matched_masonry(
     e = as_one(pile) if e is None else e
     if pile.sides:
         e.require_rebound()
-    table, base = masonry.table, pile.base
-    frequency = reference_frequency(pile.wall, float(table.k_n[base]), int(table.points[base]))
+    k_n, points = (float(column[pile.base]) for column in (masonry.table.k_n, masonry.table.points))
+    frequency = reference_frequency(pile.wall, k_n, int(points))
     xi = np.full(len(masonry.joints), 0.5 * frequency * strong(pile))
 
     def damped(whole: Masonry) -> Masonry:
