@@ -127,7 +127,7 @@ def solve_explicit(
     }
     kept = slice(followed.samples)
     samples = samples.taken(kept).since_the_start()
-    if setup.encounters is not None:
+    if setup.search is not None:
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     looked = steps.looks(followed.steps)
     run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], looked)

@@ -153,8 +153,8 @@ def reading_of(run: Run) -> Reading:
     """What is read from a run."""
     samples, system, joint = run.samples, run.followed.system, run.scene.contacts.joint
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
-    met = None if run.followed.memory is None else run.followed.memory.met
-    left = met is not None and bool(met.handed.any())
+    search = None if run.followed.memory is None else run.followed.memory.search
+    left = search is not None and bool(search.handed_over.any())
     cracked = dict(item for law in system.laws for item in law.cracked(run.scene).items())
     beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked)
     problem = problem_of(run.case, run.contacts)
