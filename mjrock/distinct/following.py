@@ -21,8 +21,8 @@ from .search.contact_search import ContactSearch
 from .setup import Setup
 from .system import Books, Samples, System
 
-LOOKED, LOOKS = 100, 1_000_000
-"""Steps from one look at the energy to the next, and most looks."""
+CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
+"""Steps from one check of the energy to the next, and most checks."""
 LEAD = 0.5
 """By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
 In long steps what is foreseen is worse than that velocity, see `Setup.foresees`."""
@@ -79,14 +79,14 @@ class Stepping(NamedTuple):
         return cls(timestep, every, round(steps / every), last, last * timestep)
 
     @property
-    def look(self) -> int:
-        """Steps from one look at the energy to the next."""
-        return max(LOOKED, -(-self.last // LOOKS))
+    def check(self) -> int:
+        """Steps from one check of the energy to the next."""
+        return max(CHECKED_EVERY, -(-self.last // MOST_CHECKS))
 
-    def looks(self, steps: int) -> Array:
-        """Times of the looks of so many steps [s]."""
-        count = steps // self.look + 1 if steps <= self.last else -(-self.last // self.look) + 1
-        return self.h * np.minimum(self.look * np.arange(count), self.last)
+    def checks(self, steps: int) -> Array:
+        """Times of the checks of so many steps [s]."""
+        count = steps // self.check + 1 if steps <= self.last else -(-self.last // self.check) + 1
+        return self.h * np.minimum(self.check * np.arange(count), self.last)
 
     @property
     def samples(self) -> int:
@@ -120,7 +120,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     """
     system, search, stop, memory = setup.system, setup.search, stepping.last + 1, setup.memory
     clock = Clock(
-        0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look
+        0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.check
     )
     clock = clock._replace(lead=LEAD if setup.foresees(stepping.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)

@@ -214,11 +214,11 @@ def test_friction_gives_nothing_where_shear_springs_gain_as_lines_are_handed_ove
 @pytest.mark.parametrize(("share", "fails"), [(0.99, False), (1.01, True)])
 def test_what_wedged_springs_hold_counts_as_energy_that_there_was(share, fails):
     """A thousandth of it may appear, as of what moves: an arch that is wedged holds far more than moves in it."""
-    looks = rows(ENERGY, 3, elastic=[3e6, 4e6, 3.9e6], kinetic=[0.0, 0.0, share * 4e3])
+    checks = rows(ENERGY, 3, elastic=[3e6, 4e6, 3.9e6], kinetic=[0.0, 0.0, share * 4e3])
     run = SimpleNamespace(
         energy=np.zeros(1),
-        looked=np.arange(3.0),
-        samples=SimpleNamespace(looks=looks),
+        checked=np.arange(3.0),
+        samples=SimpleNamespace(checks=checks),
         above_rest=lambda energy: energy["kinetic"],
         scene=SimpleNamespace(rest_energies=np.zeros(3)),
         rounding=0.0,
