@@ -8,9 +8,9 @@ import numpy as np
 
 from ..geometry.vectors import tangents
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.histories import Support
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.support import Support
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..geometry.graph import components, nearest_roots
+from ..problem.masonry.histories import Support
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.support import Support
 from ..quantities import Array, Flags, Integers
 
 TOPPLED = 0.25 * np.pi

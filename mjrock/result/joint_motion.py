@@ -12,9 +12,9 @@ from ..geometry.frames import frames_of, inverse_rotation_change, take_frames
 from ..geometry.kinematics import Meeting, Places, meeting
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.histories import Support
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.standing import MasonryStanding, travels
-from ..problem.masonry.support import Support
 from ..quantities import Array, Flags, Integers
 from ..scene.scene import Scene
 from .fallen import PARTED
