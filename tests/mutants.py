@@ -38,9 +38,9 @@ OTHERS = (
     "reference/equations.py",
     *(
         f"problem/masonry/{name}.py"
-        for name in ("laws/bond", "blocks/compound", "effects", "support", "blocks/surface")
+        for name in ("laws/bond", "blocks/compound", "effects", "blocks/surface")
     ),
-    "problem/masonry/tilt.py",
+    "problem/masonry/histories.py",
     "distinct/search/contact_search.py",
     "distinct/search/constants.py",
 )
@@ -94,15 +94,14 @@ OWN = {
     "problem/masonry/effects.py": ("masonry_effects", "actuator_inputs", "links_between_blocks"),
     "problem/masonry/limit/limit_state.py": ("collapse_without_dilatancy",),
     "problem/masonry/lines.py": ("masonry", "alike"),
-    "problem/masonry/support.py": ("supports", "links_on_supports", "supports_that_moved"),
+    "problem/masonry/histories.py": ("supports", "links_on_supports", "supports_that_moved", "tilt", "tilting"),
     "problem/masonry/blocks/surface.py": ("compound", "compound_blocks"),
-    "problem/masonry/tilt.py": ("tilt", "tilting"),
     "problem/masonry/actuator.py": ("actuators",),
     **{name: ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit") for name in LINKS},
     "distinct/search/contact_search.py": ("encounters", "encounters_in_space", "alike"),
     "distinct/search/constants.py": ("encounters", "encounters_in_space", "overlap_of_blocks", "polygons_that_roll"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
-    "problem/masonry/limit/joint_forces.py": ("collapse_without_dilatancy",),
+    "problem/masonry/limit/collapse.py": ("collapse_without_dilatancy",),
     "problem/masonry/laws/joint_law.py": ("joint_law", "explicit", "encounters"),
     "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space", "fallen"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),

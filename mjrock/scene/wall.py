@@ -16,10 +16,9 @@ from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
 from ..problem.wall.standing import WallStanding
 from ..quantities import Array, require_kind
-from .attachments import attachments
 from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints, JointSprings
+from .parts import Bodies, ContactPoints, JointSprings, attachments
 from .rest import held
 from .scene import Scene
 

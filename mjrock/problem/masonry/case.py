@@ -27,19 +27,17 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from ..wall.case import Case
-from ..wall.effect import Anchored, Effect
+from ..wall.effect import Anchored, Effect, require_in_plane
 from ..wall.effects import KINDS, Carrying, Load
-from ..wall.in_space import require_in_plane
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
 from .effects import laden, numbered, placed, require_anchored, require_in_space, require_pushing
+from .histories import Support, supports_of, tilt_of
 from .laws.bond import Bond
 from .masonry import Masonry
 from .plausible import doubts
 from .standing import MasonryStanding
-from .support import Support, supports_of
-from .tilt import tilt_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""

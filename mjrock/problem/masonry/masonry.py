@@ -57,12 +57,21 @@ from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
 from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
-from .files.mesh_files import obj_text, read_obj, read_stl
-from .files.meshes import Mesh, blocks_of
+from .files.meshes import Mesh, blocks_of, obj_text, read_obj, read_stl
 from .laws.bond import Bond
 from .laws.dry import Properties
-from .laws.joint_table import JointTable
-from .laws.of_joint import PROPERTIES, AnyJoints, ByKind, Halved, OfBond, OfCount, OfJoint, OrElse, properties_of
+from .laws.joint_table import (
+    PROPERTIES,
+    AnyJoints,
+    ByKind,
+    Halved,
+    JointTable,
+    OfBond,
+    OfCount,
+    OfJoint,
+    OrElse,
+    properties_of,
+)
 from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency

@@ -25,9 +25,8 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from .block import Block
-from .effect import Anchored, Effect
+from .effect import Anchored, Effect, require_in_plane
 from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
-from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
 from .standing import WallStanding

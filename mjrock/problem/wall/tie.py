@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
 from ...quantities import Within, keep, keep_declared, require_array, require_real, require_within, within_ranges
-from .effect import Anchored, LinkLaw
-from .in_space import HIGHEST, IN_SPACE, Point, keep_place
+from .effect import HIGHEST, IN_SPACE, Anchored, LinkLaw, Point, keep_place
 
 GOVERNING = ("bar", "punching", "bearing")
 """What the strength of a tie with an anchor plate may be that of."""

@@ -14,7 +14,7 @@ from ...engine.simulation import simulate
 from ...problem.damping.interface import reference_frequency
 from ...problem.damping.restitution import Restitution
 from ...problem.masonry.case import MasonryCase
-from ...problem.masonry.laws.of_joint import ByName
+from ...problem.masonry.laws.joint_table import ByName
 from ...problem.masonry.lines import Lines, lowest_frequency
 from ...problem.masonry.masonry import Masonry
 from ...problem.masonry.pile import Pile

@@ -11,7 +11,7 @@ from typing import TypedDict, TypeVar
 from ....quantities import within_ranges
 from ...damping.contacts import AnyLaw
 from .dry import Properties
-from .of_joint import PROPERTIES, AnyJoints, OfBond, OfCount, OfJoint, properties_of
+from .joint_table import PROPERTIES, AnyJoints, OfBond, OfCount, OfJoint, properties_of
 
 Class = TypeVar("Class", bound=type)
 
