@@ -6,12 +6,22 @@ import inspect
 import math
 import os
 import sys
-from collections.abc import Iterable, Sequence
-from functools import cache
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache, wraps
 from numbers import Real as RealNumber
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    NamedTuple,
+    ParamSpec,
+    TypeGuard,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +36,8 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Real = TypeVar("Real", float, Array)
+P = ParamSpec("P")
+Result = TypeVar("Result")
 
 
 MOST_SAMPLES = 50_000_000
@@ -115,9 +127,15 @@ class Within(NamedTuple):
         return require_within(name, value, self.low, self.high, self.unit)
 
 
+Stiffness = Annotated[float, Within(1e4, 1e14, "N/m3")]
+"""Stiffness of an interface or a joint."""
+Density = Annotated[float, Within(100, 30_000, "kg/m3")]
+"""Mass density of stone, brick or earth, and of what is heavier."""
+
+
 @cache
-def declared(kind: type) -> dict[str, tuple[Within, bool]]:
-    """The range of each field of a class that declares one, and whether the field may be None."""
+def declared(kind: Callable[..., object]) -> dict[str, tuple[Within, bool]]:
+    """The range of each field of a class, or argument of a function, that declares one, and whether it may be None."""
     hints = get_type_hints(kind, include_extras=True)
     notes = {name: get_args(hint) for name, hint in hints.items() if get_origin(hint) is Annotated}
     return {name: (note[1], type(None) in get_args(note[0])) for name, note in notes.items()}
@@ -141,9 +159,29 @@ def keep_declared(instance: object, owner: str = "") -> None:
             keep(instance, **{field: within.checked(name, value)})
 
 
+def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
+    """A function whose arguments are checked and converted, before it runs, by the ranges that they declare as fields
+    do: `height: Annotated[float, Within(0, 200, "m")]`. What is wrong is said as `keep_declared` says it."""
+    parameters = inspect.signature(function)
+
+    @wraps(function)
+    def with_checked(*given: P.args, **options: P.kwargs) -> Result:
+        try:
+            bound = parameters.bind(*given, **options)
+        except TypeError:
+            return function(*given, **options)  # which says what is missing or too much
+        for name, (within, optional) in declared(function).items():
+            if name in bound.arguments and not (optional and bound.arguments[name] is None):
+                bound.arguments[name] = within.checked(within.name or name, bound.arguments[name])
+        return function(*bound.args, **bound.kwargs)
+
+    return with_checked
+
+
 def require_stiffness(name: str, value: object) -> float:
-    """Return an interface stiffness as a float; it is within 1e4 to 1e14 N/m3, see `require_within`."""
-    return require_within(name, value, 1e4, 1e14, "N/m3")
+    """Return the stiffness of an interface as a float, see `Stiffness` and `require_within`."""
+    within: Within = get_args(Stiffness)[1]
+    return within.checked(name, value)
 
 
 def require_whole(name: str, value: object, low: int, high: int) -> int:
@@ -179,7 +217,7 @@ def takes(value: object, count: int) -> bool:
     return True
 
 
-def is_iterable(values: object) -> bool:
+def is_iterable(values: object) -> TypeGuard[Iterable[object]]:
     """Whether values can be gone through one by one. A text is one value, and so is an array without dimensions."""
     if isinstance(values, str | bytes) or (isinstance(values, np.ndarray | np.generic) and values.ndim == 0):
         return False
@@ -234,7 +272,7 @@ def require_size(what: str, count: float, remedy: str) -> None:
         raise ValueError(f"{what} would be {count:.3g}; at most {MOST_SAMPLES:.0e} fit into memory; {remedy}")
 
 
-def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArray[Any]:
+def require_plain(name: str, values: object, takes: str, kinds: str) -> NDArray[Any]:
     """`values` as an array of certain kinds.
 
     Args:
@@ -262,12 +300,12 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
     return given
 
 
-def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
+def require_reals(name: str, values: object, takes: str) -> Array:
     """`values` as an array of floats, see `require_plain`. True and False are refused, also among numbers."""
     return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
 
 
-def require_row(name: str, values: ArrayLike, element: str) -> Array:
+def require_row(name: str, values: object, element: str) -> Array:
     """Return a copy of `values` as a row of finite numbers, shape (n,).
 
     Args:
@@ -304,7 +342,7 @@ def _holds_truth(values: object) -> bool:
     return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
 
 
-def _is_masked(values: ArrayLike) -> bool:
+def _is_masked(values: object) -> bool:
     """Whether an array, or one of a list of arrays, has masked values."""
     if "numpy.ma" not in sys.modules:  # nobody has made any
         return False
@@ -312,7 +350,7 @@ def _is_masked(values: ArrayLike) -> bool:
     return any(isinstance(row, np.ma.MaskedArray) and np.ma.is_masked(row) for row in rows)
 
 
-def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+def require_array(name: str, value: object, shape: tuple[int, ...]) -> Array:
     """Return a copy of `value` as an array of finite numbers.
 
     Raises:

@@ -27,8 +27,8 @@ from ..study.intensity.fragility import Fragility
 
 P = ParamSpec("P")
 Picture = TypeVar("Picture", bound=Callable[..., Any])
-Check = Callable[[str, Any], object]
-"""Raises a TypeError or ValueError with the name and the value of an argument that cannot be."""
+Check = Callable[[str, object], object]
+"""Raises a TypeError or ValueError with the name and the value of an invalid argument."""
 MOST_COLUMNS = 50
 """Most panels beside each other."""
 
@@ -38,19 +38,19 @@ def kind(*kinds: type) -> Check:
     return lambda name, value: require_kind(name, value, *kinds)
 
 
-def row(name: str, value: Any) -> None:
+def row(name: str, value: object) -> None:
     """A row of at least one real number."""
     given = require_reals(name, value, "a row of at least one real number")
     if given.ndim != 1 or not given.size:
         raise ValueError(f"{name} has the shape {given.shape}; a row of at least one real number is needed")
 
 
-def finite_row(name: str, value: Any) -> None:
+def finite_row(name: str, value: object) -> None:
     """A row of at least one finite number."""
     require_row(name, value, "number")
 
 
-def table(name: str, value: Any) -> None:
+def table(name: str, value: object) -> None:
     """Real numbers in rows and columns."""
     given = require_reals(name, value, "real numbers in rows and columns")
     if given.ndim != 2 or not given.size:
@@ -71,14 +71,14 @@ def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
     return tuple(checked.values())
 
 
-def anything(name: str, value: Any) -> None:
+def anything(name: str, value: object) -> None:
     """What is checked elsewhere."""
 
 
 def mapping(check: Check, least: int = 1) -> Check:
-    """A check for so many values by texts at least, each with a check of its own."""
+    """A check for a mapping of at least so many names to values, each with a check of its own."""
 
-    def checked(name: str, value: Any) -> None:
+    def checked(name: str, value: object) -> None:
         if not isinstance(value, Mapping) or len(value) < least:
             raise TypeError(f'{name} = {shown(value)} is not a mapping like {{"name": value}}, of at least {least}')
         for key, one in value.items():
@@ -91,7 +91,7 @@ def mapping(check: Check, least: int = 1) -> Check:
 def listed(check: Check) -> Check:
     """A check for a sequence of at least one, each with a check of its own."""
 
-    def checked(name: str, value: Any) -> None:
+    def checked(name: str, value: object) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence) or not len(value):
             raise TypeError(f"{name} = {shown(value)} is not a sequence of at least one")
         for i, one in enumerate(value):
@@ -103,7 +103,7 @@ def listed(check: Check) -> Check:
 def pair(first: Check, second: Check) -> Check:
     """A check for a pair."""
 
-    def checked(name: str, value: Any) -> None:
+    def checked(name: str, value: object) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 2:
             raise TypeError(f"{name} = {shown(value)} is not a pair")
         first(f"{name}[0]", value[0])
@@ -112,20 +112,20 @@ def pair(first: Check, second: Check) -> Check:
     return checked
 
 
-def of_wall(name: str, value: Any) -> None:
+def of_wall(name: str, value: object) -> None:
     """A response of a wall."""
     require_kind(name, value, Response)
-    if value.rocking is None:
+    if isinstance(value, Response) and value.rocking is None:
         raise TypeError(f"{name} is of masonry, and the picture is of one wall; for masonry take plotting.displacement")
 
 
-def drawing(name: str, value: Any) -> None:
+def drawing(name: str, value: object) -> None:
     """A function that draws on an Axes."""
     if not callable(value):
         raise TypeError(f"{name} = {shown(value)} is not a function that draws on an Axes")
 
 
-def number(name: str, value: Any) -> None:
+def number(name: str, value: object) -> None:
     """A finite number."""
     require_within(name, value, -1e9, 1e9)
 
@@ -169,8 +169,8 @@ class Checked(Protocol):
     def __call__(self, draw: Picture, /) -> Picture: ...
 
 
-def own_axes(about: Any) -> Axes:
-    """An Axes in a figure of its own, of three dimensions for masonry in space or what was found of it."""
+def own_axes(about: object) -> Axes:
+    """An Axes in a figure of its own, of three dimensions for masonry in space and results of it."""
     about = getattr(about, "case", about)
     deep = getattr(getattr(about, "masonry", about), "in_space", False)
     figure = Figure(figsize=(6.4, 4.8) if deep else (5.2, 3.6), layout="constrained")

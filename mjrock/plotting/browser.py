@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..files import write_text
 from ..geometry.poses import rotations
@@ -26,7 +27,7 @@ SUPPORT, TIE = "#bdbdbd", "#1f5f9e"
 THICK = 0.005
 """Thickness of lines, over the extent of what moves [-]."""
 WAY = np.array([0.7, -0.9, 0.3])
-"""From what moves to the eye, over its extent [-]."""
+"""Vector from the middle of what moves to the camera, over its extent [-]."""
 PANEL = """
 const world = K3DInstance.getWorld(), objects = Object.values(world.ObjectsListJson);
 const panel = document.createElement('div'), last = LAST;
@@ -174,7 +175,7 @@ class Page:
         options = {"color": _number(colour), "width": THICK * self.extent, "name": name, "group": group}
         self.plot += self.k3d.lines(self._series(vertices), pairs, indices_type="segment", shader="mesh", **options)
 
-    def _series(self, values: Any) -> dict[str, Any]:
+    def _series(self, values: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
         """An array for each time, as k3d takes it."""
         return {repr(float(t)): row for t, row in zip(self.t, values, strict=True)}
 

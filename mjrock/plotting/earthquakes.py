@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,7 +21,7 @@ from .style import STYLES, folded
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
-def of_records(name: str, value: Any) -> None:
+def of_records(name: str, value: object) -> None:
     """At least one motion, or a set of at least one record."""
     listed(kind(GroundMotion))(name, value.horizontal if isinstance(value, RecordSet) else value)
 

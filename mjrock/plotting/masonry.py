@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -74,7 +73,7 @@ def blocks(
     if run is None or pose is not None:
         if at is not None or forces is not None:
             raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
-        given: Any = masonry if run is None else require_masonry("blocks", run)
+        given = require_masonry("blocks", masonry) if isinstance(masonry, Response) else masonry
         require_kind("masonry", given, Masonry)
         case = MasonryCase(given, 1.0) if run is None else replace(run.of_masonry, supports=())
     else:
@@ -89,7 +88,7 @@ def blocks(
     placed = (still if pose is None else require_array("pose", pose, still.shape))[None]
     acting = None if run is None or forces is None else (run, Moving(case, time, placed, magnified), forces)
     if case.in_space:
-        solids(ax, Solids(case, time, placed, magnified, camera, limits), animated=False)(0)  # type: ignore[arg-type]
+        solids(ax, Solids(case, time, placed, magnified, camera, required_limits(limits, "xyz")), animated=False)(0)
         if acting is not None:
             forces_on(ax, *acting, animated=False)(0)
         fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes

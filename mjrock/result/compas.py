@@ -7,7 +7,6 @@ the forces at its corners, gaps and status. Blocks are numbered as `Masonry.to_c
 from __future__ import annotations
 
 import json
-from typing import Any
 
 import numpy as np
 
@@ -49,8 +48,8 @@ def results_text(case: MasonryCase, bodies: list[Body], at: float, forces: Force
     return json.dumps(held("compas_dem.problem/Results", content, guid_of("results", at)), indent=1) + "\n"
 
 
-def _transformation(body: Body, name: str) -> dict[str, Any]:
-    """From where a body is drawn to where it is."""
+def _transformation(body: Body, name: str) -> dict[str, object]:
+    """The transformation from the drawn to the present position of a body."""
     turn, matrix = rotations(body.pose)[0], np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = turn, body.rest + body.pose[0, :3] - turn @ body.rest
     return held("compas.geometry/Transformation", {"matrix": matrix.tolist()}, guid_of("transformation", name))
@@ -58,7 +57,7 @@ def _transformation(body: Body, name: str) -> dict[str, Any]:
 
 def _edge(
     case: MasonryCase, bodies: list[Body], forces: Forces, sample: int, number: int
-) -> tuple[str, dict[str, Any]]:
+) -> tuple[str, dict[str, object]]:
     """The key and the contact of a joint: the block above it comes first, and forces are those on it."""
     joint = case.masonry.joints[number]
     assert isinstance(joint, SpaceJoint)
@@ -114,7 +113,7 @@ def _edge(
 def at_corners(corners: Array, eccentricity: Array) -> Array:
     """Shares of a force at corners, none of them negative, that add up to it and act where it does.
 
-    They are the least shares in the sense of squares, where none of these pulls. A force beyond the outline, as on an
+    They have the least sum of squares, where none of these pulls. A force beyond the outline, as on an
     edge that has slipped, is put on it.
 
     Args:

@@ -88,10 +88,10 @@ def plotter(view: View, colours: Sequence[Any], **look: Any) -> tuple[Any, Calla
 def named_by_colour(count: int) -> Array:
     """A colour for each of up to 225 bodies that says its number, shape (count, 3), 0 to 1."""
     number = np.arange(count)
-    return np.asarray((16 * np.column_stack([number % 15, number // 15, np.zeros(count)]) + 8) / 255, dtype=np.float64)
+    return np.asarray((16 * np.column_stack([number % 15, number // 15, np.zeros(count)]) + 8) / 255)
 
 
-def painted(view: View, frame: int, place: Array) -> Array:
+def painted(view: View, frame: int, place: Array | Integers) -> Array:
     """Which body each pixel shows where faces are drawn in an order; that of PyVista's pictures."""
     solids, corners = view.solids, view.solids.corners(frame)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
@@ -106,9 +106,9 @@ def painted(view: View, frame: int, place: Array) -> Array:
     ax.add_collection(
         PolyCollection(list(corners[faces] @ view.axes), facecolors=colours, antialiased=False, snap=False)
     )
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()  # type: ignore[no-untyped-call]
-    return np.array(canvas.buffer_rgba(), dtype=np.float64)[..., :3]  # type: ignore[no-untyped-call]
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3]
 
 
 def wrong(view: View, frame: int) -> tuple[float, float]:
@@ -116,7 +116,7 @@ def wrong(view: View, frame: int) -> tuple[float, float]:
     scene, draw = plotter(view, list(named_by_colour(len(view.shown))), lighting=False)
     true, solids = draw(frame) // 16, view.solids
     scene.close()
-    own = np.argsort(solids.order(frame))[solids.facets.part].astype(float)
+    own = np.argsort(solids.order(frame))[solids.facets.part]
     depth = solids.corners(frame).mean(axis=1) @ solids.eye
     shares = []
     for place in (own, depth):
