@@ -57,9 +57,8 @@ if TYPE_CHECKING:
     from .problem.masonry.masonry import Masonry
     from .problem.wall.block import Block
     from .problem.wall.case import Case
-    from .problem.wall.damper import Damper
+    from .problem.wall.damper import Damper, FrictionDamper
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
-    from .problem.wall.friction_damper import FrictionDamper
     from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie, strengths_of_bar
     from .quantities import GRAVITY, Implausible

@@ -6,12 +6,22 @@ import inspect
 import math
 import os
 import sys
-from collections.abc import Iterable, Sequence
-from functools import cache
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache, wraps
 from numbers import Real as RealNumber
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    NamedTuple,
+    ParamSpec,
+    TypeGuard,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +36,8 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Real = TypeVar("Real", float, Array)
+P = ParamSpec("P")
+Result = TypeVar("Result")
 
 
 MOST_SAMPLES = 50_000_000
@@ -115,9 +127,15 @@ class Within(NamedTuple):
         return require_within(name, value, self.low, self.high, self.unit)
 
 
+Stiffness = Annotated[float, Within(1e4, 1e14, "N/m3")]
+"""Stiffness of an interface or a joint."""
+Density = Annotated[float, Within(100, 30_000, "kg/m3")]
+"""Mass density of stone, brick or earth, and of what is heavier."""
+
+
 @cache
-def declared(kind: type) -> dict[str, tuple[Within, bool]]:
-    """The range of each field of a class that declares one, and whether the field may be None."""
+def declared(kind: Callable[..., object]) -> dict[str, tuple[Within, bool]]:
+    """The range of each field of a class, or argument of a function, that declares one, and whether it may be None."""
     hints = get_type_hints(kind, include_extras=True)
     notes = {name: get_args(hint) for name, hint in hints.items() if get_origin(hint) is Annotated}
     return {name: (note[1], type(None) in get_args(note[0])) for name, note in notes.items()}
@@ -141,9 +159,29 @@ def keep_declared(instance: object, owner: str = "") -> None:
             keep(instance, **{field: within.checked(name, value)})
 
 
+def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
+    """A function whose arguments are checked and converted, before it runs, by the ranges that they declare as fields
+    do: `height: Annotated[float, Within(0, 200, "m")]`. What is wrong is said as `keep_declared` says it."""
+    parameters = inspect.signature(function)
+
+    @wraps(function)
+    def with_checked(*given: P.args, **options: P.kwargs) -> Result:
+        try:
+            bound = parameters.bind(*given, **options)
+        except TypeError:
+            return function(*given, **options)  # which says what is missing or too much
+        for name, (within, optional) in declared(function).items():
+            if name in bound.arguments and not (optional and bound.arguments[name] is None):
+                bound.arguments[name] = within.checked(within.name or name, bound.arguments[name])
+        return function(*bound.args, **bound.kwargs)
+
+    return with_checked
+
+
 def require_stiffness(name: str, value: object) -> float:
-    """Return an interface stiffness as a float; it is within 1e4 to 1e14 N/m3, see `require_within`."""
-    return require_within(name, value, 1e4, 1e14, "N/m3")
+    """Return the stiffness of an interface as a float, see `Stiffness` and `require_within`."""
+    within: Within = get_args(Stiffness)[1]
+    return within.checked(name, value)
 
 
 def require_whole(name: str, value: object, low: int, high: int) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.vectors import tangents
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.support import Support
+from ..problem.masonry.histories import Support
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene

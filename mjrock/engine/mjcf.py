@@ -101,7 +101,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         extent=value_text(2 * half),
         meshes="".join(f"\n    {mesh}" for mesh in meshes(scene)),
     )
-    camera = _camera(scene, middle, half)
+    camera = camera_of(scene, middle, half)
     key = {"qpos": keyframe.pose.ravel(), "qvel": keyframe.velocity.ravel()}
     if len(keyframe.plastic):
         key["plastic"] = keyframe.plastic
@@ -113,15 +113,15 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         *(f"  {site}" for site in sites(scene, GROUND, scene.radius)),
         "</worldbody>",
         *section("contact", _pairs(scene, fixed.rows)),
-        *section("tendon", links(scene)),
-        *section("actuator", forces(scene)),
+        *section("tendon", linked(scene)),
+        *section("actuator", forced(scene)),
         *section("custom", _records(scene, newmark_beta)),
         *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
 
 
-def _camera(scene: Scene, middle: Array, half: float) -> dict[str, object]:
+def camera_of(scene: Scene, middle: Array, half: float) -> dict[str, object]:
     """Where the camera stands: before the plane, or in space before the facade and beside it."""
     if scene.freedom == PLANE:
         at = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)
@@ -160,20 +160,20 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float = 0.25, method:
     return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.links.c)
 
 
-def links(scene: Scene) -> Iterator[str]:
+def linked(scene: Scene) -> Iterator[str]:
     """The links: tendons with a spring that is slack up to a length and yields at a force, and with a dashpot."""
-    tied, lengths = scene.links, dict(zip(scene.links.sprung.names, scene.ties.reach.tolist(), strict=True))
-    for i, name in enumerate(tied.names):
-        law: dict[str, object] = {"damping": tied.c[i]} if tied.c[i] > 0 or tied.k[i] == 0 else {}
-        if tied.k[i] > 0:
-            yields = {} if tied.strength[i] == np.inf else {"springyield": tied.strength[i] / tied.k[i]}
-            slack_from = lengths[name] if tied.push[i] > 0 else 0
-            law = {"springlength": (slack_from, lengths[name]), "stiffness": tied.k[i], **yields, **law}
+    links, lengths = scene.links, dict(zip(scene.links.sprung.names, scene.ties.reach.tolist(), strict=True))
+    for i, name in enumerate(links.names):
+        law: dict[str, object] = {"damping": links.c[i]} if links.c[i] > 0 or links.k[i] == 0 else {}
+        if links.k[i] > 0:
+            yields = {} if links.strength[i] == np.inf else {"springyield": links.strength[i] / links.k[i]}
+            slack_from = lengths[name] if links.push[i] > 0 else 0
+            law = {"springlength": (slack_from, lengths[name]), "stiffness": links.k[i], **yields, **law}
         ends = "".join(tag("site", site=site) for site in (f"{name}_anchor", name))
         yield "  " + tag("spatial", ends, name=name, **law)
 
 
-def forces(scene: Scene) -> Iterator[str]:
+def forced(scene: Scene) -> Iterator[str]:
     """The constant forces: actuators that need no control."""
     for name, force in zip(scene.forces.names, scene.forces.force, strict=True):
         yield "  " + tag(

@@ -11,9 +11,8 @@ from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..problem.wall.effect import Anchored, Effect
+from ..problem.wall.effect import Anchored, Effect, Point
 from ..problem.wall.effects import forces_of
-from ..problem.wall.in_space import Point
 from ..quantities import Array, Flags
 from ..result.bodies import Moving
 from ..result.ties import elongation_of

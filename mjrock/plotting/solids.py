@@ -15,7 +15,6 @@ from ..geometry.frames import SPACE
 from ..geometry.hull import unlike_ways
 from ..geometry.poses import displaced
 from ..problem.masonry.blocks.compound import SolidBlock
-from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers, keep, require_array, require_within
@@ -240,11 +239,11 @@ class Solids:
     @cached_property
     def _parts(self) -> Parts:
         """The convex parts of the blocks that are shown."""
-        body = np.repeat(np.arange(len(self._blocks)), [len(block.parts) for block in self._blocks])
-        parts = [part for block in self._blocks for part in block.parts if isinstance(part, Polyhedron)]
-        corners = evened([part.corners for part in parts]) - self.rests[body, None]
-        normals = evened([unlike_ways(part.normals) for part in parts])
-        return Parts(body, corners, normals, evened([part.edges for part in parts]))
+        solids = [self.case.standing.solids[i] for i in self.shown]
+        body = np.repeat(np.arange(len(solids)), [len(solid.parts) for solid in solids])
+        parts = [part for solid in solids for part in solid.parts]
+        normals, edges = evened([unlike_ways(part.normals) for part in parts]), evened([part.edges for part in parts])
+        return Parts(body, evened([part.corners for part in parts]), normals, edges)
 
     def _posed(self, frame: int) -> Array:
         """Pose of each block that is shown at a frame, shape (shown, 7)."""

@@ -155,9 +155,10 @@ class ReportedMasonry(Reported):
         """Masonry: quantity, value with unit."""
         masonry = self.case.masonry
         mass = float(sum(masonry.blocks[i].mass for i in masonry.free))
+        fewest, most = int(masonry.table.points.min()), int(masonry.table.points.max())
         rows: TableRows = [
             ("blocks", f"{len(masonry.free)} free, {len(masonry.blocks) - len(masonry.free)} fixed"),
-            ("joints", f"{len(masonry.joints)}, points = {masonry.points}"),
+            ("joints", f"{len(masonry.joints)}, points = {fewest if fewest == most else f'{fewest} to {most}'}"),
             ("mass of the free blocks", f"{mass:.5g} kg"),
         ]
         values = {"k_n": masonry.joint_stiffness, "k_s": masonry.joint_shear, "friction": masonry.joint_friction}

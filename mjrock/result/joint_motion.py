@@ -15,9 +15,9 @@ from ..geometry.graph import components, nearest_roots
 from ..geometry.kinematics import Meeting, Places, meeting
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.histories import Support
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.standing import MasonryStanding, travels
-from ..problem.masonry.support import Support
 from ..quantities import Array, Flags, Integers, named
 from ..scene.scene import Scene
 

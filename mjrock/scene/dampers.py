@@ -16,7 +16,7 @@ from scipy.sparse import csr_array
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import Freedom, frames_of, push_body, take_frames
-from ..geometry.links import ends, parting
+from ..geometry.kinematics import ends, parting
 from ..geometry.vectors import dot, scaled
 from ..quantities import Array, Integers
 

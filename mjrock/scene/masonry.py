@@ -11,18 +11,17 @@ from ..problem.masonry.blocks.compound import AnyBlock
 from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import applied, laden, placed
+from ..problem.masonry.histories import motions_of_tilt
 from ..problem.masonry.limit.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.standing import MasonryStanding
-from ..problem.masonry.tilt import motions_of_tilt
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
 from ..quantities import GRAVITY, Array, Integers, named, require_kind
-from .attachments import attachments
 from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints, JointSprings, Limits
+from .parts import Bodies, ContactPoints, JointSprings, Limits, attachments
 from .rest import UnsettledError
 from .scene import Scene
 
@@ -215,7 +214,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             masonry.retardation,
             masonry.joint_friction,
             masonry.residual_friction,
-            np.full(len(masonry.joints), masonry.points),
+            masonry.table.points,
         ),
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
     )

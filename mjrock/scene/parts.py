@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -18,7 +18,8 @@ from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
-from ..problem.wall.effect import LinkLaw
+from ..problem.wall.effect import Effect, LinkLaw
+from ..problem.wall.effects import forces_of, links_of
 from ..quantities import Array, Flags, Integers, frozen
 from .checks import GROUND, keep_array, require_inertia, require_others
 from .masses import mass_diagonals, principal, products_of
@@ -325,3 +326,37 @@ def face_names(group: Sequence[str], bodies: Integers, faces: Array, normals: Ar
         number = sum(met[0] == name for met in known)
         names.append(known.setdefault(mark, f"{name}_face_{number}" if number else name))
     return tuple(names)
+
+
+def attachments(
+    effects: Sequence[Effect], number: Integers, place: Callable[[Effect], Sequence[float]], centroids: Array
+) -> tuple[Links, ConstantForces]:
+    """The links and the constant forces that effects bring.
+
+    Args:
+        effects: the effects.
+        number: of each block among the bodies, GROUND for one that is fixed.
+        place: where an effect acts, from the origin of the world, at rest [m].
+        centroids: of the bodies at rest [m], shape (bodies, d).
+    """
+    links, forces, d = links_of(effects), forces_of(effects), centroids.shape[1]
+
+    def on(some: Collection[Effect]) -> tuple[Integers, Array, Array]:
+        bodies = number[[effect.block for effect in some]]
+        points = np.array([place(effect) for effect in some])
+        return bodies, points, points - centroids[bodies]
+
+    pulled, pushed = Links(), ConstantForces()
+    if links:
+        bodies, points, at = on(links.values())
+        blocks = np.array([GROUND if link.anchor_block is None else link.anchor_block for link in links.values()])
+        others = np.where(blocks == GROUND, GROUND, number[blocks])
+        ends = np.array([link.anchor_of(point) for link, point in zip(links.values(), points, strict=True)])
+        ends = ends - np.where(others[:, None] == GROUND, 0.0, centroids[others])
+        laws = LinkLaw(*np.array([link.law for link in links.values()]).T)
+        pulled = Links(tuple(links), bodies, at, others, ends, **laws._asdict(), anchor_block=blocks)
+    if forces:
+        bodies, _, at = on([effect for effect, _ in forces.values()])
+        vectors = np.array([force for _, force in forces.values()])
+        pushed = ConstantForces(tuple(forces), bodies, at, vectors if d == 3 else vectors[:, ::2])
+    return pulled, pushed

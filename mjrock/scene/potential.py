@@ -1,4 +1,5 @@
-"""Potential: the energy of springs, weight and constant forces as a function of the pose, and its derivatives.
+"""Potential: the energy of springs, weight and constant forces as a function of the pose, its derivatives, and
+the frequencies that follow.
 
 Contacts and ties are springs alike, which act while they are pressed or taut. Contacts come first, then ties.
 Velocities and forces are those of the joints of all bodies, shape (n nv,) with nv velocities a body.
@@ -6,6 +7,7 @@ Velocities and forces are those of the joints of all bodies, shape (n nv,) with 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,6 +16,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import (
+    SPACE,
     displaced,
     frames_of,
     inverse_rotation_change,
@@ -35,7 +38,7 @@ from ..geometry.kinematics import (
 )
 from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
-from ..linear import entries, sprung
+from ..linear import entries, highest_square, sprung
 from ..problem.masonry.laws.joint_law import resting
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .structure import Structure, force_energy, weight_energy
@@ -274,3 +277,37 @@ def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: A
                     bent = opening(places, ties, i, frames, unit, unit).swept
                     curvature[i, p, r] -= 0.25 * sign * force[i] * bent
                     unit[row], unit[column] = 0.0, 0.0
+
+
+Principal = tuple[csr_array, Array]
+"""Velocities along principal axes, and the masses of each, see `masses.principal`."""
+
+
+def highest_frequency(potential: Potential, principal: Principal) -> float:
+    """The highest natural frequency with every contact closed and free to slide [rad/s].
+
+    No contact state of a run vibrates faster, because opening a contact or holding it sideways only lowers it.
+    """
+    stiffness, (columns, masses) = potential.stiffness(potential.unmoved, potential.springs), principal
+    if potential.structure.places.freedom == SPACE:
+        stiffness = csr_array(columns.T @ stiffness @ columns)
+    return math.sqrt(highest_square(stiffness, masses))
+
+
+def tie_frequency(potential: Potential, principal: Principal) -> float:
+    """The highest natural frequency of the bodies on one tie alone [rad/s], zero without ties."""
+    k, (columns, masses) = potential.structure.ties.k, principal
+    rates = potential.rates(potential.unmoved)[len(potential.structure.k) :]
+    if potential.structure.places.freedom == SPACE:
+        rates = csr_array(rates @ columns)
+    return math.sqrt(max(k * (rates.power(2) @ (1 / masses)), default=0.0))
+
+
+def rocking_frequency(mass: Array, inertia: Array, outlines: tuple[Array, ...]) -> float:
+    """The largest p = sqrt(m g R / (I + m R^2)) of bodies [rad/s], R to the farthest of the vertices of each outline.
+
+    In space I is the smallest principal moment of inertia.
+    """
+    R = np.array([np.hypot.reduce(corners, axis=1).max() for corners in outlines])
+    least = inertia if inertia.ndim == 1 else np.linalg.eigvalsh(inertia)[:, 0]
+    return math.sqrt(float(np.max(mass * GRAVITY * R / (least + mass * R**2))))

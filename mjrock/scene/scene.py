@@ -19,16 +19,14 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.frames import Freedom, frames_of
-from ..geometry.kinematics import AppliedForces, Places, Ties, gaps
-from ..geometry.links import ends
+from ..geometry.kinematics import AppliedForces, Places, Ties, ends, gaps
 from ..problem.wall.standing import Standing
 from ..quantities import Array, Integers, frozen
 from .checks import require_on
 from .dampers import Dampers
-from .frequencies import highest_frequency, rocking_frequency, tie_frequency
 from .masses import kinetic_energies
 from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links
-from .potential import Potential
+from .potential import Potential, highest_frequency, rocking_frequency, tie_frequency
 from .rest import lowered, settled
 from .structure import Structure, energies
 

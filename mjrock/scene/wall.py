@@ -16,10 +16,9 @@ from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
 from ..problem.wall.standing import WallStanding
 from ..quantities import Array, require_kind
-from .attachments import attachments
 from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints, JointSprings
+from .parts import Bodies, ContactPoints, JointSprings, attachments
 from .rest import held
 from .scene import Scene
 
@@ -92,7 +91,7 @@ def standing_wall(
     wall: Block, contacts: Contacts, stop_top: float | None, effects: tuple[Effect, ...], method: Method = METHOD
 ) -> Scene:
     """The scene of a wall, its added masses included, against a stop up to a height [m], or None."""
-    base = contacts.base
+    base, interfaces = contacts.base, [contacts.base]
     centroid = np.array([wall.centroid_offset, wall.centroid_height])
     places = [(x - centroid[0], -centroid[1]) for x in base.positions]
     faces, normals, joint, joints = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, [0] * base.points, ["base"]
@@ -100,6 +99,7 @@ def standing_wall(
     facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
     if stop_top is not None:
         side = contacts.side_up_to(stop_top)
+        interfaces.append(side)
         places += [(-wall.b - centroid[0], z) for z in side.positions + (0.5 * stop_top - centroid[1])]
         faces, normals = faces + [(-wall.b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
         joint, joints = joint + [1] * side.points, [*joints, "side"]
@@ -136,7 +136,7 @@ def standing_wall(
         title=_title(wall, stop_top),
         facts=facts,
         made_of=WallStanding(wall, stop_top),
-        springs=_springs([contacts.base] if stop_top is None else [contacts.base, contacts.side_up_to(stop_top)]),
+        springs=_springs(interfaces),
     )
     if even:
         return scene

@@ -159,9 +159,9 @@ def test_torsion_of_two_squares_tends_to_that_of_even_pressure(turn):
     if turn == 0:
         assert expected == pytest.approx(0.3826, rel=1e-3)
     for points, within in ((3, 0.13), (5, 0.04), (9, 0.015)):
-        finder = Finder(stood(blocks), points, flat=False)
+        finder = Finder(stood(blocks), flat=False)
         for jointed, off in ((np.array([1]), within), (np.zeros(0, dtype=np.int64), 1.0)):
-            finder.jointed = jointed
+            finder.jointed, finder.points = jointed, np.full(len(jointed), points)
             found = finder.found(poses, np.full(2, 1e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
             radius = float(found.share @ np.linalg.norm(found.place[:, :2], axis=1))
             assert found.share.sum() == pytest.approx(1.0)

@@ -8,6 +8,7 @@ from everyday import among
 from masonry_blocks import box
 
 import mjrock as mr
+from mjrock.distinct.setup import standing
 
 K_N, SIDE, FRICTION = 1e9, 1.0, 0.2
 SMOOTH = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0, 1, 101))
@@ -147,3 +148,17 @@ def test_a_plate_that_spins_on_one_of_its_size_has_the_torsion_of_an_octagon():
         turned += step * spin
     assert turned > 0.25
     assert run.velocity[-1, 0, 5] == pytest.approx(spin, rel=0.02)
+
+
+def test_pairs_keep_the_lines_of_their_own_joints():
+    """Of two blocks with two joints, which is one pair, the most."""
+    counts = {"ground|drum_0": 2, "drum_0|drum_1": 5}
+    masonry = mr.Masonry.column(0.6, 2.0, 2, points=lambda joint: counts[joint.name])
+    finder = standing(masonry)[2].finder
+    assert dict(zip(finder.jointed.tolist(), finder.points.tolist(), strict=True)) == {1: 2, 5: 5}
+    step = [mr.Polygon([(x, z), (x + 1, z), (x + 1, z + 0.5), (x, z + 0.5)]) for x, z in ((0, 0), (1, 0), (0, 0.5))]
+    corner = mr.Masonry(
+        [mr.Compound(step, fixed=True, name="step"), mr.Polygon([(1, 0.5), (2, 0.5), (2, 1), (1, 1)], name="block")],
+        points=lambda joint: 3 if joint.is_bed else 4,
+    )
+    assert sorted(standing(corner, (), False)[2].finder.points.tolist()) == [3, 4]

@@ -5,7 +5,7 @@ import pytest
 from driven import B, H, panel
 
 import mjrock as mr
-from mjrock.problem.masonry.tilt import motions_of_tilt
+from mjrock.problem.masonry.histories import motions_of_tilt
 
 RATE = 0.02
 """Rate at which the table turns [rad/s]."""

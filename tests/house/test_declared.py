@@ -1,5 +1,6 @@
 """The range of a number is declared once, and the docstring of its class says the same."""
 
+import inspect
 import math
 import re
 from dataclasses import is_dataclass
@@ -9,34 +10,47 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.quantities import Within, declared, keep_declared
+from mjrock.quantities import Within, declared, keep_declared, within_ranges
 
-PUBLIC = [kind for name in mr.HOME if is_dataclass(kind := getattr(mr, name)) and isinstance(kind, type)]
+PUBLIC = [getattr(mr, name) for name in mr.HOME]
+CLASSES = [kind for kind in PUBLIC if isinstance(kind, type) and is_dataclass(kind)]
+FUNCTIONS = [
+    function
+    for kind in PUBLIC
+    for member in ([kind] if not isinstance(kind, type) else vars(kind).values())
+    if hasattr(function := getattr(member, "__func__", member), "__wrapped__") and inspect.isfunction(function)
+]
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 
 
 def of_argument(kind, name):
-    """What the docstring of a class says of an argument."""
-    entry = rf"^ {{8}}(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ {{8}}\w|^ {{4}}\S|\Z)"
-    found = re.search(entry, kind.__doc__, re.MULTILINE | re.DOTALL)
-    return " ".join(found[1].split()) if found else ""
+    """What the docstring of a class or function says of an argument, all of it where it names none."""
+    of_class = kind.__name__ == "__init__"
+    text = inspect.getdoc(getattr(mr, kind.__qualname__.split(".")[0]) if of_class else kind)
+    entry = rf"^ {{4}}(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ {{4}}\w|^\S|\Z)"
+    found = re.search(entry, text, re.MULTILINE | re.DOTALL)
+    return " ".join((found[1] if found else text).split())
 
 
 def faults(kind):
-    """The declared numbers of a class whose docstring lacks or contradicts their range or unit."""
+    """The declared numbers of a class or function whose docstring lacks or contradicts their range or unit."""
     for name, (within, _) in declared(kind).items():
         text = of_argument(kind, name)
         ranges = [(float(low), float(high)) for low, high in re.findall(rf"({NUMBER}) to ({NUMBER})", text)]
+        if re.search(r"(as|those) of `", text):
+            continue
         if (within.low, within.high) not in ranges or (f"[{within.unit or '-'}]" not in text and not within.whole):
-            yield f"{kind.__name__}.{name}: {within.low:g} to {within.high:g} [{within.unit or '-'}] is not in {text!r}"
+            said = f"{within.low:g} to {within.high:g} [{within.unit or '-'}]"
+            yield f"{kind.__qualname__}.{name}: {said} is not in {text!r}"
 
 
 def test_docstrings_have_the_declared_ranges():
-    assert [fault for kind in PUBLIC for fault in faults(kind)] == []
+    assert [fault for kind in (*CLASSES, *FUNCTIONS) for fault in faults(kind)] == []
 
 
 def test_numbers_are_declared():
-    assert sum(len(declared(kind)) for kind in PUBLIC) > 30
+    assert sum(len(declared(kind)) for kind in CLASSES) > 50
+    assert sum(len(declared(function)) for function in FUNCTIONS) > 40
 
 
 class Wall:
@@ -75,3 +89,23 @@ def test_numbers_are_checked_and_kept_as_declared():
     ):
         with pytest.raises((TypeError, ValueError), match=re.escape(said)):
             Wall(*wrong)
+
+
+@within_ranges
+def volume(height: Annotated[float, Within(0, 20, "m")], count: Annotated[int | None, Within(1, 3, whole=True)] = None):
+    """A function of a test."""
+    return height, count
+
+
+def test_arguments_are_checked_and_converted_as_declared():
+    assert [type(value) for value in volume(np.float32(20), count=3.0)] == [float, int]
+    assert volume(5, None) == (5.0, None)
+    assert volume.__doc__ == "A function of a test."
+    for call, said in (
+        (lambda: volume(-1), "height = -1 m is outside the valid range 0 to 20 m"),
+        (lambda: volume(1, count=2.5), "count = 2.5 is not a whole number"),
+        (lambda: volume(), "volume() missing 1 required positional argument: 'height'"),
+        (lambda: volume(1, depth=2), "volume() got an unexpected keyword argument 'depth'"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=re.escape(said)):
+            call()

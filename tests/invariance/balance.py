@@ -10,7 +10,7 @@ import numpy as np
 
 import mjrock as mr
 from mjrock.problem.masonry.effects import laden
-from mjrock.problem.masonry.tilt import motions_of_tilt
+from mjrock.problem.masonry.histories import motions_of_tilt
 from mjrock.result.bodies import Moving
 from mjrock.result.ties import across
 

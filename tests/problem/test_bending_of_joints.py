@@ -1,9 +1,14 @@
 """Stiffness of closed joints: k_n times the area along the normal, and more than k_n I in bending."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import mjrock as mr
+
+BOXES = ((2.0, -1.0), (0.3, 0.0), (0.3, 1.0), (0.3, 2.0))
+"""Half the width of a block, and the height of its lower edge [m]."""
 
 
 def bending(masonry, joint=0):
@@ -23,6 +28,34 @@ def test_a_closed_joint_of_few_lines_is_stiffer_in_bending_than_its_face(points,
     assert over == 1 + 2 / (points - 1) ** 2
     assert bending(plane) == pytest.approx(over)
     assert bending(space) == pytest.approx(over)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_joints_of_one_masonry_may_have_unlike_points(in_space):
+    """Each joint has the lines, and the stiffness, that it has where all joints have as many."""
+    given = {"ground": 2, "drum_0|drum_1": 3, "drum_1|drum_2": 5}
+
+    def points(joint):
+        return next(count for name, count in given.items() if joint.name.startswith(name))
+
+    def built(**joints):
+        if in_space:
+            return mr.Masonry.column(0.6, 3.0, 3, **joints)
+        boxes = [mr.Polygon([(-x, z), (x, z), (x, z + 1), (-x, z + 1)], fixed=z < 0) for x, z in BOXES]
+        names = ["ground", "drum_0", "drum_1", "drum_2"]
+        return mr.Masonry([replace(box, name=name) for box, name in zip(boxes, names, strict=True)], **joints)
+
+    mixed = built(joints=lambda joint: mr.Dry(1e9, points=points(joint)))
+    assert mixed.table.points.tolist() == [2, 3, 5]
+    assert "points of the joint" in repr(mixed)
+    assert built(k_n=1e9, points=points).table.points.tolist() == [2, 3, 5]
+    assert built(points=lambda joint: 3) == built(points=3)
+    for number, count in enumerate(given.values()):
+        alike, own = built(k_n=1e9, points=count).lines, mixed.lines
+        assert bending(mixed, number) == pytest.approx(1 + 2 / (count - 1) ** 2)
+        for name in ("at", "k", "body"):
+            given_, wanted = (getattr(each, name)[each.joint == number] for each in (own, alike))
+            np.testing.assert_array_equal(given_, wanted)
 
 
 BOND = mr.Bond(0.1e6, 0.1e6, 10.0, 100.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry.files.mesh_files import read_obj
+from mjrock.problem.masonry.files.meshes import read_obj
 
 UNIT = (0.4, 0.2)
 FACADE = mr.Masonry.facade(0.8, 0.4, 0.4, UNIT, xi=0)

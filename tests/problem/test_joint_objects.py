@@ -97,8 +97,12 @@ def test_a_keyword_that_no_joint_has_is_refused_with_the_nearest_one(build):
         (lambda: mr.Masonry.box((1, 1, 1), joints=lambda j: 3), r"joints of ground\|block = 3 .* is not a Dry or Mo"),
         (lambda: mr.Masonry.box((1, 1, 1), joints=len), "joints = .* is not called as joints"),
         (
-            lambda: mr.Masonry.column(0.5, 2.0, 2, joints=lambda j: mr.Dry(points=3 if "ground" in j.name else 2)),
-            r"points = 3 of ground\|drum_0 and 2 of drum_0\|drum_1: all joints of masonry have as many",
+            lambda: mr.Masonry.column(0.5, 2.0, 2, joints=lambda j: mr.Dry(points=99 if "ground" in j.name else 2)),
+            r"points of ground\|drum_0 = 99 is outside the valid range 2 to 50",
+        ),
+        (
+            lambda: mr.Masonry.column(0.5, 2.0, 2, points=lambda j: 2.5),
+            r"points of ground\|drum_0 = 2.5 is not a whole number",
         ),
         (lambda: mr.Masonry.box((1, 1, 1), joints=mr.Dry(points=51)), "points = 51 is outside the valid range 2 to 50"),
         (lambda: mr.Dry(k_n=1e3), r"k_n = 1000 N/m3 is outside the valid range 10000 to 1e\+14 N/m3"),

@@ -10,7 +10,7 @@ from everyday import slow
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
-from mjrock.problem.masonry.laws.of_joint import ByKind, ByName
+from mjrock.problem.masonry.laws.joint_table import ByKind, ByName
 from mjrock.problem.masonry.pile import Pile
 from mjrock.study.campaign.task import fingerprint
 from mjrock.study.matching.masonry import STRONG, excess, peaks, rebound, restitutions, strong

@@ -14,29 +14,29 @@ so that how many blocks stand on the ground plays no part.
 
 A corner or a small face of a loose block has a quarter of the largest face, and what is left of a joint that has slid
 has a quarter of the joint, with the same decrease for areas that are ten times smaller still. Otherwise they would sink
-in.
+in. The step of a run is found from the joints at rest, which loose blocks do not have. So `longest_step_of_loose` takes
+each with the springs that it has on one of its sides, twice over, as a block between two others.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...geometry.hull import Side, area_vector
+from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
-from ..rows import Rows
+from ..limit import longest_step
+from ..rows import Rows, chosen, joined, rows
+from ..system import System
+from .constants import AS_STIFF, LEAST_CONTACT, SIDES_THAT_BEAR, WHOLE_CONTACT
 
 SHARED = ("k", "c", "k_s", "c_s")
 """What the places of a pair share."""
-WHOLE = 0.1
-"""Part of the area of a joint over which two faces that had none have all that a pair has [-]."""
-LEAST = 0.25
-"""Part of what a loose block has over its largest face, or a pair over its joint, that a smaller area has too [-]."""
-
-ROUNDED = 1e-9
-"""Relative difference up to which what two blocks have is the same [-]."""
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -116,7 +116,7 @@ class PairLaw(NamedTuple):
         there = np.searchsorted(self.jointed, pair[had])
         shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
         over = area / shared[:, -1]
-        part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE, 1.0))
+        part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
         return {**dict(zip(SHARED, share * shared[:, :-1].T, strict=True)), "friction": friction}
 
@@ -126,7 +126,7 @@ class PairLaw(NamedTuple):
         both, fixed = self.of_block[0][ends], self.fixed[ends]
         over = both[::-1, :, -1] / both[..., -1]
         both = both * np.where(fixed, over, 1.0)[..., None]
-        less, more = both[0] < (1 - ROUNDED) * both[1], (1 - ROUNDED) * both[0] > both[1]
+        less, more = both[0] < (1 - AS_STIFF) * both[1], (1 - AS_STIFF) * both[0] > both[1]
         unlike = (less | more).argmax(axis=1)  # of equal stiffness the one with less of the next column
         first = ~np.take_along_axis(more, unlike[:, None], axis=1)[:, 0]
         second = fixed[0] | (~fixed[1] & ~first)
@@ -139,7 +139,7 @@ class PairLaw(NamedTuple):
 def part_of_face(over: Array) -> Array:
     """Part of what a loose block has over its largest face, or a pair over its joint, that it has over another area,
     from this area over that of the face or the joint."""
-    return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
+    return np.asarray(np.maximum(over, np.minimum(over / WHOLE_CONTACT, LEAST_CONTACT)))
 
 
 def side_area(side: Side) -> float:
@@ -178,3 +178,29 @@ def _of_loose(scene: Scene, joints: Array, friction: Array, loose: Flags) -> tup
         of_joint = scene.standing.joints[softest].length
         per_area = per_area * np.append(length / of_joint * np.ones(4), np.ones_like(length), 1)
     return largest * per_area, np.full(len(solids), friction[softest])
+
+
+def longest_step_of_loose(solids: Sequence[Solid], law: PairLaw, system: System) -> float:
+    """The longest stable step [s] of loose blocks on their springs, infinite where there are none."""
+    tables, kept, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
+    for i in np.flatnonzero(law.loose & ~law.fixed).tolist():
+        solid = solids[i]
+        centroid = solid.rest if in_space else solid.rest[::2]
+        for corners, normal, shared in _springs(solid, law.of_block[0][i]):
+            columns = dict(zip(SHARED, shared, strict=True))
+            ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
+            tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
+            kept.append(solid.body)
+    if not kept:
+        return math.inf
+    return longest_step(system._replace(bodies=chosen(system.bodies, np.array(kept)), lines=joined(*tables), links=()))
+
+
+def _springs(solid: Solid, shared: Array) -> list[tuple[Array, Array, Array]]:
+    """The corners of each side of a loose block [m], its normal, and the springs and dashpots that each corner has."""
+    springs = []
+    for side in solid.sides:
+        over = np.array([side_area(side) / shared[-1]])
+        part = SIDES_THAT_BEAR * float(part_of_face(over)[0]) / len(side.corners)
+        springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
+    return springs

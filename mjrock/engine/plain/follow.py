@@ -16,7 +16,7 @@ import numpy as np
 from tqdm import tqdm
 
 from ...geometry.frames import PLANE
-from ...problem.masonry.support import Support
+from ...problem.masonry.histories import Support
 from ...quantities import GRAVITY, Array, Integers
 from ...result.ledger import StepError
 from ...scene.course import Course

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import ConvexHull, HalfspaceIntersection
+import scipy
 
 from ...quantities import Array
 from .pieces import Piece
@@ -49,7 +48,10 @@ def common_volume(planes: Array) -> float:
     The middle of the largest ball within is the point about which the planes are taken to their dual.
     """
     normals, offsets = planes[:, :3], planes[:, 3]
-    ball = linprog((0, 0, 0, -1), np.column_stack([normals, np.ones(len(planes))]), -offsets, bounds=[(None, None)] * 4)
+    ball = scipy.optimize.linprog(
+        (0, 0, 0, -1), np.column_stack([normals, np.ones(len(planes))]), -offsets, bounds=[(None, None)] * 4
+    )
     if ball.status != 0 or ball.x[3] <= THIN * np.abs(offsets).max():
         return 0.0
-    return float(ConvexHull(HalfspaceIntersection(planes, ball.x[:3]).intersections).volume)
+    inner = scipy.spatial.HalfspaceIntersection(planes, ball.x[:3])
+    return float(scipy.spatial.ConvexHull(inner.intersections).volume)

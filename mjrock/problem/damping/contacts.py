@@ -6,28 +6,34 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ...quantities import (
     Implausible,
+    Within,
     is_iterable,
     require_kind,
     require_real,
-    require_stiffness,
     require_text,
-    require_within,
     shown,
+    within_ranges,
 )
 from ..wall.block import Block
 from ..wall.case import Case
-from .interface import Interface, reference_frequency, require_points
+from .interface import Interface, Points, reference_frequency
 from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named, rebound_over_uplift
 from .restitution import UNLIKE, Restitution
 
 HOLDS = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
+OfBase = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
+"""Stiffness of the base of a wall."""
+OfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")]
+"""Stiffness of the side stop of a wall, None without one."""
+Rubbing = Annotated[float | None, Within(0, 10)]
+"""Coefficient of friction of an interface, see `Interface`."""
 AnyLaw = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 
@@ -44,7 +50,7 @@ def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: flo
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 
-def required_law(law: AnyLaw | str | None, points: int) -> AnyLaw:
+def required_law(law: AnyLaw | str | None, points: int = 2) -> AnyLaw:
     """A law, by its name too; None stands for the calibrated one of so many contact lines a face."""
     if law is None:
         return CALIBRATED if points == 2 else CALIBRATED_BED
@@ -71,20 +77,6 @@ def _doubts(
             f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
             f"side_friction = {side_friction}; matched_contacts finds the damping for them"
         )
-
-
-def required_layout(points: int, k_base: float, k_side: float | None) -> tuple[int, float, float | None]:
-    """Contact lines and stiffnesses [N/m3], each within its range."""
-    k_base = require_stiffness("base stiffness k_n", k_base)
-    k_side = None if k_side is None else require_stiffness("side stiffness k_n", k_side)
-    return require_points(points), k_base, k_side
-
-
-def required_frictions(friction: float | None, side_friction: float | None) -> tuple[float | None, float | None]:
-    """Coefficients of friction of base and side, each within its range."""
-    given = {"friction": friction, "side_friction": side_friction}
-    base, side = (None if value is None else require_within(name, value, 0.0, 10.0) for name, value in given.items())
-    return base, side
 
 
 @dataclass(frozen=True)
@@ -116,31 +108,36 @@ class Contacts:
         return f"<Contacts, law {self.law}, {self.base.points} lines a face: {'; '.join(parts)}>"
 
     @classmethod
+    @within_ranges
     def from_damping(
         cls,
         wall: Block,
         *,
-        k_base: float,
+        k_base: OfBase,
         xi_base: float,
-        k_side: float | None = None,
+        k_side: OfSide = None,
         xi_side: float = 0.0,
-        points: int = 2,
-        friction: float | None = None,
-        side_friction: float | None = None,
+        points: Points = 2,
+        friction: Rubbing = None,
+        side_friction: Rubbing = None,
         law: str = "given",
         stop_top: float | None = None,
     ) -> Contacts:
-        """Interfaces of `wall` from stiffnesses [N/m3] and damping ratios [-]; no side stop without `k_side`.
+        """Interfaces of `wall` from stiffnesses and damping ratios.
 
-        Friction is that of `Interface`: by default the base holds and the side is smooth. `stop_top` is that of
-        `Contacts`.
+        Args:
+            wall: the wall.
+            k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
+            xi_base, xi_side: their damping ratios, see `Interface` [-].
+            points: contact lines a face, 2 to 1000.
+            friction, side_friction: coefficients as in `Interface` [-], 0 to 10. By default the base holds and the side
+                is smooth.
+            law, stop_top: see `Contacts`.
 
         Raises:
             ValueError: for a value outside its range, or a base too soft for the wall to stand on.
         """
         require_kind("wall", wall, Block)
-        points, k_base, k_side = required_layout(points, k_base, k_side)
-        friction, side_friction = required_frictions(friction, side_friction)
         omega = reference_frequency(wall, k_base, points)
         base = Interface(k_base, xi_base, 2 * wall.half_base, wall.base_length, omega, points, friction)
         side = None
@@ -156,17 +153,18 @@ class Contacts:
         return cls(base, side, law, stop_top=stop_top)
 
     @classmethod
+    @within_ranges
     def from_law(
         cls,
         wall: Block,
         e: Restitution,
-        k_base: float,
-        k_side: float | None = None,
+        k_base: OfBase,
+        k_side: OfSide = None,
         law: AnyLaw | str | None = None,
-        points: int = 2,
-        amplitude: float = 0.5,
-        friction: float | None = None,
-        side_friction: float | None = None,
+        points: Points = 2,
+        amplitude: Annotated[float, Within(1e-3, 1, name="amplitude theta_0/alpha")] = 0.5,
+        friction: Rubbing = None,
+        side_friction: Rubbing = None,
     ) -> Contacts:
         """Interfaces of `wall` whose damping ratios the law predicts, in the chosen layout.
 
@@ -175,12 +173,12 @@ class Contacts:
 
         Args:
             wall, e: the wall, and the restitution that is asked for.
-            k_base, k_side: interface stiffness of base and side [N/m3]; no side stop without `k_side`.
+            k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
             law: a law or its name; None takes CALIBRATED for two lines and CALIBRATED_BED for more. A law of your own
                 is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` and `amplitude` too.
-            points: contact lines a face.
-            amplitude: rotation theta_0/alpha from which the wall falls to the rebound that matters most [-].
-            friction, side_friction: coefficients as in `Interface`.
+            points: contact lines a face, 2 to 1000.
+            amplitude: rotation theta_0/alpha from which the wall falls to the rebound that matters most [-], 1e-3 to 1.
+            friction, side_friction: coefficients as in `Interface` [-], 0 to 10.
 
         Raises:
             ValueError: as `from_damping`, and what the law raises.
@@ -192,26 +190,23 @@ class Contacts:
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
-        points, k_base, k_side = required_layout(points, k_base, k_side)
-        friction, side_friction = required_frictions(friction, side_friction)
-        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         law = required_law(law, points)
         if k_side is not None:
             e.require_rebound()
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
             for doubt in _doubts(law, points, k_side, friction, side_friction):
-                warnings.warn(doubt, stacklevel=2)
+                warnings.warn(doubt, stacklevel=3)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
         if unlikely := e.doubt(wall, None):
-            warnings.warn(unlikely, Implausible, stacklevel=2)
+            warnings.warn(unlikely, Implausible, stacklevel=3)
         if k_side is not None and (lifts := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
             warnings.warn(
                 f"no rebound can lift an edge as e asks for it from {amplitude:g} alpha: it would turn the wall "
                 f"{lifts:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then "
                 f"elastic or larger than asked for. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3",
-                stacklevel=2,
+                stacklevel=3,
             )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from ...quantities import GRAVITY, keep, require_kind, require_real, require_stiffness, require_within, shown
 from ..wall.block import Block
-from .interface import contact_lines, require_points
+from .interface import contact_lines
 from .stiffness import measured_stiffness
 
 Range = tuple[float, float]
@@ -115,7 +115,7 @@ class StiffnessRange:
 
 def lines_over_bed(wall: Block, points: int) -> float:
     """k_n on some contact lines over that of a uniform bed of the same rotational stiffness [-], 1/3 for two lines."""
-    x, widths = contact_lines(2 * wall.half_base, require_points(points))
+    x, widths = contact_lines(2 * wall.half_base, points)
     return (2 * wall.half_base) ** 3 / 12 / float((widths * x**2).sum())
 
 

@@ -10,27 +10,19 @@ from typing import Annotated
 
 import numpy as np
 
-from ...quantities import (
-    Array,
-    Implausible,
-    Within,
-    keep_declared,
-    require_kind,
-    require_stiffness,
-    require_whole,
-)
+from ...quantities import Array, Implausible, Within, keep_declared, require_kind, within_ranges
 from ..wall.block import Block
 
 LAWS_END = 0.3
 """Highest damping ratio that the laws predict and searches try [-], see `mjrock.problem.damping.law`."""
 
 
-def require_points(points: object) -> int:
-    """Return a number of contact lines as an integer; it is within 2 to 1000, see `require_whole`."""
-    return require_whole("contact points", points, 2, 1000)
+Points = Annotated[int, Within(2, 1000, name="contact points", whole=True)]
+"""Contact lines of a face."""
 
 
-def contact_lines(face: float, points: int) -> tuple[Array, Array]:
+@within_ranges
+def contact_lines(face: float, points: Points) -> tuple[Array, Array]:
     """Positions along a face of width `face` [m] from its centre [m], and the widths that are tributary to them [m].
 
     The lines are evenly spaced from edge to edge, so that the outer two have half the tributary width of the others.
@@ -42,7 +34,10 @@ def contact_lines(face: float, points: int) -> tuple[Array, Array]:
     return positions, widths
 
 
-def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
+@within_ranges
+def reference_frequency(
+    wall: Block, k_n: Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")], points: int = 2
+) -> float:
     """The frequency omega [rad/s] that turns a damping ratio into a dashpot, c_i = (2 xi / omega) k_i.
 
     omega = sqrt(K_rot / I_base): the wall rocking in full contact about the centre of its base, K_rot = sum k_i x_i^2
@@ -54,10 +49,14 @@ def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
     0.485 for a bed of 32 (17.4 rad/s). With the vertical bounce sqrt(k_n A / m) (244 rad/s) hardly anything is lost
     against the side: 0.983 and 0.920 on corner lines, 0.998 and 0.939 on the bed. `scripts/paper/layouts.py` prints
     these figures. A frequency of the side itself would damp some 26 times too little.
+
+    Args:
+        wall: the wall.
+        k_n: interface stiffness of the base [N/m3], 1e4 to 1e14.
+        points: contact lines of the base, 2 to 1000.
     """
     require_kind("wall", wall, Block)
-    k_n = require_stiffness("interface stiffness k_n", k_n)
-    positions, widths = contact_lines(2 * wall.half_base, require_points(points))
+    positions, widths = contact_lines(2 * wall.half_base, points)
     K_rot = float(np.sum(k_n * widths * wall.base_length * positions**2))
     arm = math.hypot(wall.centroid_height, wall.centroid_offset)
     return math.sqrt(K_rot / (wall.inertia + wall.mass * arm**2))
@@ -87,7 +86,7 @@ class Interface:
     face: Annotated[float, Within(1e-3, 1000, "m")]
     length: Annotated[float, Within(1e-3, 1000, "m")]
     frequency: Annotated[float, Within(1e-3, 1e9, "rad/s", "reference frequency")]
-    points: Annotated[int, Within(2, 1000, name="contact points", whole=True)] = 2
+    points: Points = 2
     friction: Annotated[float | None, Within(0, 10)] = None
 
     def __post_init__(self) -> None:

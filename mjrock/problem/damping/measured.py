@@ -13,15 +13,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, is_iterable, require_row, require_within, shown
+from ...quantities import GRAVITY, Array, Within, is_iterable, require_row, shown, within_ranges
 from .falling import MOST_PULL, falling_damping, falling_rebound
 from .rebound import rebound_damping
 
+Mass = Annotated[float | None, Within(1e-12, 1e12, "kg")]
+Modulus = Annotated[float, Within(1, 1e15, "Pa")]
+"""Young's modulus of any body."""
+Ratio = Annotated[float, Within(-1, 0.5)]
+"""Poisson's ratio."""
 HERTZ_DURATION = 2.9432
 """Time of a blow between elastic spheres, times the speed of approach over the largest indentation [-]."""
 LEAST = 1e-3
@@ -48,93 +53,92 @@ class MeasuredContact:
     times: int
 
 
+@within_ranges
 def measured_contact(
     heights: ArrayLike | Sequence[ArrayLike],
     *,
-    mass: float | None = None,
+    mass: Mass = None,
     contact_times: ArrayLike | None = None,
-    confidence: float = 0.95,
-    gravity: float = GRAVITY,
+    confidence: Annotated[float, Within(1e-6, 1 - 1e-6)] = 0.95,
+    gravity: Annotated[float, Within(1e-6, 1e6, "m/s2")] = GRAVITY,
 ) -> MeasuredContact:
     """Restitution and stiffness of a body that was dropped on a surface.
 
     Args:
         heights: heights of the lowest point above the surface [m], that of the release first and then of each bounce;
             several drops are a list of such rows.
-        mass: mass of the body [kg], positive; needed for the stiffness.
+        mass: mass of the body [kg], 1e-12 to 1e12; needed for the stiffness.
         contact_times: times of contact of first bounces [s].
-        confidence: of the intervals, above 0 and below 1 [-]. They are Student's, of the mean of independent bounces;
+        confidence: of the intervals [-], 1e-6 to 0.999999. They are Student's, of the mean of independent bounces;
             a single one leaves it open, and the interval is that of all possible values.
-        gravity: acceleration of gravity [m/s2], positive.
+        gravity: acceleration of gravity [m/s2], 1e-6 to 1e6.
 
     Raises:
         TypeError, ValueError: for a value outside its range, fewer than two heights in a drop, a bounce that is higher
             than what it came from, or times without a mass.
     """
-    level = require_within("confidence", confidence, 1e-6, 1 - 1e-6)
-    g = require_within("gravity", gravity, 1e-6, 1e6, "m/s2")
     ratios, release = _ratios(heights)
-    e, low, high = _interval(ratios, level, 0.0, 1.0)
+    e, low, high = _interval(ratios, confidence, 0.0, 1.0)
     if contact_times is None:
         return MeasuredContact(e, (low, high), rebound_damping(max(e, LEAST)), None, None, len(ratios), 0)
     if mass is None:
         raise ValueError("contact_times are given without mass; the stiffness needs it")
-    m = require_within("mass", mass, 1e-12, 1e12, "kg")
     times = require_row("contact_times", contact_times, "time of contact")
     if times.min() < 1e-9 or times.max() > 1e3:
         raise ValueError(f"contact_times hold {times.min():g} to {times.max():g} s; the valid range is 1e-09 to 1000 s")
-    mean, short, long = _interval(times, level, 0.0, math.inf)
-    speed = math.sqrt(2 * g * release)
-    k, softest, stiffest = (m * _frequency(time, e, g, speed) ** 2 for time in (mean, long, short))
-    omega = math.sqrt(k / m)
-    xi = falling_damping(max(e, LEAST), min(g / (omega * speed), MOST_PULL))
+    mean, short, long = _interval(times, confidence, 0.0, math.inf)
+    speed = math.sqrt(2 * gravity * release)
+    k, softest, stiffest = (mass * _frequency(time, e, gravity, speed) ** 2 for time in (mean, long, short))
+    omega = math.sqrt(k / mass)
+    xi = falling_damping(max(e, LEAST), min(gravity / (omega * speed), MOST_PULL))
     return MeasuredContact(e, (low, high), xi, k, (softest, stiffest), len(ratios), len(times))
 
 
+@within_ranges
 def hertz_stiffness(
-    radius: float,
-    E: float,
-    nu: float,
+    radius: Annotated[float, Within(1e-9, 1e6, "m")],
+    E: Modulus,
+    nu: Ratio,
     *,
     other: tuple[float, float] | None = None,
-    force: float | None = None,
-    mass: float | None = None,
-    speed: float | None = None,
+    force: Annotated[float | None, Within(1e-12, 1e15, "N")] = None,
+    mass: Mass = None,
+    speed: Annotated[float | None, Within(1e-9, 1e6, "m/s")] = None,
 ) -> float:
     """Stiffness of a linear contact in place of Hertz's [N/m].
 
     Args:
-        radius: radius of the sphere [m]; 1 / (1/R1 + 1/R2) of two.
-        E, nu: Young's modulus [Pa] and Poisson's ratio [-] of the sphere.
+        radius: radius of the sphere [m], 1e-9 to 1e6; 1 / (1/R1 + 1/R2) of two.
+        E: Young's modulus of the sphere [Pa], 1 to 1e15.
+        nu: Poisson's ratio of the sphere [-], -1 to 0.5.
         other: the same of the other body. None is a rigid one.
-        force: force at which both contacts have the same indentation [N], such as a weight; or
-        mass, speed: effective mass [kg] and speed of approach [m/s] at which both last equally long.
+        force: force at which both contacts have the same indentation [N], 1e-12 to 1e15, such as a weight; or
+        mass: effective mass [kg], 1e-12 to 1e12, and
+        speed: speed of approach [m/s], 1e-9 to 1e6, at which both last equally long.
 
     Raises:
         TypeError, ValueError: for a value outside its range, or unless force, or mass and speed, are given.
     """
-    R = require_within("radius", radius, 1e-9, 1e6, "m")
     compliance = _compliance(E, nu)
     if other is not None:
         if not isinstance(other, tuple | list) or len(other) != 2:
             raise TypeError(f"other = {shown(other)} has to be Young's modulus and Poisson's ratio of the other body")
         compliance += _compliance(*other)
-    K = float(4 / 3 * math.sqrt(R) / compliance)
+    K = float(4 / 3 * math.sqrt(radius) / compliance)
     if (force is None) == (mass is None and speed is None) or (mass is None) != (speed is None):
         raise ValueError(
             f"force = {shown(force)}, mass = {shown(mass)}, speed = {shown(speed)}: give the force, or mass and speed"
         )
-    if force is not None:
-        load = require_within("force", force, 1e-12, 1e15, "N")
+    if mass is None or speed is None:
+        load = float(force or 0.0)
         return float(load / (load / K) ** (2 / 3))
-    m, v = require_within("mass", mass, 1e-12, 1e12, "kg"), require_within("speed", speed, 1e-9, 1e6, "m/s")
-    deepest = (5 * m * v * v / (4 * K)) ** 0.4
-    return float(m * (math.pi * v / (HERTZ_DURATION * deepest)) ** 2)
+    deepest = (5 * mass * speed * speed / (4 * K)) ** 0.4
+    return float(mass * (math.pi * speed / (HERTZ_DURATION * deepest)) ** 2)
 
 
-def _compliance(E: object, nu: object) -> float:
-    ratio = require_within("nu", nu, -1.0, 0.5)
-    return (1 - ratio**2) / require_within("E", E, 1.0, 1e15, "Pa")
+@within_ranges
+def _compliance(E: Modulus, nu: Ratio) -> float:
+    return (1 - nu**2) / E
 
 
 def _ratios(heights: object) -> tuple[Array, float]:

@@ -8,16 +8,20 @@ gives the frequency that a stiffness belongs to.
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
-from ...quantities import require_kind, require_stiffness, require_within
+from ...quantities import Within, require_kind, require_stiffness, within_ranges
 from ..wall.block import Block
-from .interface import contact_lines, reference_frequency, require_points
+from .interface import Points, contact_lines, reference_frequency
 
+Modulus = Annotated[float, Within(1e5, 1e12, "Pa", "modulus E")]
+"""Young's modulus of mortar, masonry or stone."""
 UNIT = 1e8
 """A stiffness whose frequency is scaled [N/m3]."""
 
 
-def joint_stiffness(E: float, thickness: float) -> float:
+@within_ranges
+def joint_stiffness(E: Modulus, thickness: Annotated[float, Within(1e-4, 1, "m")]) -> float:
     """k_n = E / t of a mortar joint or of any thin layer, uniaxially compressed [N/m3].
 
     It is an upper bound for units much stiffer than the mortar: real joints have voids and touch in spots.
@@ -31,11 +35,11 @@ def joint_stiffness(E: float, thickness: float) -> float:
 
     Source: Lourenço (1996), Computational strategies for masonry structures, TU Delft, for joints between stiff units.
     """
-    E = require_within("modulus E", E, 1e5, 1e12, "Pa")
-    return require_stiffness("k_n = E / thickness", E / require_within("thickness", thickness, 1e-4, 1.0, "m"))
+    return require_stiffness("k_n = E / thickness", E / thickness)
 
 
-def wall_stiffness(E: float, wall: Block, points: int = 2) -> float:
+@within_ranges
+def wall_stiffness(E: Modulus, wall: Block, points: Points = 2) -> float:
     """k_n = E / H of a base that stands for the elasticity of the wall above it [N/m3].
 
     Two corner lines of E / H have the rotational stiffness 3 E I / H of a cantilever with a force at its top. On more
@@ -45,14 +49,13 @@ def wall_stiffness(E: float, wall: Block, points: int = 2) -> float:
     Args:
         E: Young's modulus of the masonry [Pa], 1e5 to 1e12.
         wall: the wall.
-        points: contact lines a face.
+        points: contact lines a face, 2 to 1000.
 
     Raises:
         ValueError: for a modulus outside its range, or a stiffness outside 1e4 to 1e14 N/m3.
     """
     require_kind("wall", wall, Block)
-    E = require_within("modulus E", E, 1e5, 1e12, "Pa")
-    x, widths = contact_lines(2 * wall.half_base, require_points(points))
+    x, widths = contact_lines(2 * wall.half_base, points)
     fewer = 2 * wall.half_base**3 / float((widths * x**2).sum())
     return require_stiffness("k_n = E / H", fewer * E / (2 * wall.h))
 
@@ -72,7 +75,8 @@ def layered_stiffness(*stiffnesses: float) -> float:
     return require_stiffness("k_n of the layers", 1 / sum(1 / value for value in checked))
 
 
-def measured_stiffness(wall: Block, frequency: float, points: int = 2) -> float:
+@within_ranges
+def measured_stiffness(wall: Block, frequency: Annotated[float, Within(1e-3, 1e4, "Hz")], points: Points = 2) -> float:
     """k_n for which the wall, rocking in full contact on its base, has a measured natural frequency [N/m3].
 
     The frequency is the lowest out of plane of the detached wall with its top free, at small amplitude, by ambient
@@ -82,7 +86,8 @@ def measured_stiffness(wall: Block, frequency: float, points: int = 2) -> float:
     Args:
         wall: the wall.
         frequency: in cycles a second [Hz], 1e-3 to 1e4, not in rad/s.
-        points: contact lines a face. The same wall on two corner lines needs a third of the k_n of a uniform bed.
+        points: contact lines a face, 2 to 1000. The same wall on two corner lines needs a third of the k_n of a uniform
+            bed.
 
     Raises:
         ValueError: for a value outside its range, or a stiffness outside 1e4 to 1e14 N/m3.
@@ -90,7 +95,7 @@ def measured_stiffness(wall: Block, frequency: float, points: int = 2) -> float:
     Source: Small oscillations of a rigid body on springs; the engine agrees, see tests/problem/test_stiffness.py.
     """
     require_kind("wall", wall, Block)
-    omega = 2 * math.pi * require_within("frequency", frequency, 1e-3, 1e4, "Hz")
+    omega = 2 * math.pi * frequency
     unit = reference_frequency(wall, UNIT, points) ** 2 / UNIT
     arm = math.hypot(wall.centroid_height, wall.centroid_offset)
     inertia = wall.inertia + wall.mass * arm**2

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, Implausible, require_reals, require_within, spelt
+from ...quantities import GRAVITY, Array, Implausible, Within, require_reals, require_within, spelt, within_ranges
 from .oscillator import LONGEST, building_modes
 
 LEAST_ETA = 0.55
@@ -161,15 +162,16 @@ SpectrumOfCode = CodeSpectrum | FloorSpectrum
 """The spectrum of a code, on the ground or on a floor."""
 
 
+@within_ranges
 def code_spectrum(
     code: str,
     *,
-    ag: float,
+    ag: Annotated[float, Within(0.05, 10, "m/s2")],
     soil: str,
-    F0: float | None = None,
-    Tc: float | None = None,
+    F0: Annotated[float | None, Within(2, 4)] = None,
+    Tc: Annotated[float | None, Within(0.05, 1, "s")] = None,
     topography: str = "T1",
-    damping: float = 0.05,
+    damping: Annotated[float, Within(0.005, 0.5)] = 0.05,
 ) -> CodeSpectrum:
     """The elastic response spectrum of a code for one site.
 
@@ -201,7 +203,6 @@ def code_spectrum(
     codes = "NTC 2018", *SITE_EC8
     if not isinstance(code, str) or code not in codes:
         raise ValueError(f"code = {spelt(code)} is not one of {', '.join(codes)}")
-    ag, xi = require_within("ag", ag, 0.05, 10.0, "m/s2"), require_within("damping", damping, 0.005, 0.5)
     if not isinstance(soil, str) or soil not in SITE_NTC:
         raise ValueError(f"soil = {spelt(soil)} is not one of {', '.join(SITE_NTC)}")
     if not isinstance(topography, str) or topography not in TOPOGRAPHY_NTC:
@@ -210,7 +211,7 @@ def code_spectrum(
         warnings.warn(
             f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?",
             Implausible,
-            stacklevel=2,
+            stacklevel=3,
         )
     if code in SITE_EC8:
         for name, value in (("F0", F0), ("Tc", Tc)):
@@ -219,21 +220,19 @@ def code_spectrum(
         if topography != "T1":
             raise ValueError(f"topography = {topography} is of NTC 2018; multiply ag for {code}")
         S, TB, TC, TD, TE = SITE_EC8[code][soil]
-        return CodeSpectrum(code, ag, S, 2.5, TB, TC, TD, TE, xi)
-    for name, value in (("F0", F0), ("Tc", Tc)):
-        if value is None:
-            raise ValueError(f"{name} is missing: NTC 2018 takes ag, F0 and Tc of the limit state")
-    amplification, start = require_within("F0", F0, 2.0, 4.0), require_within("Tc", Tc, 0.05, 1.0, "s")
+        return CodeSpectrum(code, ag, S, 2.5, TB, TC, TD, TE, damping)
+    if F0 is None or Tc is None:
+        raise ValueError(f"{'Tc' if F0 else 'F0'} is missing: NTC 2018 takes ag, F0 and Tc of the limit state")
     first, second, least, most, factor, power, TE = SITE_NTC[soil]
-    S = min(max(first - second * amplification * ag / GRAVITY, least), most) * TOPOGRAPHY_NTC[topography]
-    TC = factor * start**power * start
-    return CodeSpectrum(code, ag, S, amplification, TC / 3, TC, 4.0 * ag / GRAVITY + 1.6, TE, xi)
+    S = min(max(first - second * F0 * ag / GRAVITY, least), most) * TOPOGRAPHY_NTC[topography]
+    TC = factor * Tc**power * Tc
+    return CodeSpectrum(code, ag, S, F0, TC / 3, TC, 4.0 * ag / GRAVITY + 1.6, TE, damping)
 
 
-def damping_correction(damping: float) -> float:
+@within_ranges
+def damping_correction(damping: Annotated[float, Within(0, 0.9)]) -> float:
     """Correction eta of a spectrum for damping [-], NTC 2018 equation 3.2.4, EN 1998-1 equation 3.6."""
-    xi = require_within("damping", damping, 0.0, 0.9)
-    return max(math.sqrt(10 / (5 + 100 * xi)), LEAST_ETA)
+    return max(math.sqrt(10 / (5 + 100 * damping)), LEAST_ETA)
 
 
 def periods_of(T: ArrayLike) -> Array:

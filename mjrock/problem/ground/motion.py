@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 import scipy
@@ -20,6 +20,7 @@ from ...quantities import (
     GRAVITY,
     MOST_SAMPLES,
     Array,
+    Within,
     keep,
     require_flag,
     require_kind,
@@ -29,6 +30,7 @@ from ...quantities import (
     require_whole,
     require_within,
     spelt,
+    within_ranges,
 )
 from .oscillator import acceleration, building_modes, steps_of
 from .records import (
@@ -318,18 +320,19 @@ class GroundMotion:
         return cls(accel, period / samples, f"{kind} Ricker {amplitude:g} m/s2, {period:g} s")
 
     @classmethod
+    @within_ranges
     def synthetic(
         cls,
-        peak: float,
-        duration: float,
+        peak: Annotated[float, Within(1e-3, 100, "m/s2")],
+        duration: Annotated[float, Within(1, 1000, "s")],
         *,
-        seed: int,
+        seed: Annotated[int, Within(0, 2**53, whole=True)],
         dt: float = 0.01,
-        ground_frequency: float = 2.5,
-        ground_damping: float = 0.6,
+        ground_frequency: Annotated[float, Within(0.1, 50, "Hz")] = 2.5,
+        ground_damping: Annotated[float, Within(0.05, 2)] = 0.6,
         filter_frequency: float = 0.25,
-        filter_damping: float = 0.6,
-        rise: float = 0.15,
+        filter_damping: Annotated[float, Within(0.05, 2)] = 0.6,
+        rise: Annotated[float, Within(0.01, 0.99)] = 0.15,
         fall: float = 0.35,
     ) -> Self:
         """An artificial record with random phases under a stated spectrum and envelope.
@@ -347,24 +350,20 @@ class GroundMotion:
         Args:
             peak: largest |acceleration| [m/s2], 1e-3 to 100.
             duration: of the record, to the nearest step [s], 1 to 1000.
-            seed: of the phases, a whole number from 0 to 2**53.
+            seed: of the phases, a whole number, 0 to 9007199254740992.
             dt: time step [s], at most a quarter of the ground's period.
-            ground_frequency, ground_damping: of the soil layer [Hz, -], 0.1 to 50 and 0.05 to 2.
-            filter_frequency, filter_damping: of the high-pass [Hz, -], 0.01 to ground_frequency and 0.05 to 2.
-            rise, fall: shares of the duration over which the envelope rises and falls [-], above 0, together at most 1.
+            ground_frequency: of the soil layer [Hz], 0.1 to 50.
+            ground_damping: of the soil layer [-], 0.05 to 2.
+            filter_frequency: of the high-pass [Hz], 0.01 to ground_frequency.
+            filter_damping: of the high-pass [-], 0.05 to 2.
+            rise: share of the duration over which the envelope rises [-], 0.01 to 0.99.
+            fall: share over which it falls [-], 0.01 to 1 less the rise.
 
         Raises:
             ValueError: for a value outside its range.
         """
-        peak = require_within("peak", peak, 1e-3, 100.0, "m/s2")
-        duration = require_within("duration", duration, 1.0, 1e3, "s")
-        seed = require_whole("seed", seed, 0, 2**53)
-        ground_frequency = require_within("ground_frequency", ground_frequency, 0.1, 50.0, "Hz")
-        ground_damping = require_within("ground_damping", ground_damping, 0.05, 2.0)
         filter_frequency = require_within("filter_frequency", filter_frequency, 0.01, ground_frequency, "Hz")
-        filter_damping = require_within("filter_damping", filter_damping, 0.05, 2.0)
         dt = require_within("time step dt", dt, FINEST, min(COARSEST, 0.25 / ground_frequency), "s")
-        rise = require_within("rise", rise, 0.01, 0.99)
         fall = require_within("fall", fall, 0.01, 1 - rise)
         steps = round(duration / dt)
         remedy = "choose a shorter duration or a longer dt"

@@ -9,8 +9,7 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from ...quantities import Array, keep, require_array, require_reals, require_whole, require_within, shown
-from ..wall.effect import Effect
-from ..wall.in_space import BLOCKS, FARTHEST
+from ..wall.effect import BLOCKS, FARTHEST, Effect
 from .histories import history_of
 
 LARGEST = 10.0

@@ -6,7 +6,7 @@ import math
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,9 @@ from ...quantities import (
     Array,
     Flags,
     Implausible,
+    Within,
     keep,
+    keep_declared,
     require_array,
     require_flag,
     require_kind,
@@ -25,19 +27,17 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from ..wall.case import Case
-from ..wall.effect import Anchored, Effect
+from ..wall.effect import Anchored, Effect, require_in_plane
 from ..wall.effects import KINDS, Carrying, Load
-from ..wall.in_space import require_in_plane
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
 from .effects import laden, numbered, placed, require_anchored, require_in_space, require_pushing
+from .histories import Support, supports_of, tilt_of
 from .laws.bond import Bond
 from .masonry import Masonry
 from .plausible import doubts
 from .standing import MasonryStanding
-from .support import Support, supports_of
-from .tilt import tilt_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
@@ -87,7 +87,7 @@ class MasonryCase(Carrying):
     rocks_on_moving_ground: ClassVar[bool] = False
 
     masonry: Masonry
-    duration: float
+    duration: Annotated[float, Within(1e-6, 1e6, "s")]
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None
@@ -99,7 +99,7 @@ class MasonryCase(Carrying):
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
-        keep(self, duration=require_within("duration", self.duration, 1e-6, 1e6, "s"))
+        keep_declared(self)
         for name in ("motion", "vertical", "transverse"):
             require_kind(name, getattr(self, name), GroundMotion, type(None))
         require_flag("settled", self.settled)

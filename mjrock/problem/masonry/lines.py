@@ -66,7 +66,7 @@ def lines_of(
     blocks: Sequence[AnyBlock],
     joints: Sequence[Joint | SpaceJoint],
     k_n: Array,
-    points: int,
+    points: Integers | int,
     bonded: Sequence[bool] | None = None,
     *,
     mirrored: bool = True,
@@ -77,18 +77,20 @@ def lines_of(
     point is on the block below, unless that one is fixed. Lines are `mirrored` where the masonry is: of two blocks
     beside each other the point is on the one that is farther from the middle of the masonry, where both or neither
     have a corner there. If they are as far, it is on either, with half the stiffness. The stiffness of each joint is
-    k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, in space see `geometry.convex.spread`.
+    k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, of each of them or of all, in space see
+    `geometry.convex.spread`.
     Those that are `bonded` have the stiffness k_n I in bending, see `geometry.convex.sectioned`.
     """
     rows, at, normal, k = [], [], [], []
     middle = np.mean([block.centroid for block in blocks if not block.fixed], axis=0)
-    for number, joint in enumerate(joints):
+    counts = np.broadcast_to(points, len(joints)).tolist()
+    for number, (joint, count) in enumerate(zip(joints, counts, strict=True)):
         k_joint, exact = k_n[number], bonded is not None and bonded[number]
         if isinstance(joint, Joint):
-            own = _on_edge(joint, points, k_joint, exact)
+            own = _on_edge(joint, count, k_joint, exact)
         else:
             faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
-            flat, areas = sectioned(joint.flat, points) if exact else spread(joint.flat, points)
+            flat, areas = sectioned(joint.flat, count) if exact else spread(joint.flat, count)
             own = _on_face(joint, faces, flat, k_joint * areas)
         below, above = blocks[joint.below], blocks[joint.above]
         beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) < LEVEL and not below.fixed else ()

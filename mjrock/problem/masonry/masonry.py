@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Self, Unpack
+from typing import Annotated, Self, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from ...files import write_text
 from ...quantities import (
     Array,
+    Density,
     Implausible,
     Integers,
     Within,
@@ -27,10 +28,8 @@ from ...quantities import (
     require_flag,
     require_kind,
     require_path,
-    require_stiffness,
     require_text,
     require_whole,
-    require_within,
     shown,
 )
 from ..damping.contacts import AnyLaw, required_law
@@ -58,29 +57,26 @@ from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
 from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
-from .files.mesh_files import obj_text, read_obj, read_stl
-from .files.meshes import Mesh, blocks_of
+from .files.meshes import Mesh, blocks_of, obj_text, read_obj, read_stl
 from .laws.bond import Bond
 from .laws.dry import Properties
-from .laws.joint_table import JointTable
-from .laws.of_joint import (
+from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
     ByKind,
     Halved,
+    JointTable,
     OfBond,
+    OfCount,
     OfJoint,
     OrElse,
     properties_of,
-    required_points,
 )
 from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
 AnyPath = str | PathLike[str]
-LINES = Within(2, 1000, whole=True), Within(2, 50, whole=True)
-"""Valid `points` of a joint in the plane and in space."""
 
 
 @keywords_checked
@@ -113,13 +109,14 @@ class Masonry:
         frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed and none
             sliding. It is `reference_frequency` for one block on the ground. Where inclined faces leave no such motion,
             they slide on k_s, or freely where that is None.
-        points: contact lines of each joint, 2 to 1000; None takes 2. In space 2 to 50: two put a contact point on each
-            corner of the joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each
-            of their corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint
-            of n lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with
-            9. In space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint
-            with a bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I. A joint that
-            has slid keeps its lines and k_n, on the part of its faces that still lies over each other.
+        points: contact lines of each joint, 2 to 1000, or a function of the joint; None takes 2. In space 2 to 50: two
+            put a contact point on each corner of the joint, and more divide a joint of four corners into (points - 1)^2
+            cells with a point on each of their corners, and other joints alike. Each point has the stiffness of its
+            tributary area. A closed joint of n lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times
+            with 2, 1.5 with 3, 1.031 with 9. In space this holds for a rectangle both ways; a triangle on its corners
+            is 4 times as stiff. A joint with a bond takes 3 or more, and shares its area out to them so that it is as
+            stiff as k_n I. A joint that has slid keeps its lines and k_n, on the part of its faces that still lies over
+            each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
@@ -158,7 +155,7 @@ class Masonry:
     friction: OfJoint
     xi: OfJoint
     frequency: OfJoint | None
-    points: int
+    points: OfCount
     tolerance: float
     law: AnyLaw | str | None
     k_s: OfJoint | None
@@ -171,16 +168,15 @@ class Masonry:
         friction: OfJoint | None = None,
         xi: OfJoint | None = None,
         frequency: OfJoint | None = None,
-        points: int | None = None,
-        tolerance: float = 1e-5,
+        points: OfCount | None = None,
+        tolerance: Annotated[float, Within(1e-9, WIDEST, "m")] = 1e-5,
         law: AnyLaw | str | None = None,
         k_s: OfJoint | None = None,
         *,
         bond: OfBond = None,
         joints: AnyJoints | None = None,
     ) -> None:
-        keep(self, blocks=blocks_of_one_kind(blocks), law=law)
-        keep(self, tolerance=require_within("tolerance", tolerance, 1e-9, WIDEST, "m"))
+        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance)
         given = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
         keep(self, **properties_of(joints, given | {"bond": bond}))
         if not self.joints:
@@ -189,24 +185,24 @@ class Masonry:
                 f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
                 f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
             )
-        keep(self, points=required_points(self.points, self.joints, LINES[self.in_space]))
         if law is not None:
-            keep(self, law=required_law(law, self.points))
+            keep(self, law=required_law(law))
+        if len(counts := set(self.table.points.tolist())) == 1:
+            keep(self, points=counts.pop())
         for odd in self._doubts():
             warnings.warn(odd, Implausible, stacklevel=3)
 
     def __repr__(self) -> str:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
         size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
-        given = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
-        for name, left in (("k_s", np.isinf(self.joint_shear).all()), ("xi", self.law is not None)):
-            if left:
-                del given[name]
-        said = [f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in given.items()]
+        left = {"k_s": np.isinf(self.joint_shear).all(), "xi": self.law is not None}
+        names = (name for name in ("k_n", "k_s", "friction", "xi", "points") if not left.get(name))
+        given = ((name, getattr(self, name)) for name in names)
+        said = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in given]
         if self.law is not None:
-            said.append(f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
+            said.insert(-1, f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
         bonded = ", mortar" if any(self.bonds) else ""
-        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
+        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}{bonded}>"
 
     @property
     def in_space(self) -> bool:
@@ -279,7 +275,7 @@ class Masonry:
             return table
         if (known := table.frequency[~np.isnan(table.frequency)]).size:
             raise ValueError(f"frequency = {known[0]:g} rad/s is given with a law, which has its own; leave it")
-        xi, frequency = damping_by_law(self.blocks, self.joints, table.k_n, self.points, self.law)
+        xi, frequency = damping_by_law(self.blocks, self.joints, table.k_n, table.points, self.law)
         return table._replace(xi=xi, frequency=frequency)
 
     @property
@@ -320,7 +316,7 @@ class Masonry:
     def lines(self) -> Lines:
         """The contact lines of all joints."""
         bonded = [bond is not None for bond in self.bonds]
-        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points, bonded)
+        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.table.points, bonded)
 
     @cached_property
     def retardation(self) -> Array:
@@ -355,8 +351,8 @@ class Masonry:
         *,
         ground: bool = True,
         side_stop: bool | SideStop = False,
-        k_side: float | None = None,
-        side_friction: float = 0.0,
+        k_side: Annotated[float | None, Within(1e4, 1e14, "N/m3")] = None,
+        side_friction: Annotated[float, Within(0, 10)] = 0.0,
         **options: Unpack[OtherOptions],
     ) -> Self:
         """Rectangular blocks one on the other, centred, from the lowest upwards.
@@ -370,7 +366,7 @@ class Masonry:
             side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
                 reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
                 with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
-            k_side: stiffness of the joints with the side stop [N/m3]; None takes k_n.
+            k_side: stiffness of the joints with the side stop [N/m3], 1e4 to 1e14; None takes k_n.
             side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
             options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
                 joints refers to the lowest natural frequency without it.
@@ -378,9 +374,8 @@ class Masonry:
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        made, side_friction = stacked(blocks, ground), require_within("side_friction", side_friction, 0.0, 10.0)
+        made = stacked(blocks, ground)
         side = side_of(made, side_stop)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         given = one_by_one({**options, "k_n": k_n})
         if side is None:
             if k_side is not None or side_friction:
@@ -405,7 +400,7 @@ class Masonry:
         *,
         density: float = 2000.0,
         length: float = 1.0,
-        chords: int = 1,
+        chords: Annotated[int, Within(1, 50, whole=True)] = 1,
         ground: bool = False,
         **options: Unpack[JointOptions],
     ) -> Self:
@@ -436,7 +431,6 @@ class Masonry:
             >>> sorted(round(joint.width, 2) for joint in arch.joints)[::8]
             [0.6, 0.75, 0.9]
         """
-        chords = require_whole("chords", chords, 1, 50)
         voussoirs = require_whole("voussoirs", voussoirs, 1, 1000 // chords)
         blocks = curved(arch_of(radius, thickness, span_angle, voussoirs * chords, density, length), chords)
         return cls([*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks, **options)
@@ -449,9 +443,9 @@ class Masonry:
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
-        spans: int = 1,
+        spans: Annotated[int, Within(1, 50, whole=True)] = 1,
         pier_width: float,
-        pier_height: float,
+        pier_height: Annotated[float, Within(0.01, 1000, "m")],
         abutments: bool = True,
         density: float = 2000.0,
         length: float = 1.0,
@@ -481,10 +475,10 @@ class Masonry:
         cls,
         radius: float,
         thickness: Ends,
-        length: float,
+        length: Annotated[float, Within(0.01, 1000, "m")],
         unit: float,
         span_angle: float = math.pi,
-        courses: int = 17,
+        courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
         *,
         density: float = 2000.0,
         **options: Unpack[JointOptions],
@@ -512,7 +506,7 @@ class Masonry:
         length: float,
         unit: float,
         span_angle: float = math.pi,
-        courses: int = 17,
+        courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
         *,
         cut: bool = False,
         density: float = 2000.0,
@@ -610,8 +604,8 @@ class Masonry:
         thickness: float,
         density: float = 2000.0,
         *,
-        leaves: int = 1,
-        headers: int = 0,
+        leaves: Annotated[int, Within(1, 10, whole=True)] = 1,
+        headers: Annotated[int, Within(0, 1000, whole=True)] = 0,
         beam: bool = True,
         halves: Bond | None = None,
         **options: Unpack[JointOptions],
@@ -624,7 +618,8 @@ class Masonry:
             length, height, unit, thickness, density, halves: as of `running_bond`; units of several leaves are whole.
             leaves: wythes beside each other through the thickness, 1 to 10. The joints between them have the normal x,
                 so that a function of the joint gives them a bond of their own.
-            headers: every so many courses one of headers, half a unit long, that go through all leaves; 0 for none.
+            headers: every so many courses, 0 to 1000, one of headers, half a unit long, that go through all leaves;
+                0 for none.
             beam: whether a fixed beam lies on it, which the case leads by `supports={"beam": (t, dx, dy, dz)}`.
             options: further arguments of `Masonry`. The blocks are "base", the units as of `running_bond` with the
                 number of the leaf or a letter of the header, and "beam".
@@ -664,10 +659,10 @@ class Masonry:
     def column(
         cls,
         width: Ends,
-        height: float,
-        drums: int,
+        height: Annotated[float, Within(0.01, 1000, "m")],
+        drums: Annotated[int, Within(1, 1000, whole=True)],
         *,
-        sides: int = 4,
+        sides: Annotated[int, Within(3, 100, whole=True)] = 4,
         density: float = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
@@ -693,10 +688,10 @@ class Masonry:
         cls,
         radius: float,
         thickness: Ends,
-        lunes: int,
-        hoops: int,
+        lunes: Annotated[int, Within(4, 360, whole=True)],
+        hoops: Annotated[int, Within(1, 360, whole=True)],
         *,
-        oculus: float = 0.05,
+        oculus: Annotated[float, Within(0.01, 1.5, "rad")] = 0.05,
         density: float = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
@@ -725,7 +720,7 @@ class Masonry:
         depth: float,
         unit: tuple[float, float],
         *,
-        thickness: float | None = None,
+        thickness: Annotated[float | None, Within(0.01, 10, "m")] = None,
         returns: str = "both",
         openings: Sequence[tuple[float, Opening]] = (),
         gable: int = 0,
@@ -769,8 +764,8 @@ class Masonry:
         fixed: Sequence[str] = (),
         *,
         ground: bool = False,
-        density: float = 2000.0,
-        scale: float = 1.0,
+        density: Density = 2000.0,
+        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a Wavefront OBJ file: its objects, or the groups of them.
@@ -798,8 +793,8 @@ class Masonry:
         fixed: Sequence[str] = (),
         *,
         ground: bool = False,
-        density: float = 2000.0,
-        scale: float = 1.0,
+        density: Density = 2000.0,
+        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of an STL file, binary or text: its solids, or the closed bodies that it lists one after the other.
@@ -820,8 +815,8 @@ class Masonry:
         fixed: Sequence[str] = (),
         *,
         ground: bool = False,
-        density: float = 2000.0,
-        scale: float = 1.0,
+        density: Density = 2000.0,
+        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, or an `Assembly` of
@@ -846,7 +841,7 @@ class Masonry:
         ground: bool = False,
         density: OfLayer = 2000.0,
         length: OfLayer = 1.0,
-        scale: float | None = None,
+        scale: Annotated[float | None, Within(1e-6, 1e3, "m")] = None,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install 'mjrock[dxf]'`.
@@ -875,7 +870,7 @@ class Masonry:
         fixed, path = _names(fixed), require_path("path", path)
         ground = require_flag("ground", ground)
         outlines, unit = read_dxf(path)
-        unit = unit if scale is None else require_within("scale", scale, 1e-6, 1e3, "m")
+        unit = unit if scale is None else scale
         try:
             blocks = polygons_of(outlines, fixed, density, length, unit)
             if ground:
@@ -913,8 +908,6 @@ class Masonry:
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
         fixed = _names(fixed)
-        density = require_within("density", density, 100.0, 3e4, "kg/m3")
-        scale = require_within("scale", scale, 1e-6, 1e3, "m")
         ground, path = require_flag("ground", ground), require_path("path", path)
         meshes = [mesh._replace(vertices=scale * mesh.vertices) for mesh in read(path)]
         try:

@@ -12,7 +12,7 @@ import numpy as np
 from ...geometry.vectors import spun
 from ...quantities import GRAVITY, Array
 from ..wall.block import Block
-from .laws.of_joint import ByName
+from .laws.joint_table import ByName
 from .laws.stack_law import is_side, parts_above, wall_of
 from .masonry import Masonry
 

@@ -12,7 +12,6 @@ from ...quantities import Array
 from ..wall.standing import Face, JointFrames, Solid, in_space
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
-from .limit.joint_forces import axes_of
 from .lines import free_numbers
 from .masonry import Masonry
 
@@ -50,7 +49,7 @@ class MasonryStanding:
         return JointFrames(
             tuple(joint.name for joint in masonry.joints),
             np.array([joint.middle for joint in masonry.joints]),
-            axes_of(masonry),
+            np.array([joint.frame for joint in masonry.joints]),
             number[below],
             number[above],
             of_fixed[below],

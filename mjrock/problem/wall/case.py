@@ -6,7 +6,7 @@ import math
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Never
+from typing import Annotated, ClassVar, Never
 
 import numpy as np
 
@@ -15,7 +15,9 @@ from ...quantities import (
     Array,
     Flags,
     Implausible,
+    Within,
     keep,
+    keep_declared,
     require_flag,
     require_kind,
     require_within,
@@ -23,9 +25,8 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from .block import Block
-from .effect import Anchored, Effect
+from .effect import Anchored, Effect, require_in_plane
 from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
-from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
 from .standing import WallStanding
@@ -39,10 +40,10 @@ class Case(Carrying):
     Args:
         block: the wall.
         theta0: rotation at release [rad]; positive opens away from the side stop.
-        duration: how long to follow the motion [s].
+        duration: how long to follow the motion [s], 1e-6 to 1e6.
         side_stop: whether a stop behind the inner face keeps the rotation from becoming negative (one-sided rocking):
             True over the whole face, or a `SideStop` that reaches only so high.
-        omega0: angular velocity at release [rad/s], the wall turning about its toe.
+        omega0: angular velocity at release [rad/s], -100 to 100, the wall turning about its toe.
         motion: horizontal acceleration of the base, or None for a base at rest. Responses are motions as seen from the
             base.
         vertical: vertical acceleration of the base, positive upwards, or None.
@@ -69,9 +70,9 @@ class Case(Carrying):
 
     block: Block
     theta0: float
-    duration: float
+    duration: Annotated[float, Within(1e-6, 1e6, "s")]
     side_stop: bool | SideStop = True
-    omega0: float = 0.0
+    omega0: Annotated[float, Within(-100, 100, "rad/s", "release velocity omega0")] = 0.0
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
     effects: tuple[Effect, ...] = ()
@@ -84,12 +85,8 @@ class Case(Carrying):
         else:
             keep(self, side_stop=require_flag("side_stop", self.side_stop))
         lowest = 0.0 if self.side_stop else -ON_ITS_FACE
-        keep(
-            self,
-            theta0=require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad"),
-            duration=require_within("duration", self.duration, 1e-6, 1e6, "s"),
-            omega0=require_within("release velocity omega0", self.omega0, -100.0, 100.0, "rad/s"),
-        )
+        keep(self, theta0=require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad"))
+        keep_declared(self)
         for name in ("motion", "vertical"):
             value = getattr(self, name)
             if not (value is None or isinstance(value, GroundMotion)):

@@ -14,10 +14,8 @@ from typing import Annotated, ClassVar, TypeVar
 
 from ...quantities import Within, keep, keep_declared, shown
 from ..ground.motion import GroundMotion
-from .damper import Damper
-from .effect import Anchored, Effect
-from .friction_damper import FrictionDamper
-from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, short_repr
+from .damper import Damper, FrictionDamper
+from .effect import HIGHEST, IN_SPACE, Anchored, Effect, Point, keep_place, point_or_none, short_repr
 from .tie import Tie
 
 

@@ -16,7 +16,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ...quantities import Array, Within, keep_declared, require_flag, require_within, shown
-from .in_space import short_repr
+from .effect import short_repr
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""

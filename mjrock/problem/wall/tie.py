@@ -6,12 +6,17 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
-from ...quantities import Within, keep, keep_declared, require_array, require_real, require_whole, require_within
-from .effect import Anchored, LinkLaw
-from .in_space import HIGHEST, IN_SPACE, Point, keep_place
+from ...quantities import Within, keep, keep_declared, require_array, require_real, require_within, within_ranges
+from .effect import HIGHEST, IN_SPACE, Anchored, LinkLaw, Point, keep_place
 
 GOVERNING = ("bar", "punching", "bearing")
 """What the strength of a tie with an anchor plate may be that of."""
+Diameter = Annotated[float, Within(0.004, 0.2, "m", "diameter of the bar")]
+YieldStress = Annotated[float, Within(50e6, 2e9, "Pa", "yield_stress of the bar")]
+Thickness = Annotated[float, Within(0.05, 10, "m", "thickness of the wall")]
+ShearStrength = Annotated[float, Within(1e3, 5e6, "Pa", "shear_strength of the masonry")]
+Strength = Annotated[float, Within(1e5, 1e8, "Pa", "compressive_strength of the masonry")]
+Count = Annotated[int, Within(1, 1000, name="number of ties", whole=True)]
 
 
 @dataclass(frozen=True, repr=False)
@@ -80,19 +85,20 @@ class Tie(Anchored):
             )
 
     @classmethod
+    @within_ranges
     def of_bar(
         cls,
         height: float,
-        diameter: float,
-        yield_stress: float,
-        length: float,
+        diameter: Diameter,
+        yield_stress: YieldStress,
+        length: Annotated[float, Within(0.01, 1000, "m", "length of the tie")],
         *,
         plate: float | tuple[float, float],
-        thickness: float,
-        shear_strength: float,
-        compressive_strength: float,
-        elastic_modulus: float = 210e9,
-        number: int = 1,
+        thickness: Thickness,
+        shear_strength: ShearStrength,
+        compressive_strength: Strength,
+        elastic_modulus: Annotated[float, Within(5e10, 3e11, "Pa", "elastic_modulus of the bar")] = 210e9,
+        number: Count = 1,
         spacing: float | None = None,
         **options: Any,
     ) -> Tie:
@@ -125,10 +131,7 @@ class Tie(Anchored):
         """
         masonry = (thickness, shear_strength, compressive_strength)
         strengths = strengths_of_bar(diameter, yield_stress, plate, *masonry, number=number, spacing=spacing)
-        length = require_within("length of the tie", length, 0.01, 1000.0, "m")
-        count = require_whole("number of ties", number, 1, 1000)
-        E = require_within("elastic_modulus of the bar", elastic_modulus, 5e10, 3e11, "Pa")
-        stiffness = count * E * area_of_bar(diameter) / length
+        stiffness = number * elastic_modulus * area_of_bar(diameter) / length
         least = min(strengths, key=lambda name: strengths[name])
         return cls(height, stiffness, length=length, strength=strengths[least], governed_by=least, **options)
 
@@ -171,18 +174,19 @@ class Tie(Anchored):
 
 def area_of_bar(diameter: float) -> float:
     """Section of a round bar [m2]."""
-    return 0.25 * math.pi * require_within("diameter of the bar", diameter, 0.004, 0.2, "m") ** 2
+    return 0.25 * math.pi * diameter**2
 
 
+@within_ranges
 def strengths_of_bar(
-    diameter: float,
-    yield_stress: float,
+    diameter: Diameter,
+    yield_stress: YieldStress,
     plate: float | tuple[float, float],
-    thickness: float,
-    shear_strength: float,
-    compressive_strength: float,
+    thickness: Thickness,
+    shear_strength: ShearStrength,
+    compressive_strength: Strength,
     *,
-    number: int = 1,
+    number: Count = 1,
     spacing: float | None = None,
 ) -> dict[str, float]:
     """Strengths of equal ties [N], by what gives way: "bar", "punching" and "bearing", of which `Tie.of_bar` takes the
@@ -197,18 +201,14 @@ def strengths_of_bar(
         >>> {name: round(force / 1e3, 1) for name, force in found.items()}
         {'bar': 106.3, 'punching': 56.1, 'bearing': 180.0}
     """
-    steel = require_within("yield_stress of the bar", yield_stress, 50e6, 2e9, "Pa")
     a, b = (plate, plate) if isinstance(plate, int | float) else require_array("plate", plate, (2,)).tolist()
     for side in (a, b):
         require_within("plate", side, 0.02, 3.0, "m")
-    t = require_within("thickness of the wall", thickness, 0.05, 10.0, "m")
-    shear = require_within("shear_strength of the masonry", shear_strength, 1e3, 5e6, "Pa")
-    pressed = require_within("compressive_strength of the masonry", compressive_strength, 1e5, 1e8, "Pa")
-    n = require_whole("number of ties", number, 1, 1000)
-    around = a + b + 2 * t
-    punched = n * around
+    around = a + b + 2 * thickness
+    punched = number * around
     if spacing is not None:
         apart = require_within("spacing of the ties", spacing, a, 1000.0, "m")
-        punched = min(punched, around + (n - 1) * apart)
-    strengths = (n * steel * area_of_bar(diameter), shear * 2 * t * punched, n * pressed * a * b)
+        punched = min(punched, around + (number - 1) * apart)
+    bar, bearing = number * yield_stress * area_of_bar(diameter), number * compressive_strength * a * b
+    strengths = bar, shear_strength * 2 * thickness * punched, bearing
     return dict(zip(GOVERNING, strengths, strict=True))

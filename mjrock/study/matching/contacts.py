@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import Annotated
 
 from tqdm import tqdm
 
-from ...problem.damping.contacts import Contacts, required_frictions, required_layout
+from ...problem.damping.contacts import Contacts, OfBase, OfSide, Rubbing
+from ...problem.damping.interface import Points
 from ...problem.damping.restitution import Restitution
 from ...problem.wall.block import Block
 from ...problem.wall.effects import SideStop
-from ...quantities import Implausible, require_flag, require_kind, require_whole, require_within
+from ...quantities import Implausible, Within, require_flag, require_kind, require_whole, require_within, within_ranges
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Match, highest_branch
 
 RIGID = 16.0
@@ -50,18 +52,19 @@ class Standing:
     side_stop: bool | SideStop = True
 
 
+@within_ranges
 def matched_contacts(
     wall: Block,
     e: Restitution,
-    k_base: float,
-    k_side: float | None = None,
+    k_base: OfBase,
+    k_side: OfSide = None,
     *,
-    points: int = 2,
-    amplitude: float = 0.5,
-    friction: float | None = None,
-    side_friction: float | None = None,
+    points: Points = 2,
+    amplitude: Annotated[float, Within(0.01, 0.95)] = 0.5,
+    friction: Rubbing = None,
+    side_friction: Rubbing = None,
     side_stop: bool | SideStop = True,
-    accuracy: float = 1e-4,
+    accuracy: Annotated[float, Within(1e-8, 0.1)] = 1e-4,
 ) -> Contacts:
     """Interfaces whose damping ratios give |e| of the first rebound of this wall, found by simulation.
 
@@ -70,12 +73,12 @@ def matched_contacts(
 
     Args:
         wall, e: the wall, and the restitution that is asked for.
-        k_base, k_side: interface stiffness of base and side [N/m3]; no side stop without `k_side`.
-        points: contact lines a face.
-        amplitude: rotation theta_0/alpha that the wall is released from [-], in (0, 0.95].
-        friction, side_friction: coefficients as in `Interface`.
+        k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
+        points: contact lines a face, 2 to 1000.
+        amplitude: rotation theta_0/alpha that the wall is released from [-], 0.01 to 0.95.
+        friction, side_friction: coefficients as in `Interface` [-], 0 to 10.
         side_stop: True for a side over the whole face, or the `SideStop` that reaches only so high.
-        accuracy: of the simulations, see `simulate`.
+        accuracy: of the simulations [-], 1e-8 to 0.1, see `simulate`.
 
     Raises:
         ValueError: for a value outside its range.
@@ -86,15 +89,11 @@ def matched_contacts(
     """
     require_kind("wall", wall, Block)
     require_kind("e", e, Restitution)
-    amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
-    accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
-    points, k_base, k_side = required_layout(points, k_base, k_side)
-    friction, side_friction = required_frictions(friction, side_friction)
     if k_side is not None:
         e.require_rebound()
     top = 2 * wall.h if not isinstance(side_stop, SideStop) else min(side_stop.top, 2 * wall.h)
     if doubt := e.doubt(wall, top if k_side is not None else None):
-        warnings.warn(doubt, Implausible, stacklevel=2)
+        warnings.warn(doubt, Implausible, stacklevel=3)
     standing = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
     options = {"accuracy": accuracy, "friction": friction, "side_friction": side_friction}
     base = Match(standing, e, points, **options)  # type: ignore[arg-type]

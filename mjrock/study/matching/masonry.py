@@ -14,7 +14,7 @@ from ...engine.simulation import simulate
 from ...problem.damping.interface import reference_frequency
 from ...problem.damping.restitution import Restitution
 from ...problem.masonry.case import MasonryCase
-from ...problem.masonry.laws.of_joint import ByName
+from ...problem.masonry.laws.joint_table import ByName
 from ...problem.masonry.lines import Lines, lowest_frequency
 from ...problem.masonry.masonry import Masonry
 from ...problem.masonry.pile import Pile
@@ -77,7 +77,8 @@ def matched_masonry(
     e = as_one(pile) if e is None else e
     if pile.sides:
         e.require_rebound()
-    frequency = reference_frequency(pile.wall, float(masonry.joint_stiffness[pile.base]), int(masonry.points))
+    k_n, points = (float(column[pile.base]) for column in (masonry.table.k_n, masonry.table.points))
+    frequency = reference_frequency(pile.wall, k_n, int(points))
     xi = np.full(len(masonry.joints), 0.5 * frequency * strong(pile))
 
     def damped(whole: Masonry) -> Masonry:

@@ -80,6 +80,11 @@ class Joint:
         return np.array([-z, x]) + 0.0  # no negative zeros
 
     @property
+    def frame(self) -> Array:
+        """The normal and the way along, shape (2, 2)."""
+        return np.array([self.normal, self.along])
+
+    @property
     def is_bed(self) -> bool:
         """Whether the joint is horizontal."""
         return bool(abs(self.normal[0]) < LEVEL)

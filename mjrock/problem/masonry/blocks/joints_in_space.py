@@ -86,6 +86,11 @@ class SpaceJoint:
         return np.asarray(self.outline[0] + convex.centroid(self.flat) @ self.axes)
 
     @property
+    def frame(self) -> Array:
+        """The normal and the axes, shape (3, 3)."""
+        return np.array([self.normal, *self.axes])
+
+    @property
     def is_bed(self) -> bool:
         """Whether the joint is horizontal."""
         return bool(np.abs(self.normal[:2]).max() < LEVEL)

@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..blocks.polyhedron import Polyhedron
-from .mesh_files import plain, text_of
-from .meshes import Mesh
+from .meshes import Mesh, plain, text_of
 
 
 def guid_of(kind: str, name: object) -> str:

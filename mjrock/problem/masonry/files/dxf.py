@@ -13,7 +13,7 @@ import numpy as np
 from ....quantities import Array, named, shown
 from ..blocks.polygon import Polygon
 from ..builders.in_plane import MOST_BLOCKS
-from .mesh_files import bytes_of, plain
+from .meshes import bytes_of, plain
 
 SHORT = 1e-9
 """Distance of the ends of a polyline that count as one, over its extent [-]."""

@@ -6,10 +6,11 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
-from ....quantities import Array, Implausible, keep, require_within
+from ....quantities import Array, Implausible, Within, keep_declared, require_within
 from .bond_law import HARDENED, YIELDS
 
 LEAST_POINTS = 3
@@ -18,6 +19,8 @@ ROUNDED_UP = 1.01
 """Factor on values in messages, so that what is rounded to three digits is within the range."""
 STRONGEST, TOUGHEST = 1e12, 1e15
 """Largest strength [Pa] and largest fracture energy [J/m2]. The largest ones stand for joints that never break."""
+Strength = Annotated[float, Within(0, STRONGEST, "Pa")]
+Energy = Annotated[float, Within(1e-6, TOUGHEST, "J/m2")]
 
 
 WEAKEST, FRAGILE = 100.0, 0.06
@@ -31,14 +34,14 @@ class Bond:
     Args:
         tension: tensile strength f_t [Pa], 0 to 1e12.
         cohesion: shear strength without pressure c [Pa], 0 to 1e12. One above zero needs a tension above zero.
-        opening_energy: fracture energy of opening G_I [J/m2], above 0 to 1e15. 1 N/mm is 1000 J/m2. A joint whose
+        opening_energy: fracture energy of opening G_I [J/m2], 1e-6 to 1e15. 1 N/mm is 1000 J/m2. A joint whose
             spring gives back as much, f_t^2 / k_n, breaks at once when it reaches its tension.
-        slip_energy: fracture energy of slip G_II [J/m2], above 0 to 1e15.
+        slip_energy: fracture energy of slip G_II [J/m2], 1e-6 to 1e15.
         crushing: compressive strength f_c [Pa], 1e3 to 1e12, or None for a joint that is not crushed.
-        crushing_energy: energy of crushing G_c [J/m2], above 0 to 1e15, given with `crushing`. A joint needs at least
+        crushing_energy: energy of crushing G_c [J/m2], 1e-6 to 1e15, given with `crushing`. A joint needs at least
             f_c^2 / k_n, and what `hardening` takes, since its spring would give back more than crushing takes.
-        residual_friction: coefficient to which friction falls as the bond is lost [-], 0 to that of the joint. None
-            keeps that of the joint.
+        residual_friction: coefficient to which friction falls as the bond is lost [-], 0 to 10, and at most that of the
+            joint. None keeps that of the joint.
         hardening: plastic closing at which a joint that is crushed reaches f_c [m], 1e-9 to 0.1. Up to there it bears
             f_c (1 + 2 sqrt(2 x - x^2)) / 3 at the share x of this closing (Lourenco and Rots, Journal of Engineering
             Mechanics 123, 1997). G_c is the whole area, of which this part takes 0.857 f_c times the closing. None
@@ -56,33 +59,23 @@ class Bond:
         4
     """
 
-    tension: float
-    cohesion: float
-    opening_energy: float
-    slip_energy: float
-    crushing: float | None = None
-    crushing_energy: float | None = None
-    residual_friction: float | None = None
-    hardening: float | None = field(default=None, kw_only=True)
+    tension: Strength
+    cohesion: Strength
+    opening_energy: Energy
+    slip_energy: Energy
+    crushing: Annotated[float | None, Within(1e3, STRONGEST, "Pa")] = None
+    crushing_energy: Annotated[float | None, Within(1e-6, TOUGHEST, "J/m2")] = None
+    residual_friction: Annotated[float | None, Within(0, 10)] = None
+    hardening: Annotated[float | None, Within(1e-9, 0.1, "m")] = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        for name in ("tension", "cohesion"):
-            keep(self, **{name: require_within(name, getattr(self, name), 0.0, STRONGEST, "Pa")})
-        for name in ("opening_energy", "slip_energy"):
-            keep(self, **{name: require_within(name, getattr(self, name), 1e-6, TOUGHEST, "J/m2")})
         if (self.crushing is None) != (self.crushing_energy is None):
             given = f"crushing = {self.crushing}, crushing_energy = {self.crushing_energy}"
             raise ValueError(f"{given}: give both of them, or neither")
-        if self.crushing is not None:
-            keep(self, crushing=require_within("crushing", self.crushing, 1e3, STRONGEST, "Pa"))
-            energy = require_within("crushing_energy", self.crushing_energy, 1e-6, TOUGHEST, "J/m2")
-            keep(self, crushing_energy=energy)
-        if self.residual_friction is not None:
-            keep(self, residual_friction=require_within("residual_friction", self.residual_friction, 0.0, 10.0))
+        keep_declared(self)
         if self.hardening is not None:
             if self.crushing is None:
                 raise ValueError(f"hardening = {self.hardening} needs crushing and crushing_energy; give them, or None")
-            keep(self, hardening=require_within("hardening", self.hardening, 1e-9, 0.1, "m"))
             if self.energy_of_hardening >= float(self.crushing_energy or 0.0):
                 most = self.hardening * float(self.crushing_energy or 0.0) / self.energy_of_hardening
                 raise ValueError(

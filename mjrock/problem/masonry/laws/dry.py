@@ -27,7 +27,7 @@ class Dry:
         k_s: shear stiffness [N/m3], 1e4 to 1e16, for `solve_explicit`. None lets the joint stick rigidly, up to its
             friction, as joints always do in MuJoCo.
         frequency: omega [rad/s], 1e-3 to 1e9; None takes the lowest natural frequency of the masonry, see `Masonry`.
-        points: contact lines, 2 to 1000, in space 2 to 50, see `Masonry`. All joints of masonry have as many.
+        points: contact lines, 2 to 1000, in space 2 to 50, see `Masonry`.
 
     Raises:
         TypeError, ValueError: for what is not a number, or lies outside its range.

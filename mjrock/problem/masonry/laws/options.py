@@ -8,9 +8,10 @@ from collections.abc import Callable
 from functools import wraps
 from typing import TypedDict, TypeVar
 
+from ....quantities import within_ranges
 from ...damping.contacts import AnyLaw
 from .dry import Properties
-from .of_joint import PROPERTIES, AnyJoints, OfBond, OfJoint, properties_of
+from .joint_table import PROPERTIES, AnyJoints, OfBond, OfCount, OfJoint, properties_of
 
 Class = TypeVar("Class", bound=type)
 
@@ -23,7 +24,7 @@ class OtherOptions(TypedDict, total=False):
     xi: OfJoint | None
     k_s: OfJoint | None
     frequency: OfJoint | None
-    points: int | None
+    points: OfCount | None
     bond: OfBond
     law: AnyLaw | str | None
     tolerance: float
@@ -61,12 +62,14 @@ def _checked(function: Callable[..., object], said: str) -> Callable[..., object
     if len(known) < len(parameters):
         known += [name for name in JointOptions.__annotations__ if name not in known]
 
+    run = within_ranges(function)
+
     @wraps(function)
-    def checked(*given: object, **options: object) -> object:
+    def called(*given: object, **options: object) -> object:
         for each in sorted(options.keys() - set(known)):
             near = difflib.get_close_matches(each, known, 2)
             remedy = f"did you mean {' or '.join(near)}?" if near else f"the valid keywords are {', '.join(known)}"
             raise TypeError(f"{said} does not take {each}; {remedy}")
-        return function(*given, **options)
+        return run(*given, **options)
 
-    return checked
+    return called

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ....quantities import Array
+from ....quantities import Array, Integers
 from ...damping.contacts import AnyLaw, Contacts
 from ...damping.restitution import Restitution
 from ...wall.block import Block
@@ -56,7 +56,7 @@ def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> B
 
 
 def damping_by_law(
-    blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int, law: AnyLaw | str
+    blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: Integers, law: AnyLaw | str
 ) -> tuple[Array, Array]:
     """xi of each joint of a stack, and the frequency to which it refers [rad/s], as `Contacts.from_law` gives them for
     the rigid wall above.
@@ -100,7 +100,9 @@ def damping_by_law(
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             e = Restitution.from_geometry(wall, None if top is None else min(top, 2 * wall.h))
-            contacts = Contacts.from_law(wall, e, k_base=float(k_n[base]), k_side=k_side, law=law, points=points)
+            contacts = Contacts.from_law(
+                wall, e, k_base=float(k_n[base]), k_side=k_side, law=law, points=int(points[base])
+            )
         for warning in caught:
             warnings.warn(f"the joint {joint.name}: {warning.message}", warning.category, stacklevel=4)
         interface = contacts.side or contacts.base

@@ -1,4 +1,4 @@
-"""The push that rigid masonry bears, by limit analysis, and the mechanism in which it fails."""
+"""The push that rigid masonry bears, by limit analysis, its mechanism, and the forces of joints at rest."""
 
 from __future__ import annotations
 
@@ -14,9 +14,46 @@ from ....quantities import Array
 from ..blocks.joints_in_space import axes_along
 from ..laws.joint_law import Law, shear_limit
 from ..masonry import Masonry
-from .joint_forces import JointForces, joint_forces
 from .limit_state import Programme, states_without_dilatancy
 from .statics import Pulls, bonded, cones, edges_of, method, moving, sizes_of, weight_of
+
+
+@dataclass(frozen=True, eq=False)
+class JointForces:
+    """Force of each joint on the block above it, in the order of `masonry.joints`.
+
+    Args:
+        normal: along the normal, positive where it presses [N], shape (joints,).
+        shear: along `Joint.along`, which is x on a bed joint [N], shape (joints,). In space along the two axes of
+            `SpaceJoint.axes`, shape (joints, 2).
+        eccentricity: from the middle of the joint to where the force passes through it, in the same directions [m], of
+            the shape of `shear`, also where a bond pulls; NaN without a normal force.
+    """
+
+    normal: Array
+    shear: Array
+    eccentricity: Array
+
+
+def joint_forces(masonry: Masonry, forces: Array) -> JointForces:
+    """The forces of joints from those of their contact lines on the block `Lines.body` [N], shape (m, d)."""
+    lines, joints = masonry.lines, masonry.joints
+    above = np.array([joint.above for joint in joints])[lines.joint]
+    forces = np.where(above == lines.body, 1.0, -1.0)[:, None] * forces
+    axes = np.array([joint.frame for joint in joints])
+    parts = np.einsum("mad,md->ma", axes[lines.joint], forces)
+    arms = np.einsum(
+        "mad,md->ma", axes[lines.joint], lines.at - np.array([joint.middle for joint in joints])[lines.joint]
+    )
+    total, moments = np.zeros((len(joints), axes.shape[1])), np.zeros((len(joints), axes.shape[1]))
+    np.add.at(total, lines.joint, parts)
+    np.add.at(moments, lines.joint, parts[:, :1] * arms)
+    normal = total[:, 0]
+    shear, eccentricity = total[:, 1:], moments[:, 1:] / np.where(normal != 0, normal, np.nan)[:, None]
+    if axes.shape[1] == 2:
+        shear, eccentricity = shear[:, 0], eccentricity[:, 0]
+    return JointForces(normal.copy(), shear.copy(), eccentricity.copy())
+
 
 LARGEST = 1e6
 """Multiplier from which it counts as infinite [-]."""
