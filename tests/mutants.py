@@ -36,10 +36,7 @@ OTHERS = (
     "scene/rest.py",
     "result/rocking.py",
     "reference/equations.py",
-    *(
-        f"problem/masonry/{name}.py"
-        for name in ("laws/bond", "blocks/compound", "effects", "blocks/surface")
-    ),
+    *(f"problem/masonry/{name}.py" for name in ("laws/bond", "blocks/compound", "effects", "blocks/surface")),
     "problem/masonry/histories.py",
     "distinct/search/contact_search.py",
     "distinct/search/constants.py",

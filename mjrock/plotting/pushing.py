@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import cycle
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,9 +13,9 @@ from ..quantities import named
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from .arguments import equal_rows, kind, mapping, picture
-from .style import folded
+from .style import Look, folded
 
-LINES: tuple[dict[str, Any], ...] = (
+LINES: tuple[Look, ...] = (
     {"color": "0.15", "linestyle": "-", "linewidth": 1.2},
     {"color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
     {"color": "#12406b", "linestyle": "--", "linewidth": 1.6},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,6 +17,7 @@ from ..quantities import Array, Flags
 from ..result.bodies import Moving
 from ..result.ties import elongation_of
 from .bodies import Bodies
+from .style import Look
 
 STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
 """Colours of masonry, of what does not move, of ties, and of forces."""
@@ -191,7 +191,7 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -
     arrow.set_animated(True)
     ax.add_patch(arrow)
     outwards = along[0] >= 0
-    look: dict[str, Any] = {"fontsize": 7, "color": FORCE, "zorder": 6, "animated": True}
+    look: Look = {"fontsize": 7, "color": FORCE, "zorder": 6, "animated": True}
     look |= {"ha": "center", "va": "bottom"} if loads else {"ha": "left" if outwards else "right", "va": "center"}
     shift = (0, 2) if loads else (2 if outwards else -2, 0)
     text = ax.annotate(f"{(force[0] - force[2]) / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)

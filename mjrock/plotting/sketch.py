@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,12 +18,12 @@ from ..quantities import require_flag, require_text
 from .arguments import anything, picture
 from .bodies import Bodies
 from .section import GROUND, STONE, blocks, surroundings
-from .style import figure_of, titled
+from .style import Look, figure_of, titled
 
 Note = tuple[tuple[float, float], str]
 """A place in the section, x and z [m], and what is there."""
-DIMENSION: dict[str, Any] = {"arrowstyle": "|-|,widthA=0.2,widthB=0.2", "color": "0.3", "shrinkA": 0, "shrinkB": 0}
-LEADER: dict[str, Any] = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (0.0, 0.5)}
+DIMENSION: Look = {"arrowstyle": "|-|,widthA=0.2,widthB=0.2", "color": "0.3", "shrinkA": 0, "shrinkB": 0}
+LEADER: Look = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (0.0, 0.5)}
 TALLEST, WIDEST, LONGEST = 3.4, 2.6, 5.4
 """Largest height of a drawing, and largest width of the section and of the elevation [inch]."""
 POINTS = 4001

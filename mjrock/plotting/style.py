@@ -16,7 +16,9 @@ from ..quantities import require_kind, require_path
 from ..result.response import Response
 from .arguments import picture
 
-STYLES: dict[str, dict[str, Any]] = {
+Look = dict[str, Any]
+"""Options of what matplotlib draws, such as its colour."""
+STYLES: dict[str, Look] = {
     "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
     "MuJoCo": {"label": "MuJoCo", "color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
     "compliant": {"label": "contact law, SciPy", "color": "#12406b", "linestyle": ":", "linewidth": 1.5, "zorder": 3},
@@ -28,7 +30,7 @@ Drawing = Callable[[Axes], Axes]
 """A function that draws a panel."""
 
 
-OWN: tuple[dict[str, Any], ...] = (
+OWN: tuple[Look, ...] = (
     {"color": "#12406b", "linestyle": "-", "linewidth": 1.5, "zorder": 2.4},
     {"color": "#e07b2a", "linestyle": "-", "linewidth": 2.4, "zorder": 2.2},
     {"color": "#3f8f5b", "linestyle": "--", "linewidth": 1.6, "zorder": 2.3},
@@ -38,7 +40,7 @@ OWN: tuple[dict[str, Any], ...] = (
 """Lines of responses that have labels of their own."""
 
 
-def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None) -> list[dict[str, Any]]:
+def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None) -> list[Look]:
     """The line style of each response: that of its solver, or with labels one of its own."""
     if labels is None:
         return [STYLES.get(response.solver, {"label": response.solver}) for response in responses]

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
 from ..files import aligned, csv_text
 from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
-from .campaign.campaign import completed
+from .campaign.campaign import CampaignOptions, completed
 from .campaign.grid import label_of, labelled
 from .campaign.task import Row, Task
 
@@ -139,7 +139,7 @@ def sensitivity(
     *,
     measure: str | None = None,
     together: bool = True,
-    **options: Any,
+    **options: Unpack[CampaignOptions],
 ) -> Sensitivity:
     """How much the answer changes with settings that are not known: one at a time, and all together.
 

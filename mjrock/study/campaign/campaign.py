@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from itertools import chain
 from pathlib import Path
-from typing import Any, cast
+from typing import TypedDict, Unpack, cast
 
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
 from .pool import Workers
@@ -22,6 +22,16 @@ GUARD = (
     "the worker processes die as they start: they import the script that calls the campaign; let it do so "
     'below `if __name__ == "__main__":`; or give workers=1 without a time limit'
 )
+
+
+class CampaignOptions(TypedDict, total=False):
+    """The options of `campaign`."""
+
+    executor: Executor | None
+    workers: int | None
+    histories: str | Path | None
+    retry: bool
+    time_limit: float | None
 
 
 def campaign(
@@ -146,7 +156,7 @@ def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
     return [rows.get(keyed(task)[0]) for task in tasks]
 
 
-def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[Row]:
+def completed(tasks: Iterable[Task], store: str | Path, **options: Unpack[CampaignOptions]) -> list[Row]:
     """The rows of the tasks, in the order asked, once a `campaign` with these options has run what the store lacks.
 
     Raises:

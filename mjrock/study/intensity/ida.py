@@ -7,14 +7,14 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import Array, Implausible, require_increasing, require_kind, require_within, shown, takes
 from ..analysis import Analysis
-from ..campaign.campaign import completed
+from ..campaign.campaign import CampaignOptions, completed
 from ..campaign.task import Row
 from .capacities import lost
 from .capacity import bracket, halved
@@ -49,7 +49,7 @@ class IncrementalAnalysis:
         fell = np.isinf(self.peaks)
         return np.where(fell.any(axis=1), self.scales[fell.argmax(axis=1)], math.nan)
 
-    def fragility(self, groups: ArrayLike | None = None, **options: Any) -> Fragility:
+    def fragility(self, groups: ArrayLike | None = None, resamples: int = 1000, seed: int = 0) -> Fragility:
         """The fragility curve of these runs, with the records as groups, see `fit_fragility` and `lost`.
 
         Records that overturn the wall at no scale count: every run does, and not the capacities alone.
@@ -57,7 +57,7 @@ class IncrementalAnalysis:
         Args:
             groups: what each record belongs to, where both polarities of a record stand for one, shape (records,);
                 None takes each as a record of its own.
-            options: `resamples` and `seed` of `fit_fragility`.
+            resamples, seed: as those of `fit_fragility`.
 
         Raises:
             TypeError, ValueError: as `fit_fragility`, and for groups of another number.
@@ -66,7 +66,8 @@ class IncrementalAnalysis:
         used = self.scales > 0
         fell = np.array([lost(rows) for rows in self.rows]).reshape(self.peaks.shape)[:, used]
         levels = self.scales[used]
-        return fit_fragility(np.tile(levels, len(own)), fell.ravel(), np.repeat(own, len(levels)), **options)
+        runs = np.tile(levels, len(own)), fell.ravel(), np.repeat(own, len(levels))
+        return fit_fragility(*runs, resamples=resamples, seed=seed)
 
     def percentiles(self, shares: Sequence[float] = (16, 50, 84)) -> Array:
         """Peaks over all records that these shares of the records stay below [-], shape (shares, scales).
@@ -87,7 +88,10 @@ class IncrementalAnalysis:
 
 
 def ida(
-    build: Build | Mapping[str, Build], scales: ArrayLike, store: str | Path = "ida.sqlite", **options: Any
+    build: Build | Mapping[str, Build],
+    scales: ArrayLike,
+    store: str | Path = "ida.sqlite",
+    **options: Unpack[CampaignOptions],
 ) -> IncrementalAnalysis:
     """Run a wall under one or several records at every scale, and gather the peaks.
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Unpack
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ...problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
 from ...problem.damping.law import HIGHEST, LEAST, DampingLaw
 from ...problem.damping.restitution import Restitution
 from ...quantities import Within, keep, keep_declared, require_array, require_kind, require_whole, require_within
-from ..campaign.campaign import completed
+from ..campaign.campaign import CampaignOptions, completed
 from ..campaign.task import VERSION, Row
 from .match import AMPLITUDE_RANGE, K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, Match, combinations
 from .regression import Regression, regress
@@ -61,18 +61,25 @@ class Plan:
             require_within(f"{name}, upper end", last, first, high)
             keep(self, **{name: (first, last)})
 
-    def base_tasks(self, points: int, **options: Any) -> list[Match]:
-        """Two-sided matches; `options` are those of `Match`."""
+    def base_tasks(self, points: int, measure: str = "restitution", accuracy: float = 1e-4) -> list[Match]:
+        """Two-sided matches; `measure` and `accuracy` are those of `Match`."""
         return [
-            Match(combination, Restitution(_housner(combination) ** share, -0.5), points, **options)
+            Match(
+                combination,
+                Restitution(_housner(combination) ** share, -0.5),
+                points,
+                measure=measure,
+                accuracy=accuracy,
+            )
             for combination in combinations(self.base_count, self.seed, self.k_n, self.amplitude)
             for share in self.losses
         ]
 
-    def side_tasks(self, points: int, base: Form, **options: Any) -> list[Match]:
-        """One-sided matches, presuming the damping of the base that `base` predicts; `options` are those of `Match`.
+    def side_tasks(self, points: int, base: Form, measure: str = "restitution", accuracy: float = 1e-4) -> list[Match]:
+        """One-sided matches, presuming the damping of the base that `base` predicts.
 
-        The losses of the base are varied where they can be; elsewhere they are those of Eq. 2.
+        `measure` and `accuracy` are those of `Match`. The losses of the base are varied where they can be; elsewhere
+        they are those of Eq. 2.
         """
         tasks = []
         for i, combination in enumerate(combinations(self.side_count, self.seed + 1, self.k_n, self.amplitude)):
@@ -81,7 +88,16 @@ class Plan:
                 e_base = _housner(combination)
             for side in self.sides:
                 e = Restitution(e_base, -side)
-                tasks.append(Match(combination, e, points, presumed_damping(combination, e, base), **options))
+                tasks.append(
+                    Match(
+                        combination,
+                        e,
+                        points,
+                        presumed_damping(combination, e, base),
+                        measure=measure,
+                        accuracy=accuracy,
+                    )
+                )
         return tasks
 
 
@@ -119,7 +135,8 @@ def calibrate(
     points: int = 2,
     plan: Plan | None = None,
     measure: str = "restitution",
-    **options: Any,
+    accuracy: float = 1e-4,
+    **options: Unpack[CampaignOptions],
 ) -> Calibration:
     """Calibrate a law for one contact layout: base two-sided, then side one-sided.
 
@@ -129,7 +146,8 @@ def calibrate(
         points: contact lines a face; 2 are fitted with `CornerLaw`, more with `BedLaw`.
         plan: what is matched, `Plan()` by default.
         measure: see `Match`.
-        options: `executor` and `workers` of `campaign`, `accuracy` of `Match`.
+        accuracy: of the simulations, as that of `Match`.
+        options: those of `campaign`, such as `workers`.
 
     Raises:
         ValueError, OSError, RuntimeError: as `completed` and `regress`.
@@ -138,7 +156,6 @@ def calibrate(
     points = require_whole("points", points, 2, 1000)
     require_kind("plan", plan, Plan, type(None))
     plan = plan or Plan()
-    accuracy = options.pop("accuracy", 1e-4)
     base_tasks = plan.base_tasks(points, measure=measure, accuracy=accuracy)
     base_rows = completed(base_tasks, store, **options)
     base = regress(CornerLaw if points == 2 else BedLaw, base_tasks, base_rows)

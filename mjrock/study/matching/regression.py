@@ -43,7 +43,7 @@ class Regression:
         held_out: R2 of xi where each pair is predicted by a fit that has not seen its combination.
     """
 
-    form: Any
+    form: Form
     errors: Mapping[str, float]
     xi: Array
     predicted: Array
@@ -64,7 +64,7 @@ def coefficients(form: type) -> list[str]:
     return [name.name for name in fields(form) if name.name != "r_squared"]
 
 
-def well_matched(row: Mapping[str, Any]) -> bool:
+def well_matched(row: Row) -> bool:
     """Whether a row was reached, and for the base not in the MARGIN at an end of the reachable range."""
     if not row["reached"] or row["match"] == "side" or row["measure"] == "rms":
         return bool(row["reached"])
