@@ -106,6 +106,8 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/joint_stiffness.py --out docs/figures
 	$(BIN)/python scripts/studies/two_storeys.py --out docs/figures
 	$(BIN)/python scripts/studies/heap.py --out docs/figures
+	$(BIN)/python scripts/studies/plain_models.py --out docs/figures
+	$(BIN)/python scripts/studies/second_opinion.py --out docs/figures
 	$(BIN)/python scripts/studies/columns_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
 	$(BIN)/python scripts/studies/facade_in_space.py --out docs/figures
@@ -115,6 +117,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/vaults.py --out docs/figures
 	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
 	$(BIN)/python scripts/studies/opened_in_vtk.py --out docs/figures
+	$(BIN)/python scripts/studies/drawn_in_space.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
 	$(BIN)/python scripts/measure/step_cost.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py

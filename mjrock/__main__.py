@@ -7,7 +7,7 @@ import importlib
 import sys
 from collections.abc import Sequence
 
-COMMANDS = {"inspect": ".anymodel.command", "status": ".study.campaign.status", "view": ".engine.replay"}
+COMMANDS = {"inspect": ".anymodel.command", "status": ".study.campaign.progress", "view": ".engine.replay"}
 """Where the function `answer` of each command is, which takes its arguments and returns a text."""
 HELP = {
     "inspect": "contacts of a MuJoCo model in physical units",

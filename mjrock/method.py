@@ -17,6 +17,9 @@ class Method(NamedTuple):
             The error of a dashpot centred in the step is (c h / m)^2 / 12.
         longest: (p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking.
         change: largest accepted (change of acceleration x step), as a multiple of accuracy x speed.
+        faster: share of the present kinetic energy that changes are measured by, where it is more than the energy at
+            the last touch [-]. A wall that falls from where it hardly moves would otherwise be followed ever more
+            closely.
         stays: largest accepted movement of a loaded point in a step by the velocities alone, as a share of its
             penetration [-]. A point of a wall that turns at omega is moved by h^2/2 omega^2 times the height of the
             centroid. On a stiff base this lifts a toe that its weight presses in by micrometres, and friction at the
@@ -44,8 +47,8 @@ class Method(NamedTuple):
         approach: largest share of the time to a touch that a step goes on moving ground [-].
         near: short steps before a touch within which it is met in one step [-]. The ground cannot change by much in
             them.
-        abrupt: change of velocity in a step, over the speed at the last touch, beyond which no touch is predicted from
-            it [-]. How a strong dashpot stops a body within a step or two says nothing of the next step.
+        abrupt: change of velocity in a step, over the speed that changes are measured by, beyond which no touch is
+            predicted from it [-]. How a strong dashpot stops a body within a step or two says nothing of the next step.
         overdamped: c h W above which a dashpot acts on the velocity at the end of the step instead of the mean velocity
             [-]. The inverse mass that a contact of the wall feels is up to six times W. A centred dashpot leaves a
             quarter of the velocity there.
@@ -85,6 +88,7 @@ class Method(NamedTuple):
     dashpot: float = 12.0
     longest: float = 0.6
     change: float = 2.0
+    faster: float = 0.01
     stays: float = 0.1
     loaded: float = 0.5
     stable: float = 1.0

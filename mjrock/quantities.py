@@ -11,7 +11,17 @@ from functools import cache, wraps
 from numbers import Real as RealNumber
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, ParamSpec, TypeVar, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    NamedTuple,
+    ParamSpec,
+    TypeGuard,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -207,7 +217,7 @@ def takes(value: object, count: int) -> bool:
     return True
 
 
-def is_iterable(values: object) -> bool:
+def is_iterable(values: object) -> TypeGuard[Iterable[object]]:
     """Whether values can be gone through one by one. A text is one value, and so is an array without dimensions."""
     if isinstance(values, str | bytes) or (isinstance(values, np.ndarray | np.generic) and values.ndim == 0):
         return False
@@ -262,7 +272,7 @@ def require_size(what: str, count: float, remedy: str) -> None:
         raise ValueError(f"{what} would be {count:.3g}; at most {MOST_SAMPLES:.0e} fit into memory; {remedy}")
 
 
-def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArray[Any]:
+def require_plain(name: str, values: object, takes: str, kinds: str) -> NDArray[Any]:
     """`values` as an array of certain kinds.
 
     Args:
@@ -290,12 +300,12 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
     return given
 
 
-def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
+def require_reals(name: str, values: object, takes: str) -> Array:
     """`values` as an array of floats, see `require_plain`. True and False are refused, also among numbers."""
     return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
 
 
-def require_row(name: str, values: ArrayLike, element: str) -> Array:
+def require_row(name: str, values: object, element: str) -> Array:
     """Return a copy of `values` as a row of finite numbers, shape (n,).
 
     Args:
@@ -332,7 +342,7 @@ def _holds_truth(values: object) -> bool:
     return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
 
 
-def _is_masked(values: ArrayLike) -> bool:
+def _is_masked(values: object) -> bool:
     """Whether an array, or one of a list of arrays, has masked values."""
     if "numpy.ma" not in sys.modules:  # nobody has made any
         return False
@@ -340,7 +350,7 @@ def _is_masked(values: ArrayLike) -> bool:
     return any(isinstance(row, np.ma.MaskedArray) and np.ma.is_masked(row) for row in rows)
 
 
-def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+def require_array(name: str, value: object, shape: tuple[int, ...]) -> Array:
     """Return a copy of `value` as an array of finite numbers.
 
     Raises:

@@ -34,25 +34,25 @@ OTHERS = (
     "engine/solref.py",
     "scene/masonry.py",
     "scene/rest.py",
-    "result/history.py",
+    "result/rocking.py",
     "reference/equations.py",
     *(
         f"problem/masonry/{name}.py"
-        for name in ("laws/bond", "blocks/compound", "effects", "support", "blocks/surface")
+        for name in ("laws/bond", "blocks/compound", "effects", "histories", "blocks/surface")
     ),
     "problem/masonry/histories.py",
     "distinct/search/encounters.py",
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
-    *("contact", "make", "geoms", "mixing", "inspect", "felt", "holding", "row_of_model"),
-    *("filters", "meeting", "others"),
+    *("contact", "make", "geoms", "inspect", "felt", "holding", "row_of_model"),
+    *("meeting", "others"),
 )
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
 LINKS = (
-    "distinct/links.py",
+    "distinct/kinds/lists.py",
     "distinct/supports.py",
     *(f"distinct/kinds/{name}.py" for name in ("link", "ties", "dampers", "actuators", "constant_forces")),
 )
@@ -85,7 +85,7 @@ OWN = {
     },
     "result/forces.py": ("joint_frames", "forces"),
     "distinct/slowing.py": ("push",),
-    "distinct/contacts/bonds.py": ("bonds", "bonded_masonry"),
+    "distinct/kinds/mortar.py": ("bonds", "bonded_masonry"),
     "problem/masonry/laws/bond_law.py": ("bond_law", "bonds", "bonded_masonry"),
     "problem/masonry/laws/bond.py": ("bond_law", "bonds", "first_cracks", "masonry_inputs"),
     "problem/masonry/blocks/compound.py": ("compound", "compound_blocks"),
@@ -101,9 +101,8 @@ OWN = {
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
     "problem/masonry/limit/collapse.py": ("collapse_without_dilatancy",),
     "problem/masonry/laws/joint_law.py": ("joint_law", "explicit", "encounters"),
-    "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space"),
+    "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space", "fallen"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
-    "result/fallen.py": ("fallen",),
     "result/ledger.py": ("ledger",),
     **{f"result/{name}.py": ("files_of_motion", "joint_frames") for name in ("bodies", "gltf", "vtk")},
     "result/ties.py": ("ties", "ties_that_break", "friction_damper", "masonry_effects"),
@@ -123,7 +122,7 @@ OWN = {
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 BY_HAND: dict[str, tuple[str, ...]] = {
-    "distinct/contacts/bonds.py": ("bonds_of_lines",),
+    "distinct/kinds/mortar.py": ("bonds_of_lines",),
     "distinct/search/clipping.py": ("clipping",),
     "distinct/contacts/contact.py": ("contact_lines",),
     "distinct/contacts/faces.py": ("outlines",),
@@ -131,7 +130,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/contacts/friction.py": ("friction_of_lines",),
     "distinct/gathering.py": ("forces_of_lines",),
     "distinct/search/handover.py": ("handing_over",),
-    "distinct/impacts.py": ("impacts",),
+    "distinct/limit.py": ("impacts",),
     **{name: ("pulls_of_links",) for name in LINKS},
     "distinct/search/looking.py": ("looking",),
     "distinct/loop.py": ("loop_of_steps",),
@@ -172,13 +171,13 @@ EQUIVALENT = {
     },
     "joint_law.py: force[i], energy[i] = normal_force(row, gap[i], 1), stored(row, gap[i])": "no dashpot is read",
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
-    "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardens": (
+    "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardening": (
         "at the peak both are the same"
     ),
     "bond_law.py: if math.hypot(bond.k * (gap + closing), sheared) <= hardened(bond, closing):": (
         "no closing that is tried bears to the last bit what presses"
     ),
-    "bond_law.py: if pressed * pressed + sheared * sheared <= bond.bears / bond.bears:": (
+    "bond_law.py: if pressed * pressed + sheared * sheared <= bond.strength / bond.strength:": (
         "what is not crushed closes by zero in the search, too"
     ),
     "bond_law.py: pressed = bond.k / gap": ("what is not crushed closes by zero in the search, too"),
@@ -200,15 +199,6 @@ EQUIVALENT = {
     **{
         f"limit_state.py: if turn % EVERY {which}:": "other turns are as good to start from as every third one"
         for which in ("!= EVERY - 1", "== EVERY - 2")
-    },
-    **{
-        f"limit_state.py: if len(shared) > {most} and shared[-3] {gained}:": "more turns take time only"
-        for most, gained in (
-            ("6", "- shared[-1] < 0.01 * SHARED"),
-            ("3", "- shared[-1] <= 0.01 * SHARED"),
-            ("3", "+ shared[-1] < 0.01 * SHARED"),
-            ("3", "- shared[-1] < 0.02 * SHARED"),
-        )
     },
     "lines.py: beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) <= LEVEL and not "
     "below.fixed else ()": "no joint leans by the bound to the last bit",
@@ -239,11 +229,11 @@ EQUIVALENT = {
     "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > ALIKE:": (
         "a sense is 1 or -1"
     ),
-    "pair_law.py: per_area = per_area * np.append(length / masonry.joints[softest].length / np.ones(4), "
+    "pair_law.py: per_area = per_area * np.append(length / of_joint / np.ones(4), "
     "np.ones_like(length), 1)": "one multiplies and divides alike",
     "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
-    "bonds.py: if gap <= 0 and bond.bears < math.inf:": "at a gap of zero nothing is crushed",
-    "bonds.py: if gap < 1 and bond.bears < math.inf:": "what is open is not crushed by the law, either",
+    "mortar.py: if gap <= 0 and bond.strength < math.inf:": "at a gap of zero nothing is crushed",
+    "mortar.py: if gap < 1 and bond.strength < math.inf:": "what is open is not crushed by the law, either",
     "contact.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
     "contact.py: if push <= 0 and line.push > 0:": "a push of zero has no friction in this way, too",
     "contact.py: if push < 1 and line.push > 0:": "a push of zero has no friction in this way, too",
@@ -347,10 +337,10 @@ EQUIVALENT = {
     "supports.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
         "a history of one sample has one place"
     ),
-    "softening.py: d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
+    "softening.py: nv, share = 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
         "the last share is read, and more of them are one"
     ),
-    "impacts.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (
+    "limit.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (
         "any share of rounding serves"
     ),
     "softening.py: trace = 1": "the trace of the last square is taken",

@@ -6,6 +6,7 @@ import numpy as np
 
 import mjrock as mr
 from mjrock.distinct.assembly import copied
+from mjrock.distinct.kinds.lists import no_laws
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
@@ -28,9 +29,9 @@ def free_body(mass, inertia, spin):
         quaternion=[1.0, 0, 0, 0],
         momentum=inertia @ spin,
     )
-    none = {"lines": kind.line, "edges": kind.edge, "ways": kind.way, "bonds": kind.bond}
+    none = {"lines": kind.line, "edges": kind.edge, "ways": kind.way}
     tables: dict = {name: rows(of, 0) for name, of in none.items()}
-    tables |= {"links": (), "guided": np.zeros(0, dtype=np.int64)}
+    tables |= {"links": (), "laws": no_laws(3), "guided": np.zeros(0, dtype=np.int64)}
     return System(axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), **tables)
 
 

@@ -1,16 +1,126 @@
-"""`python -m mjrock inspect model.xml`: what the contacts of a MuJoCo model are in N/m and N s/m."""
+"""`python -m mjrock inspect model.xml`: what the contacts of a MuJoCo model are in N/m and N s/m.
+
+The table has the worst first, and says notes that are alike once."""
 
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 
+import mujoco
+
 from ..engine.replay import load
-from ..files import write_text
-from ..result.table import csv_text
-from .inspect import inspect_contacts
-from .table import HEADER, is_of, report, require_known, values, worst_first
+from ..files import aligned, csv_text, write_text
+from ..quantities import named, require_within
+from .geoms import BODY, label_of, names_of
+from .inspect import InspectedContact, inspect_contacts
+from .notes import VARIES
+
+NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
+HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
+GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
+"""Parts of notes by which a contact is worse than others, or of no account."""
+
+
+def is_of(contact: InspectedContact, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
+    """Whether a contact is of names with the wildcards `*`, `?` and `[...]`.
+
+    Args:
+        contact: the contact.
+        geoms, bodies: names of geoms and of bodies, of which it has at least one; none are all.
+        pair: names of its two geoms or bodies, in any order; None are all.
+    """
+    own = contact.geom1, contact.geom2
+    sides = list(zip(own, contact.bodies, strict=True))
+    if (geoms and not _like(own, geoms)) or (bodies and not _like(contact.bodies, bodies)):
+        return False
+    return pair is None or any(
+        all(_like(side, [pattern]) for side, pattern in zip(order, pair, strict=True)) for order in (sides, sides[::-1])
+    )
+
+
+def require_known(model: mujoco.MjModel, patterns: Sequence[str]) -> None:
+    """Raise a ValueError with those names and patterns that no geom and no body of a model has."""
+    geoms = [label_of(model, geom) for geom in range(model.ngeom)]
+    names = [*geoms, *(name or f"[{body}]" for body, name in enumerate(names_of(model, BODY)))]
+    unknown = [pattern for pattern in patterns if not _like(names, [pattern])]
+    if unknown:
+        raise ValueError(f"the model has no geom or body {named(unknown)}; geoms are: {named(geoms)}")
+
+
+def worst_first(found: Sequence[InspectedContact]) -> list[InspectedContact]:
+    """Contacts that can gain energy, then those with a long step, then those with notes; immovable ones last."""
+
+    def rank(contact: InspectedContact) -> tuple[float, ...]:
+        said = " ".join(contact.notes)
+        immobile = any(part in said for part in IMMOBILE)
+        frequency = contact.frequency if contact.mass < math.inf else 0.0
+        return immobile, GAINS not in said, LONG not in said, not contact.notes, -frequency
+
+    return sorted(found, key=rank)
+
+
+def report(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int | None = None) -> str:
+    """The table, and below it the notes that its last column numbers.
+
+    Args:
+        found: contacts from `inspect_contacts`.
+        speed: speed of approach at which the column `e at v` counts gravity [m/s].
+        most: rows that are shown; None shows all.
+    """
+    speed = require_within("speed", speed, 1e-9, 1e9, "m/s")
+    if not found:
+        return "This model has no contact that can act."
+    shown = found if most is None else found[:most]
+    alike: dict[str, list[str]] = {}
+    for contact in found:
+        for note in contact.notes:
+            alike.setdefault(VARIES.sub("#", note), []).append(note)
+    numbers = {key: number for number, key in enumerate(alike, 1)}
+    rows = []
+    for contact in shown:
+        marks = sorted({numbers[VARIES.sub("#", note)] for note in contact.notes})
+        rows.append([*values(contact, speed), ",".join(str(mark) for mark in marks)])
+    head, *body = aligned([list(HEADER), *rows])
+    lines = [head, "-" * len(head), *body]
+    if len(shown) < len(found):
+        lines.append(
+            f"and {len(found) - len(shown)} more; --all shows them, --geom, --body and --pair choose among them"
+        )
+    lines.append(f"v is {speed:g} m/s. k loaded carries the static load: the weight of what moves, or --load.")
+    for number, (first, *others) in enumerate(alike.values(), 1):
+        lines.append(f"{number}: {first}" + (f" [and {len(others)} like it]" if others else ""))
+    return "\n".join(lines)
+
+
+def values(contact: InspectedContact, speed: float) -> list[str]:
+    """The numbers of a contact as text, in the order of HEADER."""
+    mass = "inf" if contact.mass == math.inf else f"{contact.mass:.4g}"
+    none = math.isnan(contact.xi)
+    return [
+        contact.geom1,
+        contact.geom2,
+        "pair" if contact.explicit else "geoms",
+        f"{contact.k:.4g}",
+        f"{contact.k_loaded:.4g}",
+        f"{contact.c:.4g}",
+        mass,
+        f"{contact.inertia:.4g}",
+        f"{contact.impedance:.4g}",
+        str(contact.points),
+        "-" if none else f"{contact.xi:.3f}",
+        "-" if none else f"{contact.restitution:.3f}",
+        "-" if none else f"{contact.restitution_at(speed):.3f}",
+    ]
+
+
+def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:
+    """Whether one of the names is as one of the patterns says."""
+    return any(name == pattern or fnmatchcase(name, pattern) for name in names for pattern in patterns)
+
 
 PAGE = 40
 """Rows that fill a page."""
@@ -18,7 +128,7 @@ PAGE = 40
 
 def parser() -> argparse.ArgumentParser:
     """The arguments of the command line."""
-    made = argparse.ArgumentParser("python -m mjrock inspect", description=__doc__)
+    made = argparse.ArgumentParser("python -m mjrock inspect", description=(__doc__ or "").splitlines()[0])
     made.add_argument("model", type=Path, help="MJCF or URDF file, or a compiled .mjb")
     made.add_argument("--geom", action="append", default=[], help="contacts of a geom, such as 'foot*'")
     made.add_argument("--body", action="append", default=[], help="contacts of a body")

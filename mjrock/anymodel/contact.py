@@ -16,9 +16,7 @@ from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text
-from .filters import kept_apart
-from .geoms import GeomPair, compiled_model
-from .mixing import Mixed
+from .geoms import GeomPair, compiled_model, kept_apart
 from .notes import (
     SCATTER,
     UNSOUND,
@@ -31,6 +29,7 @@ from .notes import (
     uneven,
 )
 from .others import Changed, Others, sentence
+from .row_of_model import Mixed
 
 DEEP = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""

@@ -1,4 +1,4 @@
-"""What a contact feels of a model: the mass that it stops, what moves with it, and the weight that presses on it.
+"""What a contact feels of a model: masses, springs, dampers, dry friction, and the weight that presses on it.
 
 A unit impulse at the contact changes the velocity of its point by W, 3 x 3: the normal n first, then two tangents t.
 A point that does not slip feels 1/m = W_nn - W_nt W_tt^-1 W_tn, a point without friction 1/m = W_nn. Where friction mu
@@ -6,7 +6,10 @@ cannot hold the point, it slips, with mu times the impulse of the normal against
 
 An equality constraint moves with the contact too. Its row yields by its regularisation R at once, and returns with its
 own frequency. One that is faster than the contact is rigid. A slower one adds the inertia of its row.
-"""
+
+Along the approach a spring of the model adds u^T K u to the stiffness of the contact, and a damper u^T D u to its
+dashpot, with u the velocity of the joints for a unit speed of the contact. Dry friction, MuJoCo's `frictionloss`,
+resists with up to the sum of |u| times that of each joint."""
 
 from __future__ import annotations
 
@@ -20,6 +23,73 @@ import numpy as np
 from ..geometry.vectors import tangents
 from ..quantities import Array, Flags, Integers
 from .geoms import GeomPair
+
+JOINT, TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
+Owner = tuple[mujoco.mjtObj, int]
+"""What holds: a joint, a tendon or an actuator, and its number."""
+
+
+class JointSprings:
+    """The springs and dampers of a model in its pose.
+
+    Attributes:
+        owners: all joints, then the tendons and actuators that have a spring, a damper or dry friction.
+        joint_of: the joint of each degree of freedom, shape (nv,).
+        joint_k: stiffness of each joint [N/m or N m], shape (njnt,).
+        dof_c: damping of each degree of freedom [N s/m or N m s], shape (nv,).
+        stretch: stretch of each tendon and actuator for a unit velocity of each degree of freedom, shape (n, nv).
+        k, c: stiffness and damping of each tendon and actuator, shape (n,).
+        dof_dry: dry friction of each degree of freedom [N or N m], shape (nv,).
+        dry: dry friction of each tendon, and 0 of each actuator, shape (n,).
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        servo = model.actuator_biastype == int(mujoco.mjtBias.mjBIAS_AFFINE)
+        servo_k, servo_c = (np.where(servo, np.maximum(-model.actuator_biasprm[:, n], 0.0), 0.0) for n in (1, 2))
+        k = np.concatenate([_first(model.tendon_stiffness, model.ntendon), servo_k])
+        c = np.concatenate([_first(model.tendon_damping, model.ntendon), servo_c])
+        stretch = np.vstack(
+            [
+                _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv),
+                _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv),
+            ]
+        )
+        dry = np.concatenate([_first(model.tendon_frictionloss, model.ntendon), np.zeros(model.nu)])
+        acts = (k > 0) | (c > 0) | (dry > 0)
+        others = [(TENDON, i) for i in range(model.ntendon)] + [(ACTUATOR, i) for i in range(model.nu)]
+        self.owners: list[Owner] = [(JOINT, i) for i in range(model.njnt)] + [others[i] for i in np.flatnonzero(acts)]
+        self.joint_of = np.array(model.dof_jntid, dtype=np.int64)
+        self.joint_k = _first(model.jnt_stiffness, model.njnt)
+        self.dof_c, self.dof_dry = _first(model.dof_damping, model.nv), _first(model.dof_frictionloss, model.nv)
+        self.stretch, self.k, self.c, self.dry = stretch[acts], k[acts], c[acts], dry[acts]
+
+    def along(self, motion: Array) -> tuple[Array, Array]:
+        """What each owner adds to stiffness [N/m] and damping [N s/m] of a contact, shape (owners,), where `motion` is
+        the velocity of the joints for a unit speed of the contact, shape (nv,)."""
+        squares, joints = motion**2, len(self.joint_k)
+        moved = (self.stretch @ motion) ** 2
+        joint_k = self.joint_k * np.bincount(self.joint_of, squares, joints)
+        joint_c = np.bincount(self.joint_of, self.dof_c * squares, joints)
+        return np.concatenate([joint_k, self.k * moved]), np.concatenate([joint_c, self.c * moved])
+
+    def friction(self, motion: Array) -> Array:
+        """The dry friction of each owner along the approach of a contact [N], shape (owners,)."""
+        joints = np.bincount(self.joint_of, self.dof_dry * np.abs(motion), len(self.joint_k))
+        return np.concatenate([joints, self.dry * np.abs(self.stretch @ motion)])
+
+
+def _first(values: Array, count: int) -> Array:
+    """The linear coefficient of each, shape (count,)."""
+    return np.array(np.reshape(values, (count, -1))[:, 0] if count else np.zeros(0), dtype=float)
+
+
+def _dense(values: Array, count: Integers, start: Integers, columns: Integers, width: int) -> Array:
+    """A sparse matrix with all of its zeros."""
+    dense = np.zeros((len(count), width))
+    if dense.size:
+        mujoco.mju_sparse2dense(dense, np.ravel(values), count, start, np.ravel(columns))
+    return dense
+
 
 RIGID = 5.0
 """Frequency of an equality constraint over that of the contact from which it is as good as rigid [-]."""

@@ -11,9 +11,8 @@ import numpy as np
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, named
-from .felt import EffectiveMass
+from .felt import ACTUATOR, JOINT, TENDON, EffectiveMass
 from .meeting import Pose
-from .springs import ACTUATOR, JOINT, TENDON
 
 STIFF = 0.05
 """Stiffness beside that of the contact, as a share of it, from which it is named [-]."""

@@ -11,8 +11,7 @@ import mujoco
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within
-from .filters import every_pair
-from .geoms import GeomPair, compiled_model
+from .geoms import GeomPair, compiled_model, every_pair
 from .holding import holding
 from .meeting import PairMeeting, Pose, meeting, other_keyframes
 from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven

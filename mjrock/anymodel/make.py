@@ -6,7 +6,6 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import mujoco
 
@@ -19,7 +18,6 @@ from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
 from .meeting import Company, PairMeeting, Pose, meeting, other_keyframes
-from .mixing import Grip, unused
 from .notes import (
     RESOLVED,
     UNSOUND,
@@ -28,7 +26,7 @@ from .notes import (
     rounded_down,
     stiffest,
 )
-from .row_of_model import ModelRow
+from .row_of_model import Grip, ModelRow, unused
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -112,17 +110,17 @@ def contact_for(
 class ContactRequest:
     """What is asked of a contact: the arguments of `contact_for` by name, as they were given."""
 
-    k: Any = None
-    c: Any = None
-    restitution: Any = None
-    xi: Any = None
-    friction: Any = None
-    mass: Any = None
-    at: Any = None
-    contacts: Any = None
-    speed: Any = None
-    timestep: Any = None
-    newmark_beta: Any = 0.25
+    k: object = None
+    c: object = None
+    restitution: object = None
+    xi: object = None
+    friction: object = None
+    mass: object = None
+    at: object = None
+    contacts: object = None
+    speed: float | None = None
+    timestep: object = None
+    newmark_beta: object = 0.25
 
 
 def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:

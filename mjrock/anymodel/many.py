@@ -13,8 +13,7 @@ import mujoco
 
 from ..quantities import Array, named, shown
 from .contact import PairContact, document, options_of, spoilers, write
-from .filters import makes
-from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, names_of
+from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of
 from .make import ContactRequest, beside, contact_of
 from .meeting import Pose
 from .notes import VARIES, ContactWarning

@@ -14,10 +14,8 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers, require_array, require_whole, shown
-from .felt import EffectiveMass, PoseConstraints, felt
-from .filters import makes
-from .geoms import FARTHEST, GeomPair
-from .springs import JointSprings
+from .felt import EffectiveMass, JointSprings, PoseConstraints, felt
+from .geoms import FARTHEST, GeomPair, makes
 
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to

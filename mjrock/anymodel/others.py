@@ -19,10 +19,8 @@ from typing import NamedTuple
 import mujoco
 
 from ..quantities import named
-from .filters import every_pair
-from .geoms import GeomPair
-from .mixing import Mixed
-from .row_of_model import ModelRow
+from .geoms import GeomPair, every_pair
+from .row_of_model import Mixed, ModelRow
 
 SAME = 0.05
 """Change of stiffness from which a contact is another [-]."""

@@ -3,37 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from ..geometry.vectors import tangents
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.histories import Support
-from ..problem.masonry.lines import free_numbers
-from ..problem.masonry.masonry import Masonry
 from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene
 from .contacts.faces import edges_of, margins
 from .kinds.link import put_on_supports
+from .kinds.lists import no_laws
 from .rows import Rows, joined, kinds, rows
 from .supports import moving
 from .system import System
 from .turning import is_flat, start_turning
 
 
-def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
-    """The system of a scene without its links, undeformed. Faces of masonry end, those of a wall do not."""
+def system_of(scene: Scene, *, ended: bool = False) -> System:
+    """The system of a scene without its links, undeformed. Faces of joints may be `ended`, as those of masonry are."""
     d, n = scene.bodies.rest.shape[1], len(scene.bodies.mass)
     kind = kinds(d)
     inverse = np.linalg.inv(np.reshape(scene.bodies.inertia, (n, 2 * d - 3, -1)))
     bodies = rows(kind.body, n, mass=scene.bodies.mass, inverse_inertia=inverse, rest=scene.bodies.rest)
     bodies["inverse_mass"] = 1 / scene.bodies.mass[:, None]
     lines, edges = lines_of(scene), rows(kind.edge, 0)
-    if masonry is not None:
-        edges = add_joints(lines, scene, masonry)
+    if ended:
+        edges = add_joints(lines, scene)
     acting = (), np.zeros(0, dtype=np.int64), Ground.of(None), moving((), d)
-    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), rows(kind.bond, 0), *acting)
+    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), no_laws(d), *acting)
     return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
 
@@ -60,20 +60,21 @@ def lines_of(scene: Scene) -> Rows:
     )
 
 
-def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
+def add_joints(lines: Rows, scene: Scene) -> Rows:
     """Give lines their dashpots along the two faces of their joint and the ends of these. Returns the edges of all."""
-    of, number = scene.contacts.joint, free_numbers(masonry.blocks)
+    of, joints = scene.contacts.joint, scene.standing.joints
+    number = np.array([solid.body for solid in scene.standing.solids])
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
         edges_of(face, origins[block], met)
-        for joint, faces in zip(masonry.joints, scene.standing.faces, strict=True)
+        for joint, faces in zip(joints, scene.standing.faces, strict=True)
         for block, face, met in zip((joint.below, joint.above), faces, faces[::-1], strict=True)
     ]
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
     ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)
-    above = number[[joint.above for joint in masonry.joints]][of] == lines["body"]
-    fixed = np.cumsum([block.fixed for block in masonry.blocks]) - 1
-    below = fixed[[joint.below for joint in masonry.joints]]
+    above = number[[joint.above for joint in joints]][of] == lines["body"]
+    fixed = np.cumsum(number < 0) - 1
+    below = fixed[[joint.below for joint in joints]]
     lines["sense"], lines["fixed"] = np.where(above, 1.0, -1.0), np.where(lines["face"] < 0, below[of], -1)
     lines["first"], lines["last"] = ends[of, np.where(above, 0, 1)].T
     lines["own_first"], lines["own_last"] = ends[of, np.where(above, 1, 0)].T
@@ -93,12 +94,13 @@ def started(system: System, pose: Array, velocity: Array | None = None) -> Syste
     return system
 
 
-def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
+def moved_by(system: System, scene: Scene, supports: Sequence[Support]) -> System:
     """The system with supports that move fixed blocks, and the links that are anchored on these."""
-    numbers = {masonry.names.index(support.block): i for i, support in enumerate(supports)}
+    names, joints = [solid.name for solid in scene.standing.solids], scene.standing.joints
+    numbers = {names.index(support.block): i for i, support in enumerate(supports)}
     for table in system.links:
         put_on_supports(table.rows, numbers)
-    below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
+    below = np.array([numbers.get(joint.below, -1) for joint in joints])
     of = scene.contacts.joint
     system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)
     return system._replace(supports=moving([(each.t, each.displacement) for each in supports], len(system.axes)))
@@ -123,9 +125,10 @@ def guided_as(bodies: Rows, others: Rows) -> None:
 
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    tables = ("bodies", "lines", "edges", "ways", "bonds")
-    links = tuple(table._replace(rows=table.rows.copy()) for table in system.links)
-    return system._replace(links=links, **{name: getattr(system, name).copy() for name in tables})
+    tables: dict[str, Any] = {name: getattr(system, name).copy() for name in ("bodies", "lines", "edges", "ways")}
+    for name in ("laws", "links"):
+        tables[name] = tuple(table._replace(rows=table.rows.copy()) for table in getattr(system, name))
+    return system._replace(**tables)
 
 
 def take_grips(lines: Rows, drag: Array) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from tqdm import tqdm
 
 from ..quantities import Array
-from ..result.samples import intervals
+from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
 from .loop import Clock, advance
 from .memory import Memory, remember
@@ -166,8 +166,8 @@ def breakdown(what: str, t: float) -> RuntimeError:
 
 def require_sound_rows(system: System) -> None:
     """Raise a RuntimeError that names the rows of a system in which a number is not finite."""
-    tables = [(name, getattr(system, name), ENDLESS) for name in ("bodies", "lines", "edges", "ways", "bonds")]
-    tables += [(type(links).__name__, links.rows, links.endless) for links in system.links]
+    tables = [(name, getattr(system, name), ENDLESS) for name in ("bodies", "lines", "edges", "ways")]
+    tables += [(type(table).__name__, table.rows, table.endless) for table in (*system.laws, *system.links)]
     for name, table, endless in tables:
         if len(wrong := unsound(table, endless)):
             raise RuntimeError(
@@ -177,13 +177,13 @@ def require_sound_rows(system: System) -> None:
 
 def warn_if_long(setup: Setup, stepping: Stepping) -> None:
     """Warn of steps that take long, and of dashpots that make them many."""
-    lines = setup.system.lines
+    lines, laws = setup.system.lines, [law.rows for law in setup.system.laws]
     sprung = bool(np.isfinite(lines["k_s"]).any())
     seconds = stepping_seconds(stepping.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
     if seconds < WORTH_SAYING:
         return
     said = f"{stepping.last:.2g} steps of {stepping.h:.2g} s on {len(lines)} contact lines"
-    slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, setup.system.bonds))
+    slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, *laws))
     shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
     if shorter > DAMPED:
         said += (

@@ -14,6 +14,7 @@ from ..quantities import Array
 from .contacts.contact import meeting, where_friction_rubs
 from .contacts.friction import as_vector, last_friction
 from .contacts.touches import was_open
+from .kinds.lists import lost_by_laws, with_laws
 from .rows import Row
 from .system import Samples, System
 
@@ -54,17 +55,13 @@ def keep_forces(system: System, samples: Samples, row: int) -> None:
     if len(held) == 0:
         return
     for p in range(len(system.lines)):
-        line, bonded = system.lines[p], False
-        if p < len(system.bonds):
-            bonded = system.bonds[p].k > 0
-            samples.damage[row, line.group] += system.bonds[p].share * (1 - system.bonds[p].left)
-        if was_open(line) and not bonded:
+        line = system.lines[p]
+        push, drag, holds = with_laws(system.laws, p, line.push, whole_friction(system, line), False)
+        if line.group < len(loads):
+            samples.damage[row, line.group] += lost_by_laws(system.laws, p)
+        if was_open(line) and not holds:
             continue
         meet = where_friction_rubs(meeting(system, line))
-        push, drag = line.push, whole_friction(system, line)
-        if bonded:
-            push += system.bonds[p].push
-            drag = plus(drag, read(system.bonds[p].dragged))
         force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
         if line.group < len(loads):
             body = system.bodies[line.body]

@@ -27,12 +27,11 @@ from ..geometry.vectors import (
 from ..problem.masonry.laws.joint_law import stored, stored_along
 from ..quantities import GRAVITY, Array
 from ..scene.ground import Ground, mean_acceleration
-from .contacts.bonds import bonded_energy, hold_bonds
 from .contacts.contact import press_lines, settle_touches
 from .contacts.friction import book_rubbing, stick
 from .contacts.touches import in_transit, was_open
 from .gathering import keep_burden, keep_forces
-from .links import act_all, hold_all
+from .kinds.lists import act_all, hold_all, stored_by_laws
 from .rows import Rows
 from .slowing import oppose, slow_down
 from .supports import move_supports
@@ -163,7 +162,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
     energy.potential = energy.elastic = energy.driven = 0.0
     hold_all(system.links, system, books, energy, samples.pulled[row])
     elastic = energy.elastic
-    bonded, sheared = bonded_energy(system)
+    bonded, sheared = stored_by_laws(system.laws)
     for p in range(len(system.lines)):
         line = system.lines[p]
         if not was_open(line):
@@ -260,7 +259,7 @@ def make_steps(
         act_all(system.links, system, books, n * h, before)
         if sampled:
             keep_burden(system, samples, row)
-        hold_bonds(system, books, before)
+        act_all(system.laws, system, books, n * h, before)
         sticking, touched = press_lines(system, books, before, kick, clock.lead)
         if sampled or looked:
             keep_pose(system, books, samples, kept, before)

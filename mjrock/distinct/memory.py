@@ -75,8 +75,9 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
         system.supports.moved[i] = start[i] - memory.moved.get(block, 0.0)
     carried = copied(memory.system)
     carried.lines["support"][: len(system.lines)] = system.lines["support"]
-    carried.lines["widest"] = carried.bonds["age"] = 0.0
+    carried.lines["widest"] = 0.0
     guided_as(carried.bodies, system.bodies)
     links = tuple(table.going_on(before) for table, before in zip(system.links, carried.links, strict=True))
-    carried = system._replace(bodies=carried.bodies, lines=carried.lines, bonds=carried.bonds, links=links)
+    laws = tuple(law.going_on() for law in carried.laws)
+    carried = system._replace(bodies=carried.bodies, lines=carried.lines, laws=laws, links=links)
     return carried.with_ways()

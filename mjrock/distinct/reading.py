@@ -16,15 +16,13 @@ from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers
 from ..result.forces import Forces, Gathered, forces_of
 from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
-from ..result.motion import SampledMotion
+from ..result.motion import SampledMotion, thinned
 from ..result.problem import problem_of
 from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
-from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
-from .contacts.bonds import cracked
 from .following import Followed
 from .kinds.ties import Ties
 from .rows import Row, Rows
@@ -134,8 +132,8 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
         return None
     pulled, driven = run.forces_of("links", -samples.pulled), run.forces_of("actuators", samples.pulled)
     damage = None
-    if len(run.followed.system.bonds):
-        dry = [bond is None for bond in run.case.bonds]
+    if any(len(law.rows) for law in run.followed.system.laws):
+        dry = [bond is None for bond in run.scene.contacts.bonds]
         damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
     jacks = np.array([*driven.values()]).T.copy() if driven else None
@@ -156,7 +154,8 @@ def reading_of(run: Run) -> Reading:
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
     met = None if run.followed.memory is None else run.followed.memory.met
     left = met is not None and bool(met.handed.any())
-    beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked(system.bonds, joint, run.case))
+    cracked = dict(item for law in system.laws for item in law.cracked(run.scene).items())
+    beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked)
     problem = problem_of(run.case, run.contacts)
     return problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
 
@@ -219,5 +218,5 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         **{name: energy[name] for name in ("kinetic", "potential", "elastic", "friction", "ground")},
         **booked,
         ends=ends if run.case.joints else {},
-        bonds=bonds if len(run.followed.system.bonds) else {},
+        bonds=bonds if any(len(law.rows) for law in run.followed.system.laws) else {},
     )

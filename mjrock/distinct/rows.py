@@ -23,7 +23,8 @@ POINT = -2
 Fields = list[Any]
 """Names of numbers, and of vectors with how many numbers they have."""
 TAKEN = ("tension", "slip", "crushing", "joint_ends", "encounter_ends")
-"""What bonds have taken in tension, slip and crushing, and lines of joints and of encounters at the ends of faces."""
+"""What laws of joints have taken in tension, slip and crushing, and lines of joints and of encounters at the ends of
+faces."""
 
 
 class Kinds(NamedTuple):
@@ -34,7 +35,6 @@ class Kinds(NamedTuple):
         line: a contact line, in space a contact point: a point of a body on the face of another body or fixed block.
         edge: an edge of a face, of which one in the plane has two.
         way: a direction along its face of a line that sticks rigidly. A line has d - 1 of them.
-        bond: what a mortared line has beside its row, a row for each line of the joints.
         total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
             the work of ground and supports, and `TAKEN`; and `push`, the acceleration of the ground in the last step
             [m/s2].
@@ -44,7 +44,6 @@ class Kinds(NamedTuple):
     line: np.dtype[np.void]
     edge: np.dtype[np.void]
     way: np.dtype[np.void]
-    bond: np.dtype[np.void]
     total: np.dtype[np.void]
 
 
@@ -57,7 +56,6 @@ def kinds(d: int) -> Kinds:
         _line(d, s),
         _edge(d),
         _way(d, s),
-        _bond(s),
         [*numbers("friction", "ground", *TAKEN), *vectors(d, "push")],
     )
     return Kinds(*(np.dtype(kind) for kind in fields))
@@ -144,22 +142,6 @@ def _way(d: int, s: int) -> Fields:
     ]
 
 
-def _bond(s: int) -> Fields:
-    return [
-        *numbers("k", "c", "k_s", "c_s", "friction", "margin"),  # of the line without bond; k is 0 for no bond
-        *numbers("residual", "falls"),  # friction without bond, and what a whole bond adds to it [-]
-        *numbers("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
-        *numbers("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
-        *numbers("left", "share"),  # what is left of the bond, 1 - D, and the line's part of the area of the joint [-]
-        *numbers("peak", "hardens"),  # what it bears at its peak [N], and the plastic closing there, zero for none [m]
-        *numbers("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]
-        *numbers("secant"),  # stiffness that holds both ways [N/m]
-        *numbers("gap", "push", "pressed"),  # gap [m], force, and force of the dashpot, of the last step [N]
-        *vectors(s, "grip", "dragged"),  # stretch of the shear spring [m], and its force in the last step [N]
-        *numbers("age"),  # time that it has held until it cracked [s]
-    ]
-
-
 def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | float) -> Rows:
     """Rows with these columns, and zeros in the others."""
     table = np.zeros(count, dtype=kind)
@@ -179,8 +161,8 @@ def chosen(table: Rows, which: Integers | Flags) -> Rows:
     return as_bytes(table)[which].reshape(-1).view(table.dtype).view(np.recarray)
 
 
-ENDLESS = ("k_s", "margin", "bears")
-"""Numbers that may be infinite: of a line that sticks rigidly, a face without an end, what never gives way."""
+ENDLESS = ("k_s", "margin")
+"""Numbers that may be infinite: of a line that sticks rigidly, and of a face without an end."""
 
 
 def unsound(table: Rows, endless: tuple[str, ...] = ENDLESS) -> Integers:

@@ -11,21 +11,17 @@ import numpy as np
 
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..problem.wall.effect import Effect
 from ..quantities import ON_ITS_FACE, require_within
 from ..result.problem import problem_of
 from ..result.response import State
 from ..scene.course import Course
 from ..scene.explicit_step import SHARE
-from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
+from ..scene.masonry import masonry_course, masonry_scene
 from ..scene.scene import Scene
 from .assembly import copied, guide, moved_by, started, system_of, take_grips
-from .contacts.bonds import bonded
-from .impacts import Impacts
-from .limit import longest_step
-from .links import links_of
+from .kinds.lists import laws_of, links_of
+from .limit import Impacts, longest_step
 from .memory import Memory, memory_of, recalled
 from .search.encounters import Encounters
 from .system import System
@@ -134,21 +130,21 @@ def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) ->
 
 def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     """Masonry at the start of a case, or in a given state."""
-    masonry = case.masonry
-    scene, at_rest, drawn = standing(masonry, case.passive, case.settled)
+    scene = masonry_scene(case)
+    at_rest, drawn = standing(scene)
     course = continued(masonry_course(case, scene), state)
     names, links = links_of(scene, case, at_rest.bodies)
     passive = tuple(table for table in links if table.told != "actuators")
     guided = np.concatenate([table.rows["body"] for table in links if table.told == "actuators"])
     system = copied(at_rest)._replace(ground=course.ground, links=links, guided=guided)
-    system = moved_by(system, scene, masonry, case.supports)
+    system = moved_by(system, scene, case.supports)
     unguided = longest_step(system._replace(links=passive))
     guide(system, case)
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
     step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
-    share, system = step / limit, bonded(system, masonry, scene.contacts.joint)
-    of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
+    share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
+    of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
     apart = {"encounters": encounters, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
@@ -161,23 +157,12 @@ def continued(course: Course, state: State | None) -> Course:
 
 
 @lru_cache(maxsize=16)
-def standing(
-    masonry: Masonry, effects: tuple[Effect, ...] = (), settled: bool = True
-) -> tuple[Scene, System, Encounters]:
-    """Masonry, its system at rest, or as drawn where it is not settled, and its blocks as they may meet, which cases
-    with the same effects share.
-
-    Raises:
-        ValueError: if it is to settle and does not stand. The message names the blocks that fall.
-    """
-    if not settled:
-        drawn = drawn_masonry(masonry, effects)
-        system = system_of(drawn, masonry)
-        return drawn, system, Encounters(masonry, system, drawn.contacts.joint)
-    require_standing(masonry, effects)
-    scene = standing_masonry(masonry, effects)
-    system = system_of(scene, masonry)
-    pose, drag = scene.found
-    take_grips(system.lines, drag)
-    started(system, pose)
-    return scene, system, Encounters(masonry, system, scene.contacts.joint)
+def standing(scene: Scene) -> tuple[System, Encounters]:
+    """The system of masonry at rest, or as drawn where it is not settled, and its blocks as they may meet, which cases
+    with the same scene share."""
+    system = system_of(scene, ended=True)
+    if scene.settled is None:
+        pose, drag = scene.found
+        take_grips(system.lines, drag)
+        started(system, pose)
+    return system, Encounters(scene, system)

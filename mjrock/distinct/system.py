@@ -12,7 +12,8 @@ from ..scene.ground import Ground
 from .rows import TAKEN, Rows, kinds, rows
 from .supports import Supports
 
-Links = tuple[Any, ...]
+Tables = tuple[Any, ...]
+"""Tables of kinds of links, or of laws of joints."""
 
 HELD, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *TAKEN)
 ENERGY = np.dtype([(name, float) for name in (*HELD, *WORK)])
@@ -21,17 +22,17 @@ what actuators have put in, and what `rows.TAKEN` says."""
 
 
 class System(NamedTuple):
-    """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly. `bonds`
-    has a row for each line of the joints, or none where all are dry. `links` has a table for each kind of links, and
-    `guided` the body of each actuator."""
+    """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly. `laws`
+    has a table for each law of joints beside the dry one, `links` one for each kind of links, and `guided` the body of
+    each actuator."""
 
     axes: tuple[int, ...]
     bodies: Rows
     lines: Rows
     edges: Rows
     ways: Rows
-    bonds: Rows
-    links: Links
+    laws: Tables
+    links: Tables
     guided: Integers
     ground: Ground
     supports: Supports

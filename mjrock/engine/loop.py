@@ -259,14 +259,16 @@ def fitted_loop(
         make_step(memory, setting, sliding, state.frames, record, n)
         ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points.reach, openings)
         sliding_turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, setting, state, t, previous, step, no_rate or sliding_turned) / energy
+        change = change_of_acceleration(memory, setting, state, t, previous, step, no_rate or sliding_turned)
+        moves = kinetic(setting.masses, setting.products, memory.velocity)
+        change /= max(energy, pace.method.faster * moves)
         unpredictable = change > pace.method.abrupt * pace.method.abrupt
         settle_pose(memory, setting, pace, state, record, n)
 
         # judge
         t, previous = t + step, step
         if to_touch > 0:
-            energy = max(kinetic(setting.masses, setting.products, memory.velocity), pace.least_energy)
+            energy = max(moves, pace.least_energy)
             touches += 1
             allowed, calm_steps, no_rate = pace.short, 0, True
         else:

@@ -110,11 +110,11 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',
         tag("camera", name="front", **camera, fovy="28"),
         *world(scene),
-        *(f"  {site}" for site in sites(scene, GROUND)),
+        *(f"  {site}" for site in sites(scene, GROUND, scene.radius)),
         "</worldbody>",
         *section("contact", _pairs(scene, fixed.rows)),
-        *section("tendon", _links(scene)),
-        *section("actuator", _forces(scene)),
+        *section("tendon", linked(scene)),
+        *section("actuator", forced(scene)),
         *section("custom", _records(scene, newmark_beta)),
         *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
     ]
@@ -160,7 +160,7 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float = 0.25, method:
     return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.links.c)
 
 
-def _links(scene: Scene) -> Iterator[str]:
+def linked(scene: Scene) -> Iterator[str]:
     """The links: tendons with a spring that is slack up to a length and yields at a force, and with a dashpot."""
     links, lengths = scene.links, dict(zip(scene.links.sprung.names, scene.ties.reach.tolist(), strict=True))
     for i, name in enumerate(links.names):
@@ -173,7 +173,7 @@ def _links(scene: Scene) -> Iterator[str]:
         yield "  " + tag("spatial", ends, name=name, **law)
 
 
-def _forces(scene: Scene) -> Iterator[str]:
+def forced(scene: Scene) -> Iterator[str]:
     """The constant forces: actuators that need no control."""
     for name, force in zip(scene.forces.names, scene.forces.force, strict=True):
         yield "  " + tag(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..quantities import Flags
+from ..quantities import Array, Flags
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .memory import EngineArrays
@@ -91,24 +91,8 @@ class Engine:
         self.model.tendon_damping[:] = fixed.damping
 
     def place(self, course: Course) -> None:
-        """Set pose and velocity of the start.
-
-        Ties that the pose stretches too far have yielded: MuJoCo lets a tie yield at the end of a step, and the first
-        step would have its whole elastic force.
-        """
-        model, data = self.model, self.data
-        mujoco.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:] = course.pose.ravel(), course.velocity.ravel()
-        if model.nplastic:
-            mujoco.mj_fwdPosition(model, data)
-            yields = np.flatnonzero(model.tendon_plasticadr >= 0)
-            lower = model.tendon_plasticadr[yields]  # of the range in which a tie is slack, the upper end behind it
-            length, stretch = data.ten_length[yields], model.tendon_springyield[yields]
-            pushes = data.plastic[lower] == data.plastic[lower + 1]
-            data.plastic[lower + 1] = np.maximum(data.plastic[lower + 1], length - stretch)
-            shorter = np.minimum(data.plastic[lower + 1], length + stretch)[pushes]
-            data.plastic[lower[pushes]] = data.plastic[lower[pushes] + 1] = shorter
-        mujoco.mj_forward(model, data)  # an error of the engine is one of Python here, and the end in a compiled loop
+        """Set pose and velocity of the start, see `placed`."""
+        placed(self.model, self.data, course.pose.ravel(), course.velocity.ravel())
 
     @property
     def closed(self) -> Flags:
@@ -119,14 +103,39 @@ class Engine:
         return closed
 
     def release(self, course: Course) -> None:
-        """Set pose and velocity of the start, the velocity half a step back, where the leapfrog keeps it.
+        """Set pose and velocity of the start, the velocity half a step back, see `released`."""
+        released(self.model, self.data, course.pose.ravel(), course.velocity.ravel())
 
-        Before the release the ground is quiet. Contacts that slide have their rows.
-        """
-        self.place(course)
-        for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
-            mujoco.mj_forward(self.model, self.data)
-            self.data.qvel[:] = course.velocity.ravel() - 0.5 * self.model.opt.timestep * self.data.qacc
+
+def placed(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: Array) -> None:
+    """Set qpos and qvel of a start.
+
+    Ties that the pose stretches too far have yielded: MuJoCo lets a tie yield at the end of a step, and the first step
+    would have its whole elastic force.
+    """
+    mujoco.mj_resetData(model, data)
+    data.qpos[:], data.qvel[:] = pose, velocity
+    if model.nplastic:
+        mujoco.mj_fwdPosition(model, data)
+        yields = np.flatnonzero(model.tendon_plasticadr >= 0)
+        lower = model.tendon_plasticadr[yields]  # of the range in which a tie is slack, the upper end behind it
+        length, stretch = data.ten_length[yields], model.tendon_springyield[yields]
+        pushes = data.plastic[lower] == data.plastic[lower + 1]
+        data.plastic[lower + 1] = np.maximum(data.plastic[lower + 1], length - stretch)
+        shorter = np.minimum(data.plastic[lower + 1], length + stretch)[pushes]
+        data.plastic[lower[pushes]] = data.plastic[lower[pushes] + 1] = shorter
+    mujoco.mj_forward(model, data)  # an error of the engine is one of Python here, and the end in a compiled loop
+
+
+def released(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: Array) -> None:
+    """Set qpos and qvel of a start, the velocity half a step back, where the leapfrog keeps it.
+
+    Before the release the ground is quiet. Contacts that slide have their rows.
+    """
+    placed(model, data, pose, velocity)
+    for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
+        mujoco.mj_forward(model, data)
+        data.qvel[:] = velocity - 0.5 * model.opt.timestep * data.qacc
 
 
 def require_room(model: mujoco.MjModel, data: mujoco.MjData) -> None:

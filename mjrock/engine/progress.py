@@ -69,7 +69,7 @@ class StepClock(NamedTuple):
         t: time of the next pose [s].
         allowed: length of step that the pace allows [s].
         previous: length of the last step, zero at the release [s].
-        energy: twice the kinetic energy at the last touch [J], by which changes are measured.
+        energy: twice the kinetic energy at the last touch [J], by which changes are measured, see `Method.faster`.
         calm_steps: how many steps in a row changed little.
         no_rate: whether no rate of the acceleration is known: after a touch, and at the release.
         unpredictable: whether the last step changed the velocity so much that it says nothing of the next.

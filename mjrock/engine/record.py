@@ -12,8 +12,8 @@ from ..geometry.frames import PLANE, Freedom
 from ..geometry.poses import coordinate_rates, from_rates, moved
 from ..method import METHOD, Method
 from ..quantities import Array, Flags, Integers
+from ..result.motion import interpolated, intervals, thinned
 from ..result.response import End
-from ..result.samples import interpolated, intervals, thinned
 
 
 class Record(NamedTuple):

@@ -28,7 +28,7 @@ PAUSED, REPLAYED, SIMULATED = "paused", "replay", "simulation"
 BROKEN = "stopped: the model has only the contacts of rest"
 """What is said where blocks have come so far from their joints that MuJoCo cannot follow them."""
 TILTED = math.sqrt(0.5)
-"""Cosine of the tilt from which a block has fallen, as in `mjrock.result.fallen` [-]."""
+"""Cosine of the tilt from which a block has fallen, as in `mjrock.result.joint_motion` [-]."""
 BAD = mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC
 COORDINATES = {
     mujoco.mjtJoint.mjJNT_SLIDE: ("{axis}{of} [m]",),

@@ -30,19 +30,26 @@ SLID = 0.01
 """Sliding of a base that should hold that is warned of, over b [-]."""
 
 
-def require_still(case: AnyCase) -> None:
-    """Raise a ValueError where joints have bonds, supports move, or effects are for explicit steps only.
-
-    Contacts of MuJoCo push only, and its fixed blocks belong to the world.
-    """
+def require_known(case: AnyCase) -> None:
+    """Raise a ValueError where joints have bonds, or effects are for explicit steps only: contacts of MuJoCo push
+    only."""
     case.require_dry("MuJoCo")
     for i, effect in enumerate(case.effects):
         if effect.only:
             name = f"effects[{i}], {type(effect).__name__}"
             raise ValueError(f"{name}: MuJoCo has no row for it; take {effect.only}")
+
+
+def require_still(case: AnyCase) -> None:
+    """Raise a ValueError for what `require_known` refuses, and where supports move: in models of contact points fixed
+    blocks belong to the world."""
+    require_known(case)
     if case.supports:
         names = ", ".join(support.block for support in case.supports)
-        raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")
+        raise ValueError(
+            f"supports = {names}: fixed blocks do not move in MuJoCo but with collisions=True; take that, or "
+            "solve_explicit"
+        )
 
 
 def warn_if_sheared(scene: Scene) -> None:

@@ -49,14 +49,14 @@ def world(scene: Scene) -> Iterator[str]:
             height = float(scene.contacts.face_at[faces[name]][-1])
             yield from _ground(scene, name, hidden=scene.freedom != PLANE and height in paved)
             paved.add(height)
-    shades = tints(scene)
+    shades = [{}] * len(scene.bodies.names) if scene.freedom == PLANE else tints(scene)
     for j in range(len(scene.bodies.names)):
         yield from _body(scene, j, faces, shades[j])
 
 
 def tints(scene: Scene) -> list[dict[str, object]]:
-    """Colours of the bodies: in space, where there are several, another one than those of the blocks they touch."""
-    if scene.freedom == PLANE or len(scene.bodies.names) == 1:
+    """Colours of the bodies: where there are several, another one than those of the blocks they touch."""
+    if len(scene.bodies.names) == 1:
         return [{}] * len(scene.bodies.names)
     touching: list[set[int]] = [set() for _ in scene.bodies.names]
     for body, face in zip(scene.contacts.body.tolist(), scene.contacts.face_body.tolist(), strict=True):
@@ -76,7 +76,7 @@ def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) 
     name, radius = scene.bodies.names[j], scene.radius
     prefix = "" if len(scene.bodies.names) == 1 else f"{name}_"
     yield f"  <body name={quoted(name)} pos={value_text(in_space(scene.bodies.rest[j], radius))}>"
-    yield "    " + tag("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **_inertia(scene, j))
+    yield "    " + tag("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **inertia_of_body(scene, j))
     for joint, kind, axis in HINGE if scene.freedom == PLANE else BALL:
         yield "    " + tag("joint", name=prefix + joint, type=kind, axis=axis)
     if scene.freedom != PLANE:
@@ -95,7 +95,7 @@ def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) 
     yield "  </body>"
 
 
-def _inertia(scene: Scene, j: int) -> dict[str, object]:
+def inertia_of_body(scene: Scene, j: int) -> dict[str, object]:
     """Moments of inertia of a body: of the plane, those of a rectangle about the other two axes; any will do that can
     be."""
     if scene.freedom == PLANE:
@@ -116,15 +116,14 @@ def _inertia(scene: Scene, j: int) -> dict[str, object]:
     return {"fullinertia": np.concatenate([moments, scene.bodies.products[j]])}
 
 
-def sites(scene: Scene, body: int) -> Iterator[str]:
-    """Ends of links and points of forces on a body or on the ground, which is raised by the radius of the points."""
+def sites(scene: Scene, body: int, raised: float = 0.0) -> Iterator[str]:
+    """Ends of links and points of forces on a body or on the ground, raised by a length [m]."""
     links = scene.links
     ends = (
         (links.names, links.body, links.at),
         ([f"{name}_anchor" for name in links.names], links.anchor_body, links.anchor_at),
         (scene.forces.names, scene.forces.body, scene.forces.at),
     )
-    raised = scene.radius if body == GROUND else 0.0
     for names, bodies, places in ends:
         for name, on, place in zip(names, bodies, places, strict=True):
             if on == body:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,13 +12,12 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
-from ..result.ending import Outcome
+from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.ledger import StepError
 from ..result.problem import Problem, problem_of
 from ..result.response import End, Response, State
 from ..result.start import require_unbreakable, required_start
-from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
@@ -27,6 +27,7 @@ from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
+from .plain.run import Wanted, simulate_plain
 from .run import EngineRun, explained
 from .run_warnings import (
     require_still,
@@ -128,6 +129,7 @@ def simulate(
     forces: bool = False,
     start: End | State | None = None,
     method: Method = METHOD,
+    collisions: bool = False,
 ) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, on compliant contacts in MuJoCo.
 
@@ -151,6 +153,10 @@ def simulate(
         start: pose and velocity to start from instead of the release, the `end` of an earlier response; the release is
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
         method: the constants of the method, see `mjrock.method`, for studies that vary them.
+        collisions: whether MuJoCo finds the contacts itself, between boxes and hulls, so that blocks meet wherever they
+            are and run on when they have fallen, see `mjrock.engine.plain`. Steps have one length; None stands for 0.1
+            over the highest frequency of the closed contacts for a wall, and 1 over it for masonry. It does not go with
+            accuracy, newmark_beta, coulomb and method.
 
     Returns:
         The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, and `impacts`, `peaks` of a
@@ -174,9 +180,12 @@ def simulate(
     """
     given, watch = locals().copy(), Stopwatch()
     problem = problem_of(case, contacts)
+    if require_flag("collisions", collisions):
+        require_left_out(accuracy=accuracy, newmark_beta=newmark_beta, coulomb=coulomb, method=method)
     accuracy = default_accuracy(case) if accuracy is None else accuracy
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
-    require_still(case)
+    if not collisions:
+        require_still(case)
     if contacts is not None and contacts.base.friction is None:
         warn_of_low_stop(case)
     if start is None:
@@ -187,6 +196,11 @@ def simulate(
         required_room(case, case.duration / options.apart)
     state = None if start is None else required_start(start, case)
     with first_answer(simulate, **given):
+        if collisions:
+            wanted = Wanted(timestep, output_step, ledger, forces, state)
+            response = simulate_plain(problem, wanted)
+            response.stats.update(watch.took())
+            return response
         scene = problem.scene(method)
         warn_if_sheared(scene)
         course = problem.course(scene)
@@ -209,6 +223,14 @@ def simulate(
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
     return response
+
+
+def require_left_out(**given: object) -> None:
+    """Raise a ValueError for options of steps that fit the motion, which do not go with collisions."""
+    usual = inspect.signature(simulate).parameters
+    for name, value in given.items():
+        if value != usual[name].default:
+            raise ValueError(f"{name} = {value!r} does not go with collisions=True; leave it out")
 
 
 def default_accuracy(case: AnyCase) -> float:

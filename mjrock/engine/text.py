@@ -5,12 +5,20 @@ from __future__ import annotations
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import require_kind, require_within
+from ..quantities import require_flag, require_kind, require_within
 from ..result.problem import problem_of
 from .model import released_mjcf
+from .plain.run import PlainModel, require_plain
 
 
-def mjcf_of(case: AnyCase, contacts: Contacts | None, timestep: float, *, newmark_beta: float = 0.25) -> str:
+def mjcf_of(
+    case: AnyCase,
+    contacts: Contacts | None,
+    timestep: float,
+    *,
+    newmark_beta: float = 0.25,
+    collisions: bool = False,
+) -> str:
     """The model of a case as MJCF text; the same arguments give the same bytes.
 
     Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, contacts, timestep)` where the
@@ -26,6 +34,8 @@ def mjcf_of(case: AnyCase, contacts: Contacts | None, timestep: float, *, newmar
         timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
         newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.engine.solref`. Rows that MuJoCo
             would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.engine.solref.row`.
+        collisions: whether the model is a plain one, of boxes and hulls whose contacts MuJoCo finds, as that of
+            `simulate(..., collisions=True)`.
 
     Raises:
         ValueError: if the contacts do not fit the case, if the masonry does not stand, or for a value outside its
@@ -34,6 +44,10 @@ def mjcf_of(case: AnyCase, contacts: Contacts | None, timestep: float, *, newmar
     timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
     newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     problem = problem_of(case, contacts)
+    if require_flag("collisions", collisions):
+        require_plain(case)
+        scene = problem.scene()
+        return PlainModel(problem, scene, problem.course(scene)).released_text(timestep)
     case.require_dry("MuJoCo")
     scene = problem.scene()
     return released_mjcf(scene, problem.course(scene), timestep, newmark_beta)

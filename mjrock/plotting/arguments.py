@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
@@ -15,10 +14,7 @@ from numpy.typing import ArrayLike
 from ..problem.wall.case import Case
 from ..quantities import (
     Array,
-    require_array,
-    require_flag,
     require_kind,
-    require_real,
     require_reals,
     require_row,
     require_text,
@@ -31,7 +27,7 @@ from ..study.intensity.fragility import Fragility
 
 P = ParamSpec("P")
 Picture = TypeVar("Picture", bound=Callable[..., Any])
-Check = Callable[[str, Any], object]
+Check = Callable[[str, object], object]
 """Raises a TypeError or ValueError with the name and the value of an argument that cannot be."""
 MOST_COLUMNS = 50
 """Most panels beside each other."""
@@ -42,19 +38,19 @@ def kind(*kinds: type) -> Check:
     return lambda name, value: require_kind(name, value, *kinds)
 
 
-def row(name: str, value: Any) -> None:
+def row(name: str, value: object) -> None:
     """A row of at least one real number."""
     given = require_reals(name, value, "a row of at least one real number")
     if given.ndim != 1 or not given.size:
         raise ValueError(f"{name} has the shape {given.shape}; a row of at least one real number is needed")
 
 
-def finite_row(name: str, value: Any) -> None:
+def finite_row(name: str, value: object) -> None:
     """A row of at least one finite number."""
     require_row(name, value, "number")
 
 
-def table(name: str, value: Any) -> None:
+def table(name: str, value: object) -> None:
     """Real numbers in rows and columns."""
     given = require_reals(name, value, "real numbers in rows and columns")
     if given.ndim != 2 or not given.size:
@@ -75,35 +71,14 @@ def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
     return tuple(checked.values())
 
 
-def two_texts(name: str, value: Any) -> None:
-    """Two texts."""
-    if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 2:
-        raise TypeError(f"{name} = {shown(value)} are not two texts")
-    for text in value:
-        require_text(name, text)
-
-
-def two_numbers(name: str, value: Any) -> None:
-    """Two positive numbers that increase, such as limits of a logarithmic axis."""
-    low, high = require_array(name, value, (2,))
-    if not 0 < low < high:
-        raise ValueError(f"{name} = {shown(value)} are not two positive numbers that increase")
-
-
-def size(name: str, value: Any) -> None:
-    """Width and height of a figure [inch]."""
-    for extent in require_array(name, value, (2,)):
-        require_within(name, extent, 0.1, 200.0, "inch")
-
-
-def anything(name: str, value: Any) -> None:
+def anything(name: str, value: object) -> None:
     """What is checked elsewhere."""
 
 
 def mapping(check: Check, least: int = 1) -> Check:
     """A check for so many values by texts at least, each with a check of its own."""
 
-    def checked(name: str, value: Any) -> None:
+    def checked(name: str, value: object) -> None:
         if not isinstance(value, Mapping) or len(value) < least:
             raise TypeError(f'{name} = {shown(value)} is not a mapping like {{"name": value}}, of at least {least}')
         for key, one in value.items():
@@ -116,7 +91,7 @@ def mapping(check: Check, least: int = 1) -> Check:
 def listed(check: Check) -> Check:
     """A check for a sequence of at least one, each with a check of its own."""
 
-    def checked(name: str, value: Any) -> None:
+    def checked(name: str, value: object) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence) or not len(value):
             raise TypeError(f"{name} = {shown(value)} is not a sequence of at least one")
         for i, one in enumerate(value):
@@ -128,7 +103,7 @@ def listed(check: Check) -> Check:
 def pair(first: Check, second: Check) -> Check:
     """A check for a pair."""
 
-    def checked(name: str, value: Any) -> None:
+    def checked(name: str, value: object) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 2:
             raise TypeError(f"{name} = {shown(value)} is not a pair")
         first(f"{name}[0]", value[0])
@@ -137,62 +112,39 @@ def pair(first: Check, second: Check) -> Check:
     return checked
 
 
-def of_wall(name: str, value: Any) -> None:
+def of_wall(name: str, value: object) -> None:
     """A response of a wall."""
     require_kind(name, value, Response)
-    if value.rocking is None:
+    if isinstance(value, Response) and value.rocking is None:
         raise TypeError(f"{name} is of masonry, and the picture is of one wall; for masonry take plotting.displacement")
 
 
-def drawing(name: str, value: Any) -> None:
+def drawing(name: str, value: object) -> None:
     """A function that draws on an Axes."""
     if not callable(value):
         raise TypeError(f"{name} = {shown(value)} is not a function that draws on an Axes")
 
 
-def number(name: str, value: Any) -> None:
+def number(name: str, value: object) -> None:
     """A finite number."""
     require_within(name, value, -1e9, 1e9)
 
 
-def positive(name: str, value: Any) -> None:
-    """A positive finite number."""
-    if not 0 < require_real(name, value) < math.inf:
-        raise ValueError(f"{name} = {shown(value)} is outside the valid range, which is above 0")
-
-
 CHECKS: dict[str, Check] = {
-    "arguments": require_flag,
     "ax": kind(Axes),
     "case": kind(Case),
     "closed": mapping(pair(anything, anything), least=0),
     "columns": lambda name, value: require_whole(name, value, 1, MOST_COLUMNS),
     "draw": drawing,
     "drawings": listed(pair(require_text, drawing)),
-    "errors": mapping(row),
-    "figure": kind(Figure),
     "fit": kind(Fragility),
     "intensity": row,
     "labels": listed(require_text),
-    "least": positive,
-    "levels": row,
-    "limits": two_numbers,
-    "marker": require_text,
-    "most": positive,
-    "names": two_texts,
-    "order": lambda name, value: require_within(name, value, -20.0, 20.0),
     "panels": listed(pair(require_text, listed(of_wall))),
     "peaks": table,
     "responses": listed(of_wall),
-    "shares": row,
-    "size": size,
-    "solver": require_text,
-    "steps": row,
     "title": require_text,
-    "top": positive,
-    "unit": require_text,
     "until": number,
-    "values": table,
 }
 """The check of each argument that means the same in every picture."""
 
@@ -217,7 +169,7 @@ class Checked(Protocol):
     def __call__(self, draw: Picture, /) -> Picture: ...
 
 
-def own_axes(about: Any) -> Axes:
+def own_axes(about: object) -> Axes:
     """An Axes in a figure of its own, of three dimensions for masonry in space or what was found of it."""
     about = getattr(about, "case", about)
     deep = getattr(getattr(about, "masonry", about), "in_space", False)

@@ -41,6 +41,12 @@ def ends_of(points: Array) -> tuple[Array, Array]:
     return flat.min(axis=0), flat.max(axis=0)
 
 
+def evened(rows: Sequence[Array]) -> Array:
+    """Rows of points as one array; shorter ones repeat their last point."""
+    most = max(map(len, rows))
+    return np.array([np.concatenate([row, np.repeat(row[-1:], most - len(row), axis=0)]) for row in rows])
+
+
 def required_limits(limits: ArrayLike | None, axes: str) -> Array | None:
     """The lowest and the highest coordinate of a picture along each axis [m], shape (d, 2), or None.
 
@@ -184,9 +190,7 @@ class Bodies:
     @cached_property
     def _padded(self) -> Array:
         """The outlines as one array, shape (bodies, corners, 2)."""
-        most = max(map(len, self.outlines), default=0)
-        padded = [np.concatenate([one, np.repeat(one[-1:], most - len(one), axis=0)]) for one in self.outlines]
-        return np.reshape(padded, (len(self.outlines), most, 2))
+        return evened(self.outlines) if self.outlines else np.empty((0, 0, 2))
 
     def _drawn(self, pose: Array, rest: Array, points: Array) -> Array:
         """Points about centroids [m], shape (..., n, 2), drawn at poses of shape (..., 3)."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..files import write_text
 from ..geometry.poses import rotations
@@ -174,7 +175,7 @@ class Page:
         options = {"color": _number(colour), "width": THICK * self.extent, "name": name, "group": group}
         self.plot += self.k3d.lines(self._series(vertices), pairs, indices_type="segment", shader="mesh", **options)
 
-    def _series(self, values: Any) -> dict[str, Any]:
+    def _series(self, values: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
         """An array for each time, as k3d takes it."""
         return {repr(float(t)): row for t, row in zip(self.t, values, strict=True)}
 

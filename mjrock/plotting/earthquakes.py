@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum
@@ -19,34 +15,13 @@ from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
 from ..quantities import GRAVITY
 from ..study.intensity.fragility import Fragility
-from .arguments import equal_rows, finite_row, kind, listed, mapping, picture, row, table
-from .style import STYLES, folded, legend_below
-
-MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
-"""How a wall takes a pulse, and colours that a black-and-white print still tells apart."""
+from .arguments import equal_rows, finite_row, kind, listed, picture
+from .style import STYLES, folded
 
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
-@picture(frequency=finite_row, amplitude=finite_row, mode=table)
-def overturning_map(ax: Axes, frequency: ArrayLike, amplitude: ArrayLike, mode: ArrayLike) -> Axes:
-    """Overturning spectrum of a pulse: `mode` (an index into MODES) over frequency and amplitude, shape (n_a, n_f)."""
-    shape = len(amplitude), len(frequency)  # type: ignore[arg-type]
-    if np.shape(mode) != shape:
-        raise ValueError(f"mode has the shape {np.shape(mode)}; {shape} is needed, amplitudes by frequencies")
-    colours = ListedColormap(list(MODES.values()))
-    ax.pcolormesh(frequency, amplitude, mode, cmap=colours, vmin=-0.5, vmax=len(MODES) - 0.5, rasterized=True)
-    ax.set(xlabel=r"frequency $\omega_p/p$ [-]", ylabel=r"amplitude $a_p/(g\,\tan\alpha)$ [-]")
-    return ax
-
-
-def mode_legend(figure: Figure) -> None:
-    """What the colours of `overturning_map` stand for, below the figure."""
-    handles = [Patch(facecolor=colour, edgecolor="0.4", linewidth=0.5, label=name) for name, colour in MODES.items()]
-    legend_below(figure, handles, list(MODES), len(handles), fontsize=9)
-
-
-def of_records(name: str, value: Any) -> None:
+def of_records(name: str, value: object) -> None:
     """At least one motion, or a set of at least one record."""
     listed(kind(GroundMotion))(name, value.horizontal if isinstance(value, RecordSet) else value)
 
@@ -152,35 +127,4 @@ def fragility(
         ax.plot(points, found, marker=marker, linestyle="", color=colour, markersize=5, label=label)
     ax.set_xlim(0, max(1.02 * top, right))
     ax.set(ylim=(-0.02, 1.02), xlabel=f"peak ground acceleration [{unit}]", ylabel="share of walls overturned [-]")
-    return ax
-
-
-@picture(samples=mapping(row))
-def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-3, most: float = 1.0) -> Axes:
-    """Share of runs whose peak rotation stays below a value, a line a solver; overturned runs lie beyond `most`."""
-    for solver, values in samples.items():
-        style = {k: v for k, v in STYLES.get(solver, {"label": folded(solver)}).items() if k != "linestyle"}
-        ordered = np.sort(np.clip(np.asarray(values, dtype=float), float(least), 10 * float(most)))
-        ax.step(ordered, np.arange(1, len(ordered) + 1) / len(ordered), where="post", **style)
-    ax.set(
-        xscale="log", xlim=(float(least), float(most)), ylim=(0, 1), xlabel=PEAK, ylabel="share of runs below it [-]"
-    )
-    return ax
-
-
-@picture()
-def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[float, float]) -> Axes:
-    """Peak rotations of the same cases in two ways, on logarithmic axes; what falls lies on the upper edge.
-
-    `values` are multiples of alpha, shape (n, 2).
-    """
-    low, high = limits
-    if np.shape(values)[1] != 2:
-        raise ValueError(f"values has the shape {np.shape(values)}; two columns are needed")
-    a, b = np.clip(np.asarray(values, dtype=float), low, high).T
-    ax.plot([low, high], [low, high], color="0.6", linewidth=0.8)
-    ax.loglog(a, b, linestyle="", marker="o", markersize=3.5, markeredgewidth=0, alpha=0.55, color="#12406b")
-    limits = 0.8 * low, 1.25 * high
-    x, y = (rf"$\theta_{{max}}/\alpha$, {name} [-]" for name in names)
-    ax.set(xlim=limits, ylim=limits, aspect="equal", xlabel=x, ylabel=y)
     return ax

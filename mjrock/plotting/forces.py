@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from ..problem.masonry.blocks.joints import Joint
 from ..quantities import Array, Integers, shown

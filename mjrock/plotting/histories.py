@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +14,7 @@ from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
 from .arguments import kind, listed, picture
-from .style import below_figure, several, short, styles_of, wrapped
+from .style import below_figure, figure_of, several, short, styles_of, wrapped
 
 TIME = "time $t$ [s]"
 MOST = 6
@@ -145,7 +144,7 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
 def _legend_above(ax: Axes) -> None:
     """A legend above the lines of an Axes, in two columns where they are short enough."""
     labels = ax.get_legend_handles_labels()[1]
-    figure: Any = ax.get_figure(root=True)
+    figure = figure_of(ax)
     width = ax.bbox.width / figure.dpi  # [inch]
     columns = 2 if len(labels) > 2 and 2 * (0.05 * max(map(len, labels)) + 0.35) < width else 1
     rows = -(-len(labels) // columns)

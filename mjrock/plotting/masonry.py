@@ -1,10 +1,9 @@
-"""Pictures of masonry: its blocks to scale, its joints, and where a motion has brought them."""
+"""Pictures of masonry: where a motion has brought its blocks, the line of thrust, and a mechanism of collapse."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,16 +12,20 @@ from numpy.typing import ArrayLike
 
 from ..geometry.frames import PLANE, SPACE
 from ..geometry.poses import at_rest
+from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, require_array, require_flag, require_kind, require_within
 from ..result.bodies import Moving
+from ..result.motion import sample_at
 from ..result.response import Response
-from ..result.samples import sample_at
 from .arguments import anything, picture
-from .bodies import ends_of, require_masonry, required_limits, window
+from .bodies import Bodies, ends_of, require_masonry, required_limits, window
 from .forces import forces_on, require_shown
 from .perspective import fill, solids
+from .section import FORCE, surroundings, together
+from .section import blocks as outlines
 from .solids import Solids
 
 BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
@@ -70,7 +73,7 @@ def blocks(
     if run is None or pose is not None:
         if at is not None or forces is not None:
             raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
-        given: Any = masonry if run is None else require_masonry("blocks", run)
+        given = require_masonry("blocks", masonry) if isinstance(masonry, Response) else masonry
         require_kind("masonry", given, Masonry)
         case = MasonryCase(given, 1.0) if run is None else replace(run.of_masonry, supports=())
     else:
@@ -85,7 +88,7 @@ def blocks(
     placed = (still if pose is None else require_array("pose", pose, still.shape))[None]
     acting = None if run is None or forces is None else (run, Moving(case, time, placed, magnified), forces)
     if case.in_space:
-        solids(ax, Solids(case, time, placed, magnified, camera, limits), animated=False)(0)  # type: ignore[arg-type]
+        solids(ax, Solids(case, time, placed, magnified, camera, required_limits(limits, "xyz")), animated=False)(0)
         if acting is not None:
             forces_on(ax, *acting, animated=False)(0)
         fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes
@@ -121,3 +124,98 @@ def _view(ax: Axes, masonry: Masonry, moving: list[Array], fixed: list[Array], l
     if outside:
         said = f"{outside} of {len(moving)} blocks lie outside"
         ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=7, va="top")
+
+
+@picture(limits=anything)
+def thrust(
+    ax: Axes,
+    response: Response,
+    at: float | None = None,
+    *,
+    magnified: float = 1.0,
+    limits: ArrayLike | None = None,
+) -> Axes:
+    """The line of thrust through blocks, or through a wall, at a time, as wide as the force is large.
+
+    It passes through each joint of the drawing where the resultant of its forces does. In a block it goes straight from
+    joint to joint, and where more than two press, by way of the mean of their places in proportion to their forces. It
+    begins in the centroid of a block that presses on one joint alone. In a line that leaves the blocks joints are open.
+
+    Args:
+        ax: where to draw, of three dimensions for blocks in space.
+        response: a run with forces=True.
+        at: time [s]; None is the end of the run.
+        magnified: factor on the displacements, 0.01 to 10000.
+        limits: lowest and highest coordinate that the picture shows along each axis [m], as those of `blocks`.
+
+    Raises:
+        AttributeError: if the run has kept no forces.
+        ValueError: for a time outside the run, or a value outside its range.
+    """
+    require_kind("response", response, Response)
+    if response.joints is not None:
+        return blocks(ax, response, at=at, forces="thrust", magnified=magnified, limits=limits)
+    require_shown("forces", "thrust", response)
+    sample = sample_at(response.t, at)
+    bodies = Bodies.of(response, magnified, limits).at(response.t[sample : sample + 1])
+    updates = [outlines(ax, bodies), surroundings(ax, response.of_wall[0], bodies)]
+    updates.append(forces_on(ax, response, bodies.of_case(response.case), "thrust"))
+    together(updates)(0)
+    for artist in ax.get_children():
+        artist.set_animated(False)
+    if bodies.limits is not None:
+        ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
+    return ax
+
+
+THICK = 3.0
+"""Width of the line of the largest force [points]."""
+
+
+@picture()
+def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool = True) -> Axes:
+    """Masonry that has moved a little in its mechanism of collapse, and where joints press as it begins to move.
+
+    Each force is a line through the point of its joint where it acts, along the force and as long as half the joint.
+    Its width grows with the force. Lines that follow one another are the path of the thrust. They are drawn at rest, in
+    the plane alone.
+
+    Args:
+        ax: where to draw; of three dimensions for blocks in space.
+        collapse: what `collapse_multiplier` has returned, of a finite multiplier.
+        share: largest displacement of a centroid that is drawn, over the extent of the masonry, 0 to 1.
+        forces: whether to draw the forces.
+
+    Raises:
+        ValueError: for a multiplier that is infinite, or a share out of its range.
+    """
+    require_kind("collapse", collapse, Collapse)
+    share, forces = require_within("share", share, 0.0, 1.0), require_flag("forces", forces)
+    masonry = collapse.masonry
+    if masonry is None or collapse.forces is None:
+        raise ValueError(f"multiplier = {collapse.multiplier:g}: nothing gives way, and there is no mechanism to draw")
+    parts = 3 if masonry.in_space else 2
+    extent = np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]), axis=0).max()
+    largest = np.linalg.norm(collapse.motion[:, :parts], axis=1).max()
+    pose = share * extent / largest * collapse.motion
+    if masonry.in_space:
+        half = 0.5 * pose[:, 3:]
+        pose = np.column_stack([pose[:, :3], np.ones(len(pose)), half])
+        pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
+    blocks(ax, masonry, pose)
+    if forces and not masonry.in_space:
+        _pressed(ax, masonry.plane_joints, collapse)
+    return ax
+
+
+def _pressed(ax: Axes, joints: tuple[Joint, ...], collapse: Collapse) -> None:
+    """A line for each force of a joint."""
+    assert collapse.forces is not None
+    normal, shear, along = collapse.forces.normal, collapse.forces.shear, collapse.forces.eccentricity
+    size = np.hypot(normal, shear)
+    ax.set_xlabel(f"{ax.get_xlabel()}\nline {THICK:g} pt wide: {size.max() / 1e3:.3g} kN")
+    for i, joint in enumerate(joints):
+        if normal[i] > 1e-3 * size.max():
+            way = (normal[i] * joint.normal + shear[i] * joint.along) / size[i]
+            ends = joint.middle + along[i] * joint.along + 0.25 * joint.width * np.outer([-1, 1], way)
+            ax.plot(*ends.T, color=FORCE, linewidth=max(0.4, THICK * size[i] / size.max()), solid_capstyle="round")

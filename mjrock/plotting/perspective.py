@@ -10,14 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MultipleLocator
-from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
-from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
+from matplotlib.transforms import BboxBase
+from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from ..geometry import convex
 from ..quantities import Array
 from .section import Update, pulling
 from .solids import Solids
+from .style import figure_of
 
 GROUND = "#e6e6e2"
 LIGHT = np.array([0.62, -0.25, 0.74])
@@ -56,9 +58,8 @@ def in_three(ax: Axes) -> Any:
 def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     """Draw blocks in space, true to scale, and the ground below them.
 
-    Blocks, and the convex parts of one that is not convex, are drawn from the farthest to the nearest. Of two with a
-    joint the one on the far side of it comes first, and otherwise the one with the farther centroid; blocks that have
-    moved far can hide what lies before them. What has sunk below the ground is left out.
+    Blocks, and the convex parts of one that is not convex, are drawn from the farthest to the nearest, see
+    `Solids.order`. What has sunk below the ground is left out.
     """
     space = in_three(ax)
     low, high = bodies.extent()
@@ -91,10 +92,10 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     return update
 
 
-def fill(ax: Axes, box: Any) -> None:
+def fill(ax: Axes, box: BboxBase) -> None:
     """Enlarge a view until it fills a box [pixel], such as that of its figure, but for room for its labels."""
     space = in_three(ax)
-    figure: Any = ax.get_figure(root=True)
+    figure = figure_of(ax)
     limits = [getattr(space, f"get_{name}lim")() for name in "xyz"]
     corners = np.array(np.meshgrid(*limits)).reshape(3, -1)
     x, y, _ = proj_transform(*corners, space.get_proj())

@@ -19,7 +19,7 @@ from ..quantities import require_flag, require_text
 from .arguments import anything, picture
 from .bodies import Bodies
 from .section import GROUND, STONE, blocks, surroundings
-from .style import titled
+from .style import figure_of, titled
 
 Note = tuple[tuple[float, float], str]
 """A place in the section, x and z [m], and what is there."""
@@ -127,7 +127,7 @@ def _section(ax: Axes, case: Case) -> None:
 
 def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, float]) -> None:
     """What each effect is, in a column whose left end and lower and upper end are given [inch], with a line to it."""
-    figure: Any = ax.figure
+    figure = figure_of(ax)
     inch = figure.dpi_scale_trans.inverted()
     halves = [0.5 * LINE * (2 + text.count("\n")) for _, text in notes]
     wanted = [float(inch.transform(ax.transData.transform(place))[1]) for place, _ in notes]

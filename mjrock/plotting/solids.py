@@ -5,24 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import null_space
 
 from ..geometry.frames import SPACE
-from ..geometry.poses import displaced, rotations
-from ..problem.masonry.blocks.compound import Compound, SolidBlock
+from ..geometry.hull import unlike_ways
+from ..geometry.poses import displaced
+from ..problem.masonry.blocks.compound import SolidBlock
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.bodies import Moving
 from ..result.response import Response
-from .bodies import interpolated, required_limits
+from .bodies import evened, interpolated, required_limits
 
 TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
 """Colours of blocks, which take turns so that neighbours are told apart."""
+ASIDE = 1e-9
+"""Cosine of the angle between the line of sight and the normal of a plane that is seen as a line [-]."""
+TOUCHING = 1e-4
+"""How far two bodies have to lie one before the other for an order, over the extent of all in the picture [-]."""
 
 
 class Facets(NamedTuple):
@@ -34,6 +39,46 @@ class Facets(NamedTuple):
     body: Integers
     part: Integers
     counts: Integers
+
+
+class Parts(NamedTuple):
+    """Convex parts of bodies: the number of the body, shape (parts,); corners about its centroid at rest [m], and unit
+    normals of faces and unit vectors along edges at rest, those that are parallel once, shapes (parts, most, 3) each,
+    of which a part with few repeats the last one."""
+
+    body: Integers
+    corners: Array
+    normals: Array
+    edges: Array
+
+
+def hiding(corners: Array, normals: Array, edges: Array, eye: Array) -> Integers:
+    """Pairs of convex bodies of which the second hides some of the first, as numbers, shape (n, 2).
+
+    Two convex bodies lie on two sides of a plane. It is looked for along their faces, and along the lines of sight that
+    pass an edge: bodies on two sides of a line of sight do not hide each other. Of two bodies that overlap, or lie
+    across each other's edges, the one that is nearer by the widest gap is the second.
+
+    Args:
+        corners: of each body [m], shape (bodies, most, 3).
+        normals, edges: of its faces, and vectors along its edges, shapes (bodies, most, 3).
+        eye: unit vector to the camera, shape (3,).
+    """
+    ways = np.concatenate([normals, np.cross(edges, eye)], axis=1)
+    length = np.linalg.norm(ways, axis=2, keepdims=True)
+    ways = np.where(length > ASIDE, ways, ways[:, :1])  # in place of an edge along the line of sight
+    ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), ASIDE)
+    ways *= np.where(ways @ eye < 0, -1.0, 1.0)[..., None]
+    screen = corners @ null_space(eye[None])
+    low, high = screen.min(axis=1), screen.max(axis=1)
+    first, second = np.nonzero(np.triu(((low[:, None] < high) & (low < high[:, None])).all(axis=2), 1))
+    ways = np.concatenate([ways[first], ways[second]], axis=1)
+    one, other = (ways @ np.swapaxes(corners[body], 1, 2) for body in (first, second))
+    nearer, farther = other.min(axis=2) - one.max(axis=2), one.min(axis=2) - other.max(axis=2)
+    across = np.where(ways @ eye < ASIDE, np.maximum(nearer, farther), -np.inf)
+    gaps = np.maximum([nearer, farther], across).max(axis=2)  # with which the second is nearer, and farther
+    pairs = np.where(gaps[0] > gaps[1], [first, second], [second, first])
+    return np.asarray(pairs[:, gaps.min(axis=0) < -TOUCHING * np.ptp(screen, axis=(0, 1)).max()].T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +125,7 @@ class Solids:
         limits: ArrayLike | None = None,
     ) -> Solids:
         """The blocks of a response in space."""
-        return cls(response.of_masonry, response.t, response.pose, magnify, camera, limits)  # type: ignore[arg-type]
+        return cls(response.of_masonry, response.t, response.pose, magnify, camera, required_limits(limits, "xyz"))
 
     @property
     def masonry(self) -> Masonry:
@@ -140,13 +185,10 @@ class Solids:
         blocks = self._blocks
         counts = np.array([len(side.corners) for block in blocks for side in block.sides])
         body = np.repeat(np.arange(len(blocks)), [len(block.sides) for block in blocks])
-        part = self._first[body] + np.array([side.parts[0] for block in blocks for side in block.sides])
-        corners = np.empty((len(counts), counts.max(), 3))
-        bodies = zip(blocks, self.rests, strict=True)
-        about = [side.corners - rest for block, rest in bodies for side in block.sides]
-        for row, face in zip(corners, about, strict=True):
-            row[: len(face)], row[len(face) :] = face, face[-1]
-        return Facets(corners, body, part, counts)
+        first = np.searchsorted(self._parts.body, body)
+        part = first + np.array([side.parts[0] for block in blocks for side in block.sides])
+        corners = evened([side.corners for block in blocks for side in block.sides])
+        return Facets(corners - self.rests[body, None], body, part, counts)
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
@@ -155,33 +197,25 @@ class Solids:
     def order(self, frame: int) -> Integers:
         """The convex parts of all bodies from the farthest to the nearest, shape (parts,).
 
-        Of two that lie on each other the one on the far side comes first. Among those that hide no other the one with
-        the farthest centroid is next.
+        A part that another one hides comes before it. Parts that hide one another in a ring, or that overlap, have no
+        such order, and then one of them is wrong.
         """
-        bodies = np.repeat(np.arange(len(self.shown)), np.diff(self._first))
-        poses, rests = self._posed(frame)[bodies], self.rests[bodies]
-        turned = rotations(poses)
-        arms = np.array([part.centroid for block in self._blocks for part in block.parts]) - rests
-        nearness = (rests + poses[:, :3] + (turned @ arms[:, :, None])[:, :, 0]) @ self.eye
-        waits, hidden = np.zeros(len(nearness), dtype=int), [list[int]() for _ in nearness]
-        for below, above, normal in self._pairs:
-            behind, before = (below, above) if turned[below] @ normal @ self.eye > 0 else (above, below)
-            hidden[behind].append(before)
-            waits[before] += 1
-        ready = [(float(nearness[i]), int(i)) for i in np.flatnonzero(waits == 0)]
-        heapify(ready)
-        left, order = set(range(len(nearness))), []
-        while left:
-            part = heappop(ready)[1] if ready else min(left, key=nearness.__getitem__)  # a ring of joints is cut there
-            if part not in left:
-                continue
-            left.discard(part)
-            order.append(part)
-            for before in hidden[part]:
-                waits[before] -= 1
-                if waits[before] == 0:
-                    heappush(ready, (float(nearness[before]), before))
-        return np.array(order)
+        parts, hidden = self._parts, [set[int]() for _ in self._parts.body]
+        corners = self._drawn(frame, parts.body, parts.corners)
+        turned = self._drawn(frame, parts.body, np.eye(3)) - self._drawn(frame, parts.body, np.zeros((1, 3)))
+        areas = np.cross(np.roll(turned, -1, axis=1), np.roll(turned, -2, axis=1))
+        normals, edges = parts.normals @ areas, parts.edges @ turned
+        for behind, before in hiding(corners, normals, edges, self.eye).tolist():
+            hidden[before].add(behind)
+        order, begun, stack = dict[int, None](), set[int](), np.argsort(-corners.mean(axis=1) @ self.eye).tolist()
+        while stack:
+            part = stack.pop()
+            if part in begun:  # what it hides is in the order
+                order[part] = None
+            else:
+                begun.add(part)
+                stack += [part, *hidden[part] - begun]
+        return np.array([*order])
 
     def extent(self) -> tuple[Array, Array]:
         """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (3,) each.
@@ -203,24 +237,13 @@ class Solids:
         return [self.masonry.polyhedra[i] for i in self.shown]
 
     @cached_property
-    def _first(self) -> Integers:
-        """Number of the first convex part of each body that is shown, and of all parts, shape (shown + 1,)."""
-        return np.cumsum([0, *(len(block.parts) for block in self._blocks)])
-
-    @cached_property
-    def _pairs(self) -> list[tuple[int, int, Array]]:
-        """Convex parts below and above each joint between two that are shown, and its normal at rest."""
-        pairs = []
-        body = {block: i for i, block in enumerate(self.shown)}
-        for joint in self.masonry.space_joints:
-            if joint.below in body and joint.above in body:
-                ends = zip((body[joint.below], body[joint.above]), joint.sides, strict=True)
-                lower, upper = ([self._first[i] + k for k in self._blocks[i].sides[side].parts] for i, side in ends)
-                pairs += [(below, above, joint.normal) for below in lower for above in upper]
-        for first, block in zip(self._first, self._blocks, strict=False):
-            joined = block.joined if isinstance(block, Compound) else ()
-            pairs += [(first + joint.below, first + joint.above, joint.normal) for joint in joined]
-        return pairs
+    def _parts(self) -> Parts:
+        """The convex parts of the blocks that are shown."""
+        solids = [self.case.standing.solids[i] for i in self.shown]
+        body = np.repeat(np.arange(len(solids)), [len(solid.parts) for solid in solids])
+        parts = [part for solid in solids for part in solid.parts]
+        normals, edges = evened([unlike_ways(part.normals) for part in parts]), evened([part.edges for part in parts])
+        return Parts(body, evened([part.corners for part in parts]), normals, edges)
 
     def _posed(self, frame: int) -> Array:
         """Pose of each block that is shown at a frame, shape (shown, 7)."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -61,7 +62,7 @@ def below_figure(figure: Figure, ax: Axes, ncols: int = 3, **options: Any) -> No
     legend_below(figure, *ax.get_legend_handles_labels(), ncols, **options)
 
 
-def legend_below(figure: Figure, handles: Sequence[Any], labels: Sequence[str], ncols: int, **options: Any) -> None:
+def legend_below(figure: Figure, handles: Sequence[Artist], labels: Sequence[str], ncols: int, **options: Any) -> None:
     """A legend below a figure, in at most `ncols` columns and no more than its width has room for.
 
     A legend of many lines makes the figure higher.
@@ -98,6 +99,13 @@ def several(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure
     return figure, axes
 
 
+def figure_of(ax: Axes) -> Figure:
+    """The figure that an Axes stands in."""
+    figure = ax.get_figure(root=True)
+    assert isinstance(figure, Figure)
+    return figure
+
+
 def save(figure: Figure | Axes, path: str | Path) -> Path:
     """Write a figure, or that of an Axes, in the format of the path's suffix.
 
@@ -110,7 +118,7 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
         ValueError: for a suffix that Matplotlib does not write.
     """
     require_kind("figure", figure, Figure, Axes)
-    drawn = cast(Figure, figure.get_figure(root=True)) if isinstance(figure, Axes) else figure
+    drawn = figure_of(figure) if isinstance(figure, Axes) else figure
     path = require_path("path", path)
     if path.name not in ("", "..") and not path.suffix:
         path = path.with_suffix(".png")

@@ -20,11 +20,10 @@ from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
-from ..result.motion import SampledMotion
+from ..result.ending import Stopwatch
+from ..result.motion import SampledMotion, intervals, required_spacing, thinned
 from ..result.reading import wall_reading
 from ..result.response import Response
-from ..result.samples import intervals, required_spacing, thinned
-from ..result.stopwatch import Stopwatch
 from ..result.ties import Plastic
 from .equations import Wall
 

@@ -10,12 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ..files import csv_text
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_kind
 from .ending import Outcome
 from .response import Response
 from .rocking import Impact
-from .table import csv_text
 
 FAINT = 0.01
 """Energy before an impact under ground motion that is too small to be paired, over that which overturns the wall
@@ -143,7 +143,7 @@ class Comparison:
         ]
 
     def csv(self) -> str:
-        """The rows as CSV text; its columns have the names of the rows without commas, see `mjrock.result.table`."""
+        """The rows as CSV text; its columns have the names of the rows without commas, see `mjrock.files`."""
         rows = self.rows()
         if not rows:
             return "impact\n"

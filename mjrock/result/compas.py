@@ -7,7 +7,6 @@ the forces at its corners, gaps and status. Blocks are numbered as `Masonry.to_c
 from __future__ import annotations
 
 import json
-from typing import Any
 
 import numpy as np
 
@@ -49,7 +48,7 @@ def results_text(case: MasonryCase, bodies: list[Body], at: float, forces: Force
     return json.dumps(held("compas_dem.problem/Results", content, guid_of("results", at)), indent=1) + "\n"
 
 
-def _transformation(body: Body, name: str) -> dict[str, Any]:
+def _transformation(body: Body, name: str) -> dict[str, object]:
     """From where a body is drawn to where it is."""
     turn, matrix = rotations(body.pose)[0], np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = turn, body.rest + body.pose[0, :3] - turn @ body.rest
@@ -58,7 +57,7 @@ def _transformation(body: Body, name: str) -> dict[str, Any]:
 
 def _edge(
     case: MasonryCase, bodies: list[Body], forces: Forces, sample: int, number: int
-) -> tuple[str, dict[str, Any]]:
+) -> tuple[str, dict[str, object]]:
     """The key and the contact of a joint: the block above it comes first, and forces are those on it."""
     joint = case.masonry.joints[number]
     assert isinstance(joint, SpaceJoint)

@@ -1,8 +1,9 @@
-"""How runs end, and the same in words."""
+"""How runs end, the same in words, and how long a solver took."""
 
 from __future__ import annotations
 
 import enum
+import time
 from collections.abc import Mapping
 
 from ..problem.wall.case import Case
@@ -65,3 +66,18 @@ def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, ev
     if quiet:
         return Outcome.AT_REST, f"The masonry is at rest at the end of the run ({t_end:.4g} s)."
     return Outcome.TIME_ENDED, f"The masonry still moves at the end of the run ({t_end:.4g} s)."
+
+
+class Stopwatch:
+    """Times since it was made [s]: on the clock, and of this thread on the processor."""
+
+    def __init__(self) -> None:
+        self._began = time.perf_counter(), time.thread_time()
+
+    def took(self, wall: str = "wall_time", processor: str = "processor_time") -> dict[str, float]:
+        """The two times under their names in the `stats` of a response."""
+        return {wall: time.perf_counter() - self._began[0], processor: time.thread_time() - self._began[1]}
+
+    def stepping(self) -> dict[str, float]:
+        """The two times as those of the steps alone."""
+        return self.took("stepping_time", "stepping_processor_time")

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,8 @@ from ..files import replacing
 from ..quantities import Array, Integers, require_path
 from .bodies import Body
 
+Json = dict[str, object]
+"""An object in the text of the file."""
 FLOAT, WHOLE = 5126, 5125
 """glTF's numbers of the kinds of 32 bits."""
 COLOURS = {"masonry": (0.77, 0.55, 0.40, 1.0), "fixed": (0.5, 0.5, 0.5, 1.0)}
@@ -26,7 +27,7 @@ class Numbers:
     """The buffer of a file, and the tables of what it holds."""
 
     def __init__(self) -> None:
-        self.data, self.views, self.accessors = bytearray(), list[dict[str, Any]](), list[dict[str, Any]]()
+        self.data, self.views, self.accessors = bytearray(), list[Json](), list[Json]()
 
     def add(self, values: Array | Integers, kind: str, whole: bool = False) -> int:
         """Append values of a kind such as "VEC3", as 32 bits; the number of their accessor."""
@@ -63,8 +64,8 @@ def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
     path = require_path("path", path)
     if path.suffix.lower() != ".glb":
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .glb")
-    numbers, nodes, meshes = Numbers(), list[dict[str, Any]](), list[dict[str, Any]]()
-    samplers, channels = list[dict[str, Any]](), list[dict[str, Any]]()
+    numbers, nodes, meshes = Numbers(), list[Json](), list[Json]()
+    samplers, channels = list[Json](), list[Json]()
     times = numbers.add(t - t[0], "SCALAR")
     for node, body in enumerate(bodies):
         at = numbers.add(upright(body.corners), "VEC3")

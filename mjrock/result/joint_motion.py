@@ -1,23 +1,154 @@
-"""What the joints of masonry do in a run: how far they open and slide, and when their blocks part."""
+"""What masonry does in a run: how far its joints open and slide, which blocks fall, and which weigh past an edge."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import frames_of, inverse_rotation_change, take_frames
+from ..geometry.graph import components, nearest_roots
 from ..geometry.kinematics import Meeting, Places, meeting
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.histories import Support
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.standing import MasonryStanding, travels
-from ..quantities import Array, Flags, Integers
+from ..quantities import Array, Flags, Integers, named
 from ..scene.scene import Scene
-from .fallen import PARTED
+
+
+@dataclass(frozen=True, eq=False)
+class JointMotion:
+    """What is read from the motion of masonry.
+
+    Args:
+        opening: largest gap of each joint [m], shape (joints,). Fixed blocks are where supports have moved them.
+        sliding: largest distance by which each joint has slid from rest, at its most pressed line [m], shape (joints,).
+        fallen: when each block that fell did [s], by its name, the first first. A block has fallen when, as the run
+            ends, it is tilted by more than 45 degrees, as one is that rolls over an edge, or no joint that holds
+            connects it with a fixed block and it lies lower than at rest by more than half its height. A joint holds
+            nothing where one block has slid by more than its width, or where its faces are apart by more than a tenth
+            of its width at the nearest point. In MuJoCo, where faces have no end, a block that has slid off its joints
+            counts as fallen at once.
+        cracked: when each mortared joint that cracked did [s], by its name, the first first. A joint has cracked when
+            all its lines have less than half of their bond.
+    """
+
+    opening: Array
+    sliding: Array
+    fallen: Mapping[str, float]
+    cracked: Mapping[str, float] = field(default_factory=dict)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, JointMotion):
+            return NotImplemented
+        same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in ("opening", "sliding"))
+        return same and dict(self.fallen) == dict(other.fallen) and dict(self.cracked) == dict(other.cracked)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+TOPPLED = 0.25 * np.pi
+"""Tilt of a block beyond which it has fallen [rad]."""
+DROPPED = 0.5
+"""Drop of a block that nothing holds beyond which it has fallen, over its height at rest [-]."""
+PARTED = 0.1
+"""Gap between the faces of a joint where they are nearest, over its width, beyond which the joint holds nothing [-]."""
+
+
+def fallen_blocks(masonry: Masonry, t: Array, parted: Flags, tilt: Array, drop: Array) -> dict[str, float]:
+    """When each block that fell did [s], by its name, the first first.
+
+    A block has fallen when, as the run ends, it is tilted by more than 45 degrees, or no joint that holds connects it
+    with a fixed block and it lies lower than at rest by more than half its height. It fell when this became so for
+    good.
+
+    Args:
+        masonry: the masonry.
+        t: times [s], shape (n,).
+        parted: whether the blocks of each joint have parted then, shape (n, joints).
+        tilt: of each free block from rest [rad], shape (n, bodies).
+        drop: how far the centroid of each free block lies below where its ground holds it at rest [m], (n, bodies).
+    """
+    heights = np.array([np.ptp(masonry.blocks[block].corners[:, -1]) for block in masonry.free])
+    toppled, low = tilt > TOPPLED, drop > DROPPED * heights
+    pairs, down, since = _pairs(masonry), np.ones(len(masonry.free), dtype=bool), np.full(len(masonry.free), np.inf)
+    for n in reversed(range(len(t))):
+        down &= toppled[n] | low[n]
+        if not down.any():
+            break
+        if n == len(t) - 1 or (parted[n] != parted[n + 1]).any():
+            loose = _cut_off(masonry, pairs[~parted[n]])
+        down &= toppled[n] | loose
+        since[down] = t[n]
+    return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
+
+
+def left_joints(masonry: Masonry, t: Array, off: Flags) -> dict[str, float]:
+    """When each block that left its joints did [s]: it slid off, and none connects it with a fixed block any more.
+
+    In MuJoCo faces have no end and blocks have no other contacts. So such a block moves as no masonry does, and
+    it counts as fallen there.
+
+    Args:
+        masonry, t: as of `fallen_blocks`.
+        off: whether one block of each joint has slid off the other then, shape (n, joints).
+    """
+    pairs, off = _pairs(masonry), np.logical_or.accumulate(off, axis=0)
+    since = np.full(len(masonry.free), np.inf)
+    for n in np.flatnonzero(np.diff(off.sum(axis=1), prepend=0)):
+        loose = _cut_off(masonry, pairs[~off[n]])
+        since[loose] = np.minimum(since[loose], t[n])
+    return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
+
+
+def below_everything(masonry: Masonry, supports: tuple[Support, ...], t: Array, drop: Array) -> list[str]:
+    """Names of the blocks that lie below all fixed blocks in the end, as those that fall past the edge of the ground.
+
+    Args:
+        masonry: the masonry.
+        supports: that move fixed blocks.
+        t: times [s], shape (n,).
+        drop: how far the centroid of each free block lies below where it was at rest [m], shape (n, bodies).
+    """
+    moved = {support.block: float(support.at(t[-1:])[0, -1]) for support in supports}
+    fixed = [(masonry.names[i], block.corners[:, -1].min()) for i, block in enumerate(masonry.blocks) if block.fixed]
+    lowest = min(low + moved.get(name, 0.0) for name, low in fixed)
+    heights = masonry.centroids[list(masonry.free), -1] - drop[-1]
+    return [masonry.names[block] for block, height in zip(masonry.free, heights, strict=True) if height < lowest]
+
+
+def in_order(when: Mapping[str, float]) -> dict[str, float]:
+    """The finite times, the first first."""
+    return {name: when[name] for name in sorted(when, key=when.__getitem__) if np.isfinite(when[name])}
+
+
+def sunk_ground(masonry: Masonry, supports: tuple[Support, ...], t: Array) -> Array:
+    """How far the ground of each free block has sunk [m], shape (n, bodies): the fixed block that the fewest joints
+    part it from."""
+    fixed = [i for i, block in enumerate(masonry.blocks) if block.fixed]
+    nearest = nearest_roots(_pairs(masonry), len(masonry.blocks), fixed)
+    sunk = {masonry.names.index(support.block): -support.at(t)[:, -1] for support in supports}
+    still = np.zeros(len(t))
+    return np.stack([sunk.get(ground, still) for ground in nearest[list(masonry.free)].tolist()], axis=1)
+
+
+def _pairs(masonry: Masonry) -> Integers:
+    """The two blocks of each joint, shape (joints, 2)."""
+    return np.array([(joint.below, joint.above) for joint in masonry.joints])
+
+
+def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
+    """Which free blocks no joint connects with a fixed block, shape (bodies,), from the pairs that a joint holds."""
+    labels = components(pairs, len(masonry.blocks))
+    standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
+    return ~np.isin(labels[list(masonry.free)], list(standing))
+
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
@@ -204,3 +335,75 @@ def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames
                 along = _along(places, i, meets, frames)
                 for axis in range(len(along)):
                     slid[n, j, axis] = points.sign[i] * (along[axis] - points.at_rest[i, axis])
+
+
+LOOKS = 200
+"""Most times at which a run is looked at."""
+WORTH_SAYING = 1e-3
+"""Distance past an edge that is said, over the size of the block [-]."""
+UPRIGHT = 1e-9
+"""Vertical part of the normal of a joint up to which it carries no weight [-]."""
+
+
+def past_support(
+    standing: MasonryStanding, motion: JointRecord, slips: Callable[[Integers], Array]
+) -> dict[str, float]:
+    """How far the weight of each block has passed the edge of the faces that it stands on [m], at most, by its name.
+
+    Blocks that stand on horizontal joints alone are looked at. What overhangs as it is drawn counts from there.
+
+    Args:
+        standing: the masonry at rest.
+        motion: what the joints did.
+        slips: from the numbers of some steps, how far the block above each joint has slid on the one below [m], shape
+            (steps, joints, d).
+    """
+    masonry, centroids, found = standing.masonry, standing.centroids, {}
+    faces = [below.corners[:, :-1] for below, _ in standing.faces]
+    looks = np.unique(np.linspace(0, len(motion.off) - 1, LOOKS).astype(int))
+    for block, beds in _beds(masonry).items():
+        weight = centroids[block, :-1]
+        drawn = _beyond(weight, np.concatenate([faces[j] for j in beds]))
+        least = max(drawn, 0.0) + WORTH_SAYING * masonry.blocks[block].size
+        if drawn + motion.sliding[beds].max() < least:
+            continue
+        slid = slips(looks)[:, beds, :-1]
+        far = least
+        for some, off in zip(slid, motion.off[looks][:, beds], strict=True):
+            on = [faces[j] - slip for j, slip, gone in zip(beds, some, off, strict=True) if not gone]
+            far = max(far, _beyond(weight, np.concatenate(on))) if on else far
+        if far > least:
+            found[masonry.names[block]] = far - max(drawn, 0.0)
+    return found
+
+
+def told_of_overhang(past: Mapping[str, float]) -> str:
+    """Whose weight has passed its support, and how far, as a sentence after a message; nothing where none has."""
+    far = [f"{name} by {past[name]:.3g} m" for name in sorted(past, key=past.__getitem__, reverse=True)]
+    return (
+        f" The weight passed the edge of what it stands on: {named(far)}. Faces have no end in MuJoCo, where such a "
+        "block does not tip; solve_explicit follows it."
+        if far
+        else ""
+    )
+
+
+def _beds(masonry: Masonry) -> dict[int, list[int]]:
+    """Numbers of the horizontal joints that each block stands on, of blocks that no inclined one carries too."""
+    beds: dict[int, list[int]] = {}
+    inclined = set()
+    for j, joint in enumerate(masonry.joints):
+        up = float(joint.normal[-1])
+        if joint.is_bed and up > 0:
+            beds.setdefault(joint.above, []).append(j)
+        elif not joint.is_bed and abs(up) > UPRIGHT:
+            inclined |= {joint.below, joint.above}
+    return {block: on for block, on in beds.items() if block not in inclined}
+
+
+def _beyond(point: Array, corners: Array) -> float:
+    """How far a point lies outside of the hull of some corners in plan [m], negative inside."""
+    if len(point) == 1:
+        return float(max(corners.min() - point[0], point[0] - corners.max()))
+    sides = scipy.spatial.ConvexHull(corners).equations
+    return float((sides[:, :2] @ point + sides[:, 2]).max())

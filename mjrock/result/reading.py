@@ -15,13 +15,21 @@ from ..problem.wall.case import Case
 from ..quantities import Array, named
 from ..scene.scene import Scene, is_quiet
 from .ending import Outcome, ending, masonry_ending
-from .fallen import below_everything, fallen_blocks, in_order, left_joints, sunk_ground
-from .history import rocking_history
-from .joint_motion import JointRecord, joint_motion, slips
-from .joints import JointMotion
+from .joint_motion import (
+    JointMotion,
+    JointRecord,
+    below_everything,
+    fallen_blocks,
+    in_order,
+    joint_motion,
+    left_joints,
+    past_support,
+    slips,
+    sunk_ground,
+    told_of_overhang,
+)
 from .motion import SampledMotion
-from .overhang import past_support, told_of_overhang
-from .rocking import Rocking
+from .rocking import Rocking, rocking_history
 
 STILL = 0.2
 """Time without motion after which blocks that have left their joints lie still [s]."""

@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ..files import write_text
+from ..files import csv_text, write_text
 from ..geometry.poses import angle_of, tilt_of
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
@@ -22,12 +22,10 @@ from .compas import results_text
 from .ending import Outcome
 from .forces import Forces
 from .gltf import write_gltf
-from .joints import JointMotion
+from .joint_motion import JointMotion
 from .ledger import Ledger
-from .motion import Motion
+from .motion import Motion, sample_at
 from .rocking import Impact, Rocking, farthest, restitution_of
-from .samples import sample_at
-from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
 from .vtk import texts_of_bodies, texts_of_joints, write_series
 

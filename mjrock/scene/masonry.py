@@ -214,6 +214,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             masonry.retardation,
             masonry.joint_friction,
             masonry.residual_friction,
+            masonry.table.points,
         ),
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
     )

@@ -280,6 +280,7 @@ class JointSprings(NamedTuple):
         retardation: dashpot over spring, c/k [s].
         friction: coefficient [-].
         residual: the same of a joint that has lost its bond [-].
+        points: contact lines of a joint of the plane, and of each side of a joint in space.
     """
 
     k_n: Array
@@ -287,6 +288,7 @@ class JointSprings(NamedTuple):
     retardation: Array
     friction: Array
     residual: Array
+    points: Integers
 
 
 @dataclass(frozen=True)

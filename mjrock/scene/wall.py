@@ -150,7 +150,8 @@ def _springs(interfaces: Sequence[Interface]) -> JointSprings:
     given = [none if one.friction is None else one.friction for one, none in zip(interfaces, without, strict=False)]
     friction = np.array(given)
     k_n, retardation = np.array([(one.k_n, one.retardation) for one in interfaces]).T
-    return JointSprings(k_n, np.full(len(interfaces), np.inf), retardation, friction, friction)
+    points = np.array([each.points for each in interfaces])
+    return JointSprings(k_n, np.full(len(interfaces), np.inf), retardation, friction, friction, points)
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ..quantities import require_flag, require_kind, require_path, require_size, require_text, shown
-from ..result.table import aligned, csv_text
+from ..files import aligned, csv_text
+from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
 from .campaign.campaign import completed
 from .campaign.grid import label_of, labelled
 from .campaign.task import Row, Task
@@ -40,7 +40,7 @@ class Sensitivity:
     settings: tuple[str, ...]
     base: Mapping[str, object]
     rows: tuple[Row, ...]
-    values: np.ndarray[Any, np.dtype[np.float64]]
+    values: Array
     changed: tuple[tuple[str, ...], ...]
 
     @property
@@ -169,7 +169,7 @@ def sensitivity(
         RuntimeError: if a run has failed.
     """
     points, changed = _points(build, base, vary, require_flag("together", together))
-    tasks: list[Any] = []
+    tasks: list[Task] = []
     for point in points:
         labels = {name: label_of(point[name]) for name in vary}
         try:
@@ -192,7 +192,7 @@ def sensitivity(
 
 def _points(
     build: object, base: object, vary: object, together: bool
-) -> tuple[list[dict[str, Any]], tuple[tuple[str, ...], ...]]:
+) -> tuple[list[dict[str, object]], tuple[tuple[str, ...], ...]]:
     """The settings of each run, those of the base first, and the names of those that differ from the base."""
     if not callable(build):
         raise TypeError(f"build = {shown(build)} is not a function of settings")
@@ -204,12 +204,12 @@ def _points(
     if not vary:
         raise ValueError("vary is empty; at least one setting is needed")
     base = defaults_of(build, vary) | dict(base)
-    choices: dict[str, list[Any]] = {}
+    choices: dict[str, list[object]] = {}
     for name, values in vary.items():
         if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
             raise ValueError(f"vary[{name!r}] = {shown(values)} is not a row of at least one value")
         given = [base[name], *values] if name in base else list(values)
-        unlike: dict[object, Any] = {}
+        unlike: dict[object, object] = {}
         for value in given:
             unlike.setdefault(label_of(value), value)
         choices[name] = list(unlike.values())
@@ -230,7 +230,7 @@ def _points(
     return points, tuple(changed)
 
 
-def defaults_of(build: Callable[..., Any], names: Iterable[str]) -> dict[str, Any]:
+def defaults_of(build: Callable[..., Any], names: Iterable[str]) -> dict[str, object]:
     """The defaults of these arguments of a function, of those that have one."""
     try:
         arguments = inspect.signature(build).parameters

@@ -17,11 +17,10 @@ from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still
 from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
-from ..result.ending import Outcome, describe
+from ..result.ending import Outcome, Stopwatch, describe
+from ..result.motion import intervals, required_spacing
 from ..result.response import Response
 from ..result.rocking import Impact, Rocking
-from ..result.samples import intervals, required_spacing
-from ..result.stopwatch import Stopwatch
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .arcs import rock
 from .motion import RigidMotion, RockingMotion

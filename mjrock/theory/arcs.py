@@ -17,7 +17,7 @@ from ..compiled import compiled, inlined
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import pulled, yielded
 from ..quantities import ON_ITS_FACE, Array, Integers
-from ..result.samples import interpolated
+from ..result.motion import interpolated
 from .law import BROKEN, SLACK, TAUT, YIELDING, Push, RockingLaw, Toe, WallTies, acceleration, nystroem, pull_of, pushed
 from .motion import RockingMotion
 
@@ -130,7 +130,7 @@ class ArcRoom(NamedTuple):
     Args:
         knots: time [s], rotation [rad], velocity [rad/s] and acceleration [rad/s2] at both ends of each step, shape
             (n, 4).
-        impacts: the numbers of each impact, as in `mjrock.result.history.Impact`, shape (n, 5).
+        impacts: the numbers of each impact, as in `mjrock.result.rocking.Impact`, shape (n, 5).
         peaks: rotation maxima |theta| [rad], shape (n,).
         counts: how many of each there are, shape (3,).
     """

@@ -15,7 +15,7 @@ class RockingMotion:
     """A motion of a rigid wall from impact to impact.
 
     Args:
-        impacts: the numbers of each impact, as in `mjrock.result.history.Impact`, shape (m, 5).
+        impacts: the numbers of each impact, as in `mjrock.result.rocking.Impact`, shape (m, 5).
         peaks: rotation maxima |theta| [rad] after the release.
         t, theta: time and rotation at the end [s, rad].
         fell: whether the wall lies on its face.

@@ -18,7 +18,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.study.matching.match import combinations
-from scripts.shared import cli
+from scripts.shared import accuracy, cli
 from scripts.shared.paper import FIGURE_3, K_N
 
 BETAS = {"beta = 0": 0.0, "beta = 1/12": 1 / 12, "beta = 1/4 (default)": 0.25, "beta = 1": 1.0}
@@ -86,7 +86,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     steps = [4e-3, 2e-3, 1e-3] if args.quick else [6e-3, 4e-3, 3e-3, 2e-3, 1.5e-3, 1e-3]
     found = {name: errors(steps, beta) for name, beta in tqdm(BETAS.items(), disable=None, leave=False)}
-    figure = plotting.single(lambda ax: plotting.convergence(ax, steps, found, order=2))
+    figure = plotting.single(lambda ax: accuracy.convergence(ax, steps, found, order=2))
     figure.axes[0].set_ylabel(r"largest error of $\theta$ / release [-]")
     plotting.save(figure, out / "convergence.png")
     rows = [[name, *(f"{e:.2e}" for e in values), f"{order(steps, values):.2f}"] for name, values in found.items()]

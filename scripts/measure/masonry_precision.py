@@ -32,7 +32,7 @@ from mjrock.engine.sliding import Sliding
 from mjrock.geometry.frames import frames_of
 from mjrock.quantities import Array
 from mjrock.scene.masonry import masonry_course
-from scripts.shared import cli
+from scripts.shared import accuracy, cli
 
 WIDTH, HEIGHT = 0.6, 4.2
 """Size of a column [m]."""
@@ -272,7 +272,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     header = ["blocks", "method", "setting [- or s]", "steps [-]", "run [s]", "stepping [s]", "peak [-]", "motion [-]"]
     rows = [(p.blocks, p.method, p.setting, p.steps, p.seconds, p.stepping, p.peak, p.path) for p in points]
     drawn = [(f"{p.blocks} blocks", p.method, p.seconds, p.steps, max(p.peak, scatters[p.blocks][0])) for p in points]
-    figure = plotting.work_precision(drawn, "largest error of a peak rotation [-]")
+    figure = accuracy.work_precision(drawn, "largest error of a peak rotation [-]")
     plotting.save(figure, out / "masonry_precision.png")
     text = report(points, scatters, study) + "\n\n" + arch_at_rest(study.arch, study.repeats)
     cli.report(out / "masonry_precision", text, header, rows)

@@ -22,7 +22,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
-from scripts.shared import cli
+from scripts.shared import accuracy, cli
 
 BASES = (5e8, 5e9, 1.5e10)
 """Interface stiffness [N/m3]."""
@@ -212,7 +212,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             lines.append([sides, by, *numbers, f"{100 * np.mean(np.isinf(changes)):.0f}"])
     header, table = table_of(rows)
     together = pooled(rows)
-    picture = plotting.work_precision(drawn_points(together), "peak error of nine of ten runs [-]")
+    picture = accuracy.work_precision(drawn_points(together), "peak error of nine of ten runs [-]")
     for ax in picture.axes[: len(SIDES)]:
         ax.set_xlabel("processor time of a run [s]")
     plotting.save(picture, out / "records_accuracy.png")

@@ -32,13 +32,12 @@ from mjrock.engine.model import Engine
 from mjrock.engine.points import inverse_weights
 from mjrock.engine.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.stepping import fixed_steps
-from mjrock.result.history import rocking_history
 from mjrock.result.ledger import StepError
 from mjrock.result.response import Response
-from mjrock.result.rocking import Rocking, peak_energies, restitution_of
+from mjrock.result.rocking import Rocking, peak_energies, restitution_of, rocking_history
 from mjrock.scene.wall import wall_course
 from mjrock.theory.motion import RigidMotion
-from scripts.shared import cli
+from scripts.shared import accuracy, cli
 from scripts.shared.paper import FIGURE_3, K_N
 
 Solve = Callable[[mr.Case, mr.Contacts, bool], tuple[Response, float]]
@@ -419,7 +418,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         for p in points
     ]
     plotting.save(
-        plotting.work_precision([(p.case, p.method, p.seconds, p.steps, p.e_error) for p in points if p.e_error < 1]),
+        accuracy.work_precision([(p.case, p.method, p.seconds, p.steps, p.e_error) for p in points if p.e_error < 1]),
         out / "work_precision.png",
     )
     lines_out = [

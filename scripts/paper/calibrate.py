@@ -21,7 +21,7 @@ from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
 from mjrock.study.matching.match import K_N_RANGE, REFERENCE, Combination, Match
 from mjrock.study.matching.regression import Regression, coefficients, r_squared, regress
-from scripts.shared import cli
+from scripts.shared import cli, law_pictures
 
 LAYOUTS = {"CALIBRATED": 2, "CALIBRATED_BED": 16}
 STIFFEST = 1e11
@@ -124,12 +124,12 @@ def curves(found: Calibration, part: str) -> plotting.Drawing:
         label = f"h/b {first.combination.slenderness:.1f}, softness {float(first.groups.softness):.1g}"
         xi = np.array([value for _, value in matches])
         families.append((label, (np.exp(-losses), xi), (np.exp(-line), form.xi(first.groups, line))))
-    return lambda ax: plotting.damping_curves(ax, families)
+    return lambda ax: law_pictures.damping_curves(ax, families)
 
 
 def parity(fit: Regression) -> plotting.Drawing:
     """Predicted against matched."""
-    return lambda ax: plotting.parity(ax, fit.xi, fit.predicted, fit.groups.softness)
+    return lambda ax: law_pictures.parity(ax, fit.xi, fit.predicted, fit.groups.softness)
 
 
 def save_residuals(title: str, fit: Regression, picture: Path) -> None:
@@ -137,7 +137,7 @@ def save_residuals(title: str, fit: Regression, picture: Path) -> None:
     values = {name: np.array([getattr(one, name) for one in fit.combinations]) for name in NAMES}
     variables = {label: (values[name], "log") for name, label in NAMES.items()}
     variables |= {"softness": (fit.groups.softness, "log"), "|e| asked for": (np.exp(-fit.loss), "linear")}
-    plotting.save(plotting.residuals(title, fit.predicted / fit.xi, variables), picture)
+    plotting.save(law_pictures.residuals(title, fit.predicted / fit.xi, variables), picture)
 
 
 def sensitivities(found: Calibration, store: Path, workers: int | None, picture: Path) -> str:
@@ -165,7 +165,7 @@ def sensitivities(found: Calibration, store: Path, workers: int | None, picture:
                 rows.append([start, part, name, spread, f"{len(known)} of {len(xi)}"])
                 if known.size:
                     lines[name] = np.linspace(0, 1, len(xi)), xi / np.exp(np.mean(np.log(known)))
-            panels.append((f"{part}, {start}", functools.partial(plotting.sensitivity, curves=lines)))
+            panels.append((f"{part}, {start}", functools.partial(law_pictures.sensitivity, curves=lines)))
     plotting.save(plotting.panels(panels), picture)
     return cli.table(["around", "xi of", "parameter", "largest over smallest xi", "reached"], rows)
 

@@ -24,7 +24,7 @@ from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching.calibration import Plan
 from mjrock.study.matching.match import Combination, Match, combinations
 from mjrock.study.matching.regression import regress, well_matched
-from scripts.shared import cli
+from scripts.shared import cli, law_pictures
 from scripts.shared.paper import K_N, TABLE_2
 
 SEED = 1001
@@ -105,7 +105,7 @@ def validation(
 
 
 def _obtained(samples: Mapping[str, tuple[Any, Any]]) -> plotting.Drawing:
-    return lambda ax: plotting.obtained(ax, samples)
+    return lambda ax: law_pictures.obtained(ax, samples)
 
 
 def errors(title: str, law: DampingLaw, ones: Sequence[Combination], wanted: Any, found: Any) -> list[list[object]]:

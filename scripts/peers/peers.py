@@ -26,11 +26,10 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
-from mjrock.result.history import rocking_history
-from mjrock.result.rocking import peak_energies, restitution_of
+from mjrock.result.rocking import peak_energies, restitution_of, rocking_history
 from scripts.peers.codes.question import Question
 from scripts.peers.codes.worker import Task
-from scripts.shared import cli
+from scripts.shared import accuracy, cli
 from scripts.shared.paper import FIGURE_3, K_N
 
 ROOT = Path(__file__).parents[2]
@@ -305,7 +304,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     plain = [[str(cell).replace(",", " and") for cell in row] for row in rows]  # NumPy reads no quoted commas
     drawn = [(p.case, p.setup.label, p.seconds, p.law, p.theory) for p in found if math.isfinite(p.theory)]
-    plotting.save(plotting.peers(drawn), out / "peers.png")
+    plotting.save(accuracy.peers(drawn), out / "peers.png")
     lines = [summary(problem.label, found) for problem in problems]
     lines.append(
         "\n".join([f"mjrock {mr.__version__}, accuracy 1e-3 is its default", *versions(absent), *absent.values()])

@@ -39,7 +39,7 @@ def write_text(path: Path, text: str) -> Path:
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Rows as CSV."""
-    from mjrock.result.table import csv_text as text
+    from mjrock.files import csv_text as text
 
     return text(header, rows)
 
@@ -53,7 +53,7 @@ def folder(path: Path) -> Path:
 
 def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """Rows as aligned text for a terminal."""
-    from mjrock.result.table import aligned
+    from mjrock.files import aligned
 
     head, *body = aligned([[str(cell) for cell in row] for row in (header, *rows)])
     return "\n".join([head, "-" * len(head), *body])

@@ -21,6 +21,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
+from scripts.shared.pairs import pairs
 
 WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]
 """Slenderness h/b [-] and half diagonal R [m]."""
@@ -63,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             if not side_stop:  # both polarities are the same to a wall without a side stop
                 own = [row for row in own if row["polarity"] == 0]
             ends, peaks = suite.in_pairs(own)
-            plotting.pairs(ax, peaks, ("rocking theory", "MuJoCo"), (suite.STILL / 3, 1.5))
+            pairs(ax, peaks, ("rocking theory", "MuJoCo"), (suite.STILL / 3, 1.5))
             ax.set_title(f"{title}, $k_n$ = {k_n:.0e} N/m³".replace("e+", "e"), fontsize=10)
             table.append([title, f"{k_n:.0e}", *compared(ends, peaks, [row["motion"] for row in own[::2]])])
     plotting.save(figure, out / "agreement.png")

@@ -13,16 +13,23 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from numpy.typing import ArrayLike
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import legend_below
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 from scripts.shared.paper import FIGURE_3
 
 SIDES = {"two-sided": (False, -1), "one-sided, outward first": (True, -1), "one-sided, inward first": (True, 1)}
 SIZES = {"analytical": 60, "MuJoCo": 26}
+MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
+"""How a wall takes a pulse, and colours that a black-and-white print still tells apart."""
 
 
 def build(solver: str, sides: str, frequency: float, amplitude: float) -> mr.Analysis:
@@ -34,10 +41,24 @@ def build(solver: str, sides: str, frequency: float, amplitude: float) -> mr.Ana
 
 
 def mode(row: dict[str, Any]) -> int:
-    """Which of `plotting.MODES`."""
+    """Which of `MODES`."""
     if row["outcome"] != mr.Outcome.OVERTURNED.value:
         return 0
     return 1 if row["impacts"] else 2
+
+
+def overturning_map(ax: Axes, frequency: ArrayLike, amplitude: ArrayLike, mode: ArrayLike) -> Axes:
+    """Overturning spectrum of a pulse: `mode` (an index into MODES) over frequency and amplitude, shape (n_a, n_f)."""
+    colours = ListedColormap(list(MODES.values()))
+    ax.pcolormesh(frequency, amplitude, mode, cmap=colours, vmin=-0.5, vmax=len(MODES) - 0.5, rasterized=True)
+    ax.set(xlabel=r"frequency $\omega_p/p$ [-]", ylabel=r"amplitude $a_p/(g\,\tan\alpha)$ [-]")
+    return ax
+
+
+def mode_legend(figure: Figure) -> None:
+    """What the colours of `overturning_map` stand for, below the figure."""
+    handles = [Patch(facecolor=colour, edgecolor="0.4", linewidth=0.5, label=name) for name, colour in MODES.items()]
+    legend_below(figure, handles, list(MODES), len(handles), fontsize=9)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -55,7 +76,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             [mode(row) for row in completed(grid, out / "overturning_spectrum.sqlite", workers=args.workers)]
         )
         for ax, sides, modes in zip(line, SIDES, found.reshape(3, n, n), strict=True):
-            plotting.overturning_map(ax, frequency, amplitude, modes.T)
+            overturning_map(ax, frequency, amplitude, modes.T)
             ax.set_title(f"{plotting.STYLES[solver]['label']}, {sides}", fontsize=9)
             ax.label_outer()
             falls = modes > 0
@@ -64,14 +85,14 @@ def main(argv: Sequence[str] | None = None) -> None:
             shares = [(modes == i).mean() for i in range(3)]
             table.append([plotting.STYLES[solver]["label"], sides, n * n, *(f"{s:.3f}" for s in (*shares, island))])
             rows += [
-                (solver, sides, f"{f:.4f}", f"{a:.4f}", list(plotting.MODES)[m])
+                (solver, sides, f"{f:.4f}", f"{a:.4f}", list(MODES)[m])
                 for f, column in zip(frequency, modes, strict=True)
                 for a, m in zip(amplitude, column, strict=True)
             ]
-    plotting.mode_legend(figure)
+    mode_legend(figure)
     plotting.save(figure, out / "overturning_spectrum.png")
     header = ["solver", "sides", "omega_p/p [-]", "a_p/(g tan alpha) [-]", "mode"]
-    text = cli.table(["solver", "wall", "cases", *plotting.MODES, "safe islands"], table)
+    text = cli.table(["solver", "wall", "cases", *MODES, "safe islands"], table)
     cli.report(out / "overturning_spectrum", text, header, rows)
 
 

@@ -15,6 +15,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
+from scripts.shared.pairs import pairs
 from scripts.shared.paper import FIGURE_3, K_N
 
 
@@ -35,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     for ax, solver in zip(figure.subplots(1, 2), suite.SOLVERS, strict=True):
         own = [row for row in found if row["solver"] == solver]
         ends, peaks = suite.in_pairs(own)
-        plotting.pairs(ax, peaks, ("as recorded", "reversed"), (suite.STILL / 3, 1.5))
+        pairs(ax, peaks, ("as recorded", "reversed"), (suite.STILL / 3, 1.5))
         ax.set_title(plotting.STYLES[solver]["label"], fontsize=10)
         rocking = (ends == "rocks").all(axis=1)
         apart = np.exp(np.abs(np.log(peaks[rocking, 0] / peaks[rocking, 1])))

@@ -68,7 +68,7 @@ class Led:
         advance(self.system, self.books, self.samples, clock)
 
     def forces(self):
-        lines, bonds = self.system.lines, self.system.bonds
+        lines, bonds = self.system.lines, self.system.laws[0].rows
         push, drag = lines["push"].copy(), lines["dragged"].copy()
         if len(bonds):
             push, drag = push + bonds["push"], drag + bonds["dragged"]

@@ -3,11 +3,13 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
 from mjrock.distinct.turning import take_inverse_inertia, take_turn
 from mjrock.geometry.frames import PLANE, SPACE
+from mjrock.problem.wall.standing import Solid, in_space
 from mjrock.scene.ground import Ground
 
 TURNS = Rotation.from_rotvec([[0.7, -0.4, 0.3], [-0.2, 0.5, 0.6]])
@@ -53,12 +55,30 @@ def system(d, lines=1, edges=0, still=False):
         lines=rows(kind.line, lines, face=-1, support=-1, k_s=np.inf, margin=np.inf, sense=1.0),
         edges=rows(kind.edge, edges),
         ways=rows(kind.way, (d - 1) * lines),
-        bonds=rows(kind.bond, lines),
+        laws=(Bonds(Bonds.table(d, lines)),),
         links=(),
         guided=np.zeros(0, dtype=np.int64),
         ground=Ground.of(None),
         supports=supports,
     )
+
+
+def stood(blocks):
+    """Blocks as solids of a scene, free ones as bodies in their order."""
+    free = np.cumsum([not block.fixed for block in blocks]) - 1
+    return [
+        Solid(
+            str(i),
+            i,
+            -1 if block.fixed else int(free[i]),
+            in_space(np.array(block.centroid)),
+            block.solids,
+            block.inside,
+            block.sides,
+            block.size,
+        )
+        for i, block in enumerate(blocks)
+    ]
 
 
 def books(system):
@@ -67,7 +87,7 @@ def books(system):
 
 def columns(places):
     """Places as columns of numbers, shape (n, 11): the two blocks, where, the normal, gap, share and area."""
-    return np.column_stack([places[name] for name in places.dtype.names])
+    return np.column_stack([places[name] for name in places.dtype.names if name != "sides"])
 
 
 def matrix(d, i):

@@ -9,7 +9,7 @@ from by_hand import system
 
 from mjrock.distinct import loop
 from mjrock.distinct.contacts import touches
-from mjrock.distinct.impacts import Impacts
+from mjrock.distinct.limit import Impacts
 from mjrock.distinct.loop import Clock
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.search import handover

@@ -288,6 +288,6 @@ def test_each_line_of_a_bond_has_its_part_of_the_area(in_space):
         masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 1.0)] * 2, **bond)
     system = setup_of_masonry(mr.MasonryCase(masonry, 0.1), None).system
     for group in range(len(masonry.joints)):
-        bonds = system.bonds[system.lines["group"] == group]
+        bonds = system.laws[0].rows[system.lines["group"] == group]
         np.testing.assert_allclose(bonds["share"], bonds["k"] / bonds["k"].sum(), rtol=1e-12)
         assert bonds["share"].sum() == pytest.approx(1.0)

@@ -48,7 +48,7 @@ def test_a_joint_that_is_pulled_apart_holds_its_strength_and_takes_its_fracture_
     assert push[-1] == pytest.approx(0.0, abs=2e-4 * MORTAR.tension)
     assert np.abs(drag).max() < 1e-9 * MORTAR.tension
     assert one.system.lines["k"].sum() == pytest.approx(K_N * AREA)
-    assert not one.system.bonds["k"].any()
+    assert not one.system.laws[0].rows["k"].any()
 
 
 def test_a_brittle_joint_breaks_at_once_and_takes_what_its_spring_held():
@@ -204,7 +204,7 @@ def test_a_joint_that_hardens_keeps_its_bond_up_to_the_peak_and_is_unloaded_on_t
     push, _ = one.along(path_of(one, 0.0, -closing))
     gap = closing[-1] - push[-1] / K_N
     assert 0 < gap < HARDENING.hardening
-    assert (one.system.bonds["left"] == 1).all()
+    assert (one.system.laws[0].rows["integrity"] == 1).all()
     way = np.linspace(closing[-1], gap, 11)
     unloaded, _ = one.along(path_of(one, 0.0, -way))
     assert unloaded == pytest.approx(K_N * (way - gap), abs=1e-6 * HARDENING.crushing)
@@ -276,7 +276,7 @@ def test_random_paths_put_no_energy_in_and_damage_never_heals(place, count, seed
         force = np.append(-drag[0], -push[0])
         work.append(0.5 * (force + last) @ (place_ - before))
         elastic.append(one.elastic / AREA)
-        left.append(one.system.bonds["left"].copy())
+        left.append(one.system.laws[0].rows["integrity"].copy())
         last, before = force, place_
     absorbed, scale = np.cumsum(work), np.abs(work).sum()
     taken = absorbed - elastic

@@ -9,7 +9,8 @@ from by_hand import about, books, matrix, system
 from test_contact_lines import ALONG, BOTH, FACES, NORMAL, met, put_line
 
 import mjrock as mr
-from mjrock.distinct.contacts import bonds, contact, friction
+from mjrock.distinct.contacts import contact, friction
+from mjrock.distinct.kinds import mortar as bonds
 from mjrock.distinct.rows import rows
 from mjrock.distinct.setup import setup_of
 from mjrock.problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
@@ -27,9 +28,17 @@ def bonded_line(d, face, at, **law):
     """A system whose line has an intact bond, at a gap, and its normal."""
     whole = system(d)
     normal = put_line(whole, face, at, k=0.0, c=0.0, friction=0.0, group=1)
-    bond = whole.bonds[0]
+    bond = whole.laws[0].rows[0]
     given = {"k": K, "c": C, "k_s": K_SHEAR, "c_s": C_SHEAR, "tension": TENSION, "cohesion": COHESION}
-    given |= {"torn": TORN, "worn": WORN, "left": 1.0, "secant": K, "bears": math.inf, "residual": 0.5, "falls": 0.25}
+    given |= {
+        "opening_rate": TORN,
+        "slip_rate": WORN,
+        "integrity": 1.0,
+        "secant": K,
+        "strength": math.inf,
+        "residual": 0.5,
+        "friction_drop": 0.25,
+    }
     for name, value in (given | {"margin": math.inf} | law).items():
         bond[name] = value
     return whole, normal
@@ -45,7 +54,7 @@ def copy_of(bond):
 def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap, last):
     before = 30.0 if d == 2 else 30.0 * ALONG[3]
     whole, normal = bonded_line(d, face, gap, gap=last, push=80.0, pressed=7.0, dragged=before, grip=before / 1500.0)
-    line, bond, bodies = whole.lines[0], whole.bonds[0], whole.bodies
+    line, bond, bodies = whole.lines[0], whole.laws[0].rows[0], whole.bodies
     meet = contact.where_friction_rubs(met(whole))
     velocity = contact.relative(bodies, line, whole.supports, meet)
     rate, slip = normal @ velocity, friction.along_face(meet.normal, velocity)
@@ -56,7 +65,7 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     dry = max(-rest * gap - C * rest / K * rate, 0.0) if gap < 0 else 0.0
     drag, taken = bonds.slide(other.bodies, line, twin, meet.normal, slip, pulled + dry, H)
     kept = books(whole)
-    bonds.hold_bonds(whole, kept, H)
+    whole.laws[0].act(whole, kept, 0.0, H)
     assert bond.secant == pytest.approx(twin.secant, rel=1e-9)
     assert bool(bond.secant < K) is (gap == 0.003)
     assert (line.k, line.c) == pytest.approx((rest, C * rest / K), rel=1e-9)
@@ -87,10 +96,10 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
 @pytest.mark.parametrize(("last", "gap"), [(5e-4, -1e-3), (-5e-4, -1e-3)])
 def test_a_worn_bond_tears_as_it_closes(last, gap):
     """What its spring holds less is taken where the gap was open; a closed one held nothing that it no longer does."""
-    whole, _ = bonded_line(2, -1, gap, gap=last, left=0.2, drawn=5e-4)
+    whole, _ = bonded_line(2, -1, gap, gap=last, integrity=0.2, largest_gap=5e-4)
     kept = books(whole)
-    bonds.hold_bonds(whole, kept, H)
-    lost = K - whole.bonds["secant"][0]
+    whole.laws[0].act(whole, kept, 0.0, H)
+    lost = K - whole.laws[0].rows["secant"][0]
     assert lost > 0.5 * K
     assert taken_by(kept)[0] == pytest.approx(0.5 * last * gap * lost if last > 0 else 0.0, rel=1e-9)
 
@@ -101,7 +110,7 @@ def test_works_of_bonds_add_up():
     for kept, count in ((once, 1), (twice, 2)):
         for _ in range(count):
             whole, _ = bonded_line(2, "support", 0.003, gap=0.0005, push=80.0, grip=0.01)
-            bonds.hold_bonds(whole, kept, H)
+            whole.laws[0].act(whole, kept, 0.0, H)
     assert abs(once.totals[0].friction) > 0
     for name in ("friction", "ground"):
         assert twice.totals[0][name] == pytest.approx(2 * once.totals[0][name])
@@ -113,13 +122,15 @@ def test_works_of_bonds_add_up():
 @BOTH
 def test_a_bond_that_has_torn_keeps_its_secant_and_presses_with_its_line(d):
     """What the secant lacks of the stiffness of the line presses only, which the friction of both knows."""
-    whole, _ = bonded_line(d, 0, -0.003, left=0.2, drawn=0.004, crack=0.0039, secant=3e5, gap=-0.002, c_s=0.0)
-    line, bond = whole.lines[0], whole.bonds[0]
+    whole, _ = bonded_line(
+        d, 0, -0.003, integrity=0.2, largest_gap=0.004, crack=0.0039, secant=3e5, gap=-0.002, c_s=0.0
+    )
+    line, bond = whole.lines[0], whole.laws[0].rows[0]
     line.k, line.c = K - 3e5, C * (1 - 0.3)
     meet = contact.where_friction_rubs(met(whole))
     rate = np.dot(meet.normal, contact.relative(whole.bodies, line, whole.supports, meet))
     bond.grip[:] = 1.0 if d == 2 else matrix(3, 0).T @ (matrix(3, 0) @ ALONG[3])
-    bonds.hold_bonds(whole, books(whole), H)
+    whole.laws[0].act(whole, books(whole), 0.0, H)
     assert bond.secant == 3e5
     assert bond.push == pytest.approx(3e5 * 0.003 - 0.3 * C * rate, rel=1e-9)
     whole_push = K * 0.003 - C * rate
@@ -131,8 +142,8 @@ def test_a_bond_that_has_torn_keeps_its_secant_and_presses_with_its_line(d):
 @pytest.mark.parametrize("held", [1.0, 0.9])
 def test_slip_takes_no_more_than_there_is_to_take(d, face, held):
     """Where crushing limits the force to a ninth of the cohesion, friction pays for nothing."""
-    whole, _ = bonded_line(d, face, 0.0, bears=COHESION / 3, residual=0.0, falls=0.0, c=0.0, c_s=0.0)
-    line, bond, limit = whole.lines[0], whole.bonds[0], COHESION / 9
+    whole, _ = bonded_line(d, face, 0.0, strength=COHESION / 3, residual=0.0, friction_drop=0.0, c=0.0, c_s=0.0)
+    line, bond, limit = whole.lines[0], whole.laws[0].rows[0], COHESION / 9
     meet = contact.where_friction_rubs(met(whole))
     velocity = contact.relative(whole.bodies, line, whole.supports, meet)
     slip = np.array(friction.along_face(meet.normal, velocity))
@@ -141,11 +152,11 @@ def test_slip_takes_no_more_than_there_is_to_take(d, face, held):
     bond.dragged = -K_SHEAR * grip
     bond.grip = matrix(3, 0).T @ grip if face == 0 and d == 3 else grip
     kept = books(whole)
-    bonds.hold_bonds(whole, kept, H)
+    whole.laws[0].act(whole, kept, 0.0, H)
     assert np.linalg.norm(bond.dragged) == pytest.approx(limit)
     work = 0.5 * H * (held + 1) * limit * np.linalg.norm(slip)
     there = work - 0.5 * (1 - held**2) * limit**2 / K_SHEAR
-    assert 0 < there < COHESION * (1 - bond.left) / WORN
+    assert 0 < there < COHESION * (1 - bond.integrity) / WORN
     assert taken_by(kept)[1] == pytest.approx(there)
     assert kept.totals[0].friction == pytest.approx(work - there)
 
@@ -155,8 +166,8 @@ def test_slip_takes_no_more_than_there_is_to_take(d, face, held):
 @pytest.mark.parametrize(("push", "slides"), [(1e4, False), (400.0, True), (-300.0, True)])
 def test_a_bond_holds_cohesion_and_friction_along_the_face(d, face, push, slides):
     """Kept in the axes of the face. Its friction falls from that of a whole bond to the residual one."""
-    whole, _ = bonded_line(d, face, -0.001, left=0.6)
-    line, bond, way = whole.lines[0], whole.bonds[0], ALONG[d]
+    whole, _ = bonded_line(d, face, -0.001, integrity=0.6)
+    line, bond, way = whole.lines[0], whole.laws[0].rows[0], ALONG[d]
     turn, slip = np.eye(d) if face < 0 else matrix(d, 0), 0.3
     normal, along = turn @ NORMAL[d], turn @ way
     bond.grip[:] = 0.004 if d == 2 else way * 0.004
@@ -174,15 +185,15 @@ def test_a_bond_holds_cohesion_and_friction_along_the_face(d, face, push, slides
     np.testing.assert_allclose(friction.as_vector(tuple(normal), drag), -held * along, rtol=1e-12, atol=1e-10)
     np.testing.assert_allclose(bond.grip, stretch if d == 2 else stretch * way, rtol=1e-12, atol=1e-15)
     assert taken == pytest.approx(wear(twin, trial - stretch), rel=1e-12)
-    assert bond.left == pytest.approx(twin.left, rel=1e-12)
+    assert bond.integrity == pytest.approx(twin.integrity, rel=1e-12)
 
 
 @BOTH
 @pytest.mark.parametrize("face", [-1, 0])
 def test_a_line_that_is_crushed_steps_back_by_what_it_closes(d, face):
     """The gap falls by the closing, and half the force times the way that the spring gave back is taken."""
-    whole, _ = bonded_line(d, face, -0.003, bears=2000.0, crumbled=50.0, gap=-0.0015, k_s=1e5)
-    line, bond = whole.lines[0], whole.bonds[0]
+    whole, _ = bonded_line(d, face, -0.003, strength=2000.0, crushing_rate=50.0, gap=-0.0015, k_s=1e5)
+    line, bond = whole.lines[0], whole.laws[0].rows[0]
     bond.grip[:] = 0.002 if d == 2 else 0.002 * ALONG[3]
     twin, kept = copy_of(bond), books(whole)
     closing = crush(twin, met(whole).gap, 1e5 * 0.002)
@@ -206,14 +217,14 @@ def test_a_line_that_is_crushed_steps_back_by_what_it_closes(d, face):
 @BOTH
 @pytest.mark.parametrize(("bears", "gap"), [(2000.0, -0.003), (2000.0, 0.003), (math.inf, -0.003)])
 def test_a_bond_is_crushed_where_it_is_pressed_and_can_be(d, bears, gap):
-    whole, _ = bonded_line(d, 0, gap, bears=bears, crumbled=50.0, gap=-0.002)
-    twin, kept = copy_of(whole.bonds[0]), books(whole)
+    whole, _ = bonded_line(d, 0, gap, strength=bears, crushing_rate=50.0, gap=-0.002)
+    twin, kept = copy_of(whole.laws[0].rows[0]), books(whole)
     closing = crush(twin, gap, 0.0) if gap < 0 and bears < math.inf else 0.0
-    bonds.hold_bonds(whole, kept, H)
-    bond = whole.bonds[0]
+    whole.laws[0].act(whole, kept, 0.0, H)
+    bond = whole.laws[0].rows[0]
     assert bool(closing > 0) is (bears == 2000.0 and gap < 0)
     assert bond.gap == pytest.approx(gap + closing, rel=1e-9)
-    assert bond.left <= twin.left
+    assert bond.integrity <= twin.integrity
     assert bool(taken_by(kept)[2] > 0) is bool(closing > 0)
 
 
@@ -221,9 +232,9 @@ def test_a_bond_is_crushed_where_it_is_pressed_and_can_be(d, bears, gap):
 @pytest.mark.parametrize(("bears", "tension"), [(math.inf, TENSION), (5e3, 0.5), (math.inf, 0.0), (5e3, 0.0)])
 def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
     whole, _ = bonded_line(
-        d, 0, 0.002, left=1e-5, secant=2e4, bears=bears, tension=tension, gap=0.003, margin=9.0, push=-60.0
+        d, 0, 0.002, integrity=1e-5, secant=2e4, strength=bears, tension=tension, gap=0.003, margin=9.0, push=-60.0
     )
-    line, bond = whole.lines[0], whole.bonds[0]
+    line, bond = whole.lines[0], whole.laws[0].rows[0]
     line.k, line.c, line.margin = (K - 2e4, 0.5 * C, math.inf) if tension else (K, C, 9.0)
     grip, drag = (0.4, 0.3) if d == 2 else ([0.4, 0.1, -0.2], [0.3, -0.5, 0.6])
     bond.grip[:], bond.dragged[:], line.grip[:] = grip, drag, 7.0
@@ -232,7 +243,7 @@ def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
     assert taken_by(kept)[0] == pytest.approx(0.5 * 2e4 * 0.003**2 if tension else 0.0)
     assert (line.k, line.c, line.margin) == (K, C, 9.0)
     if tension:
-        assert (bond.tension, bond.cohesion, bond.secant, bond.worn) == (0.0, 0.0, 0.0, 0.0)
+        assert (bond.tension, bond.cohesion, bond.secant, bond.slip_rate) == (0.0, 0.0, 0.0, 0.0)
     if bears == math.inf:
         assert (bond.k, bond.push, line.friction) == (0.0, 0.0, 0.5)
         np.testing.assert_array_equal(line.grip, grip)
@@ -247,17 +258,17 @@ def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
 def test_a_closed_bond_that_goes_takes_nothing_more():
     whole, _ = bonded_line(2, -1, -0.002, secant=2e4, gap=-0.003)
     kept = books(whole)
-    bonds.let_go(kept, whole.lines[0], whole.bonds[0])
+    bonds.let_go(kept, whole.lines[0], whole.laws[0].rows[0])
     assert taken_by(kept)[0] == 0.0
 
 
 @pytest.mark.parametrize(("softened", "goes"), [(8.99, False), (9.01, True)])
 def test_a_bond_goes_at_nine_times_the_opening_that_softens_it(softened, goes):
-    whole, _ = bonded_line(2, -1, -0.002, left=math.exp(-softened), secant=10.0, k_s=1.0, c_s=0.0)
-    bonds.hold_bonds(whole, books(whole), H)
-    assert bool(whole.bonds["k"][0] == 0) is goes
-    assert (whole.bonds["age"][0], whole.lines["k"][0]) == (0.0, K if goes else 0.0)
-    assert bonds.holding(whole.bonds)[0] == (not goes)
+    whole, _ = bonded_line(2, -1, -0.002, integrity=math.exp(-softened), secant=10.0, k_s=1.0, c_s=0.0)
+    whole.laws[0].act(whole, books(whole), 0.0, H)
+    assert bool(whole.laws[0].rows["k"][0] == 0) is goes
+    assert (whole.laws[0].rows["age"][0], whole.lines["k"][0]) == (0.0, K if goes else 0.0)
+    assert whole.laws[0].holding()[0] == (not goes)
 
 
 @pytest.mark.parametrize(
@@ -267,36 +278,39 @@ def test_a_bond_goes_at_nine_times_the_opening_that_softens_it(softened, goes):
         ({"k": 0.5}, True),
         ({"k": 0.0}, False),
         ({"tension": 0.0}, False),
-        ({"left": 1e-5}, False),
-        ({"left": bonds.GONE}, False),
+        ({"integrity": 1e-5}, False),
+        ({"integrity": bonds.GONE}, False),
     ],
 )
 def test_a_bond_holds_while_something_of_it_is_left(changed, holds):
     whole, _ = bonded_line(2, -1, -0.002, **changed)
-    assert bonds.holding(whole.bonds)[0] == holds
+    assert whole.laws[0].holding()[0] == holds
 
 
 @pytest.mark.parametrize(("left", "ages"), [(0.51, True), (0.49, False), (0.5, False)])
 def test_a_bond_ages_until_it_has_cracked(left, ages):
-    whole, _ = bonded_line(2, -1, -0.002, left=left, drawn=0.1, crack=0.1, secant=10.0, age=0.25, cohesion=1e9)
-    bonds.hold_bonds(whole, books(whole), H)
-    assert whole.bonds["age"][0] == (0.25 + H if ages else 0.25)
+    whole, _ = bonded_line(
+        2, -1, -0.002, integrity=left, largest_gap=0.1, crack=0.1, secant=10.0, age=0.25, cohesion=1e9
+    )
+    whole.laws[0].act(whole, books(whole), 0.0, H)
+    assert whole.laws[0].rows["age"][0] == (0.25 + H if ages else 0.25)
 
 
 def test_lines_without_a_bond_are_left_alone():
     whole, _ = bonded_line(2, -1, -0.003, k=0.0)
-    bonds.hold_bonds(whole, books(whole), H)
+    whole.laws[0].act(whole, books(whole), 0.0, H)
     assert not whole.bodies["force"].any()
 
 
 @BOTH
 def test_bonds_store_what_secant_and_shear_spring_hold(d):
     whole = system(d, 2)
-    whole.bonds["secant"], whole.bonds["gap"], whole.bonds["k_s"] = [2e4, 3e4], [0.002, -0.001], [5e4, 6e4]
-    whole.bonds["grip"] = [[0.001], [0.002]] if d == 2 else [[0.001, 0.002, 0.002], [0.0, 0.003, 0.004]]
+    table = whole.laws[0].rows
+    table["secant"], table["gap"], table["k_s"] = [2e4, 3e4], [0.002, -0.001], [5e4, 6e4]
+    table["grip"] = [[0.001], [0.002]] if d == 2 else [[0.001, 0.002, 0.002], [0.0, 0.003, 0.004]]
     squares = (1e-6, 4e-6) if d == 2 else (9e-6, 25e-6)
     along = 0.5 * (5e4 * squares[0] + 6e4 * squares[1])
-    assert bonds.bonded_energy(whole) == pytest.approx((0.5 * (2e4 * 4e-6 + 3e4 * 1e-6), along))
+    assert whole.laws[0].stored() == pytest.approx((0.5 * (2e4 * 4e-6 + 3e4 * 1e-6), along))
 
 
 @pytest.mark.parametrize("space", [False, True])
@@ -307,7 +321,7 @@ def test_the_bonds_of_masonry_have_the_strength_of_its_joints(space):
     whole, dry = (
         setup_of(mr.MasonryCase(joint(each, **more), 1.0, settled=False), None, None).system for each in (bond, None)
     )
-    lines, table = whole.lines, whole.bonds
+    lines, table = whole.lines, whole.laws[0].rows
     for name in ("k", "c", "k_s", "c_s"):  # a dry joint shares them out to its lines in another way
         assert table[name].sum() == pytest.approx(dry.lines[name].sum())
         np.testing.assert_allclose(table[name] / table[name].sum(), table["k"] / table["k"].sum())
@@ -318,38 +332,38 @@ def test_the_bonds_of_masonry_have_the_strength_of_its_joints(space):
     for name in ("k", "c", "friction", "grip"):
         assert not lines[name].any()
     assert (lines["margin"] == math.inf).all()
-    for name, strength in (("tension", 0.25e6), ("cohesion", 0.35e6), ("bears", 10.5e6)):
+    for name, strength in (("tension", 0.25e6), ("cohesion", 0.35e6), ("strength", 10.5e6)):
         assert table[name].sum() == pytest.approx(strength * AREA)
     np.testing.assert_allclose(table["secant"], table["k"])
     assert table["k"].sum() == pytest.approx(K_N * AREA)
     assert table["k_s"].sum() == pytest.approx(K_S * AREA)
-    for name, rate in (("torn", 0.25e6 / 18.0), ("worn", 0.35e6 / 125.0), ("crumbled", 10.5e6 / 5e3)):
+    for name, rate in (("opening_rate", 0.25e6 / 18.0), ("slip_rate", 0.35e6 / 125.0), ("crushing_rate", 10.5e6 / 5e3)):
         np.testing.assert_allclose(table[name], rate)
-    for name, value in (("left", 1.0), ("residual", 0.5), ("falls", 0.25)):
+    for name, value in (("integrity", 1.0), ("residual", 0.5), ("friction_drop", 0.25)):
         np.testing.assert_allclose(table[name], value)
-    assert len(dry.bonds) == 0
+    assert len(dry.laws[0].rows) == 0
 
 
 @pytest.mark.filterwarnings("ignore:tension = .* is it in MPa:mjrock.Implausible")
 def test_a_bond_of_a_newton_tears_too():
     weak = setup_of(mr.MasonryCase(joint(mr.Bond(0.5, 0.5, 1e-6, 1e-6)), 1.0, settled=False), None, None).system
-    assert (weak.bonds["tension"] < 0.1).all()
-    np.testing.assert_array_equal(weak.bonds["secant"], weak.bonds["k"])
+    assert (weak.laws[0].rows["tension"] < 0.1).all()
+    np.testing.assert_array_equal(weak.laws[0].rows["secant"], weak.laws[0].rows["k"])
     whole, _ = bonded_line(2, -1, 0.003, tension=0.5)
-    bonds.hold_bonds(whole, books(whole), H)
-    assert 0 < whole.bonds["secant"][0] < K
-    assert bonds.holding(whole.bonds)[0] == (whole.bonds["left"][0] > bonds.GONE)
+    whole.laws[0].act(whole, books(whole), 0.0, H)
+    assert 0 < whole.laws[0].rows["secant"][0] < K
+    assert whole.laws[0].holding()[0] == (whole.laws[0].rows["integrity"][0] > bonds.GONE)
 
 
 def test_a_bond_without_strength_in_tension_leaves_the_normal_to_its_line():
     bond = mr.Bond(0.0, 0.0, 18.0, 125.0, 10.5e6, 5e3)
     whole = setup_of(mr.MasonryCase(joint(bond), 1.0, settled=False), None, None).system
     assert whole.lines["k"].sum() == pytest.approx(K_N * AREA)
-    assert not whole.bonds["secant"].any()
+    assert not whole.laws[0].rows["secant"].any()
     assert np.isfinite(whole.lines["margin"]).all()
-    assert whole.bonds["bears"].sum() == pytest.approx(10.5e6 * AREA)
+    assert whole.laws[0].rows["strength"].sum() == pytest.approx(10.5e6 * AREA)
     never = setup_of(mr.MasonryCase(joint(MORTAR), 1.0, settled=False), None, None).system
-    assert (never.bonds["bears"] == math.inf).all()
+    assert (never.laws[0].rows["strength"] == math.inf).all()
 
 
 def wall():
@@ -368,15 +382,16 @@ def test_joints_without_a_bond_stay_dry_and_do_not_crack():
     setup = setup_of(mr.MasonryCase(masonry, 1.0, settled=False), None, None)
     of = np.repeat([0, 1], 3)
     bonded = np.array([joint.name == "b|c" for joint in masonry.joints])[of]
-    table, lines = setup.system.bonds, setup.system.lines
+    law, lines = setup.system.laws[0], setup.system.lines
+    table = law.rows
     np.testing.assert_array_equal(table["k"] > 0, bonded)
     np.testing.assert_array_equal(lines["k"] > 0, ~bonded)
     np.testing.assert_array_equal(lines["friction"] > 0, ~bonded)
-    assert bonds.cracked(table, of, masonry) == {}
-    table["age"][bonded], table["left"][bonded] = [0.1, 0.3, 0.2], [0.5, 0.4, 0.6]
-    assert bonds.cracked(table, of, masonry) == {}
-    table["left"][bonded] = [0.5, 0.4, 0.3]
-    assert bonds.cracked(table, of, masonry) == {"b|c": 0.3}
+    assert law.cracked(setup.scene) == {}
+    table["age"][bonded], table["integrity"][bonded] = [0.1, 0.3, 0.2], [0.5, 0.4, 0.6]
+    assert law.cracked(setup.scene) == {}
+    table["integrity"][bonded] = [0.5, 0.4, 0.3]
+    assert law.cracked(setup.scene) == {"b|c": 0.3}
 
 
 def test_joints_are_named_in_the_order_in_which_they_cracked():
@@ -385,8 +400,10 @@ def test_joints_are_named_in_the_order_in_which_they_cracked():
         for z, name in zip((-0.1, 0.0, 0.1), "abc", strict=True)
     ]
     masonry = mr.Masonry(blocks, k_n=K_N, k_s=K_S, friction=0.75, points=3, bond=MORTAR)
-    table = rows(system(2).bonds.dtype, 6, left=0.1, age=np.array([0.5, 0.6, 0.7, 0.1, 0.2, 0.3]))
-    found = bonds.cracked(table, np.repeat([0, 1], 3), masonry)
+    setup = setup_of(mr.MasonryCase(masonry, 1.0, settled=False), None, None)
+    law = setup.system.laws[0]
+    law.rows["integrity"], law.rows["age"] = 0.1, np.array([0.5, 0.6, 0.7, 0.1, 0.2, 0.3])
+    found = law.cracked(setup.scene)
     assert list(found.items()) == [(masonry.joints[1].name, 0.3), (masonry.joints[0].name, 0.7)]
 
 
@@ -400,14 +417,14 @@ def test_lines_that_are_handed_over_have_back_what_their_bond_has():
         "grip": 0.4,
         "dragged": 0.3,
     }.items():
-        whole.bonds[name] = np.array(value)[:, None] if name in ("grip", "dragged") and np.ndim(value) else value
-    whole.bonds["secant"], whole.bonds["push"] = 2e5, 50.0
-    bonds.released(whole.lines, whole.bonds, np.array([True, False, True]))
+        whole.laws[0].rows[name] = np.array(value)[:, None] if name in ("grip", "dragged") and np.ndim(value) else value
+    whole.laws[0].rows["secant"], whole.laws[0].rows["push"] = 2e5, 50.0
+    whole.laws[0].release(whole.lines, np.array([True, False, True]))
     np.testing.assert_array_equal(whole.lines["k"], [0.5, 0.0, 0.0])
     for name, value in (("c", C), ("friction", 0.6), ("margin", 9.0)):
         assert whole.lines[name][0] == value
     assert (whole.lines["grip"][0], whole.lines["dragged"][0]) == (0.4, 0.3)
     for name in ("k", "secant", "grip", "dragged", "push"):
-        assert not whole.bonds[name][0].any()
-        assert whole.bonds[name][1].any()
-    assert whole.bonds["secant"][2] == 2e5
+        assert not whole.laws[0].rows[name][0].any()
+        assert whole.laws[0].rows[name][1].any()
+    assert whole.laws[0].rows["secant"][2] == 2e5

@@ -1,10 +1,13 @@
 """Units that are not convex, where they are: notches are empty, cuts are not felt, and parts of one body never meet."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
+from mjrock.distinct.search import encounters
 
 
 def in_space(block):
@@ -54,6 +57,57 @@ def test_a_block_slides_over_a_cut_as_over_a_whole_block():
         assert run.pose[-1, 0, 0] > 0.9
     np.testing.assert_allclose(poses[1][:, 0, 0], poses[0][:, 0, 0], atol=1e-3)
     assert np.abs(poses[1][:, 0, 2]).max() < 1e-3
+
+
+def drawn_at(masonry):
+    """Where the finder of a masonry finds its blocks as they are drawn, in the order of the places."""
+    from mjrock.distinct.setup import setup_of
+
+    met = setup_of(mr.MasonryCase(masonry, 0.1, settled=False), None, None).encounters
+    every = np.ones(met.count, dtype=bool)
+    found = met.finder.found(met.reach.start, np.full(met.count, 1e-3), every, np.zeros(0, dtype=np.int64))
+    columns = np.column_stack([found.place, found.normal, found.gap, found.share, found.area])
+    return columns[np.lexsort(np.round(columns, 9).T[::-1])]
+
+
+@pytest.mark.parametrize("turn", [lambda block: block, in_space])
+@pytest.mark.parametrize("points", [2, 3, 5])
+@pytest.mark.parametrize("cuts", [(0.13,), (-0.7, 0.13, 0.4)])
+def test_places_are_those_of_a_block_that_is_not_cut(turn, points, cuts):
+    """Under a block that lies over the cuts and beside both ends of one, whose bottom is cut elsewhere."""
+    ends = [-2.0, *cuts, 2.0]
+    cut = [box(a, b, 0, 0.5) for a, b in pairwise(ends)]
+    upper = [box(-0.9, -0.2, 0.5, 0.9), box(-0.2, 0.8, 0.5, 0.9)]
+    pairs = (
+        [mr.Compound(cut, fixed=True, name="table"), mr.Compound(upper, name="block")],
+        [box(-2, 2, 0, 0.5, fixed=True, name="table"), box(-0.9, 0.8, 0.5, 0.9, name="block")],
+    )
+    made = [mr.Masonry([turn(block) for block in blocks], k_n=1e9, points=points) for blocks in pairs]
+    ours, whole = (drawn_at(masonry) for masonry in made)
+    np.testing.assert_allclose(ours, whole, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("turn", [lambda block: block, in_space])
+@pytest.mark.parametrize("points", [2, 3, 4])
+def test_a_joint_of_an_l_that_is_handed_over_keeps_force_moment_and_energy(turn, points, monkeypatch):
+    """It slides, and its parts press more at one end. Its joint has no line at the cut of its bottom."""
+    unit, seen = mr.Compound([box(0, 0.2, 0, 0.8), box(0.2, 0.9, 0, 0.2)], name="L"), []
+    hand_over = encounters.hand_over
+
+    def watched(new, found, gone, *rest):
+        hand_over(new, found, gone, *rest)
+        for lines in (gone, new):
+            force = lines.rows["k"] * lines.depth
+            seen.append((force.sum(), force @ lines.at[:, 0], 0.5 * force @ lines.depth))
+
+    monkeypatch.setattr(encounters, "hand_over", watched)
+    masonry = mr.Masonry([turn(GROUND), turn(unit)], k_n=1e7, k_s=5e6, friction=0.1, xi=0.05, points=points)
+    velocity = np.zeros((1, 6 if masonry.in_space else 3))
+    velocity[0, 0] = 1.0
+    mr.solve_explicit(mr.MasonryCase(masonry, 0.08, velocity=velocity), output_step=0.01)
+    before, after = seen[:2]
+    assert before[0] == pytest.approx(unit.mass * mr.GRAVITY, rel=0.1)
+    np.testing.assert_allclose(after, before, rtol=1e-9)
 
 
 def test_a_block_that_falls_into_an_l_rests_in_its_corner():

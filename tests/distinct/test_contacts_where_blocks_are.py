@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from by_hand import stood
 from everyday import among
 from masonry_blocks import GROUND, box
 
@@ -29,7 +30,8 @@ def found(blocks, moved, turn):
         np.array([(0.0, 0.0, 0.0), moved]),
         np.array([0 * np.eye(3), matrix - np.eye(3)]),
     )
-    return Finder(blocks, drawn).found(poses, np.full(2, 5e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
+    finder = Finder(stood(blocks), flat=False)
+    return finder.found(poses, np.full(2, 5e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
 
 
 def about(axis, angle):

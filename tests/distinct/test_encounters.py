@@ -1,5 +1,6 @@
 """Blocks that leave their joints meet the ground and each other, and faces end where they end."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.distinct.search.encounters import Encounters, in_shear
+from mjrock.distinct.setup import setup_of
 
 TABLE = box(-1, 0, 0, 1, name="table")
 
@@ -18,7 +20,7 @@ TABLE = box(-1, 0, 0, 1, name="table")
 def test_shear_springs_of_lines_and_bonds_hold_half_of_k_s_times_the_square_of_their_way(d):
     """Those of rigid friction hold nothing."""
     whole, ways = system(d, 3), np.array([[0.2], [-0.3], [0.5]]) if d == 2 else np.array([[0.2, 0.1, -0.4]] * 3)
-    for table, k_s in ((whole.lines, [2e3, np.inf, 5e3]), (whole.bonds, [7e3, 3e3, np.inf])):
+    for table, k_s in ((whole.lines, [2e3, np.inf, 5e3]), (whole.laws[0].rows, [7e3, 3e3, np.inf])):
         table["k_s"], table["grip"] = k_s, ways
     squares = (ways**2).sum(axis=1)
     expected = 0.5 * (2e3 * squares[0] + 5e3 * squares[2] + 7e3 * squares[0] + 3e3 * squares[1])
@@ -176,3 +178,17 @@ def test_a_soft_place_that_presses_stays_soft(monkeypatch):
     masonry = mr.Masonry([GROUND, box(-3, 3, 0, 0.5), box(-0.1, 0.1, 0.501, 0.6)], k_n=1e8, friction=0.1, xi=0.1)
     mr.solve_explicit(mr.MasonryCase(masonry, 0.3, velocity=[(0, 0, 0), (1.0, 0, 0)], settled=False))
     assert kept[:5] == [0.1] * 5  # until it bounces off
+
+
+def test_a_block_with_a_mass_beside_its_centroid_is_searched_where_it_turns_to():
+    """About the centroid that it has with the mass, as its body."""
+    masonry = mr.Masonry([GROUND, box(-0.2, 0.2, 0.0, 0.4)], k_n=1e8)
+    mass = mr.AddedMass(mass=800.0, height=0.4, block=1)
+    setup = setup_of(mr.MasonryCase(masonry, 1.0, effects=(mass,), settled=False), None, None)
+    rest, angle = setup.scene.bodies.rest[0], 0.5
+    assert rest[1] > 0.25
+    setup.system.bodies["angle"] = angle
+    posed = setup.encounters.finder.posed(setup.encounters.motion(setup.system).poses)
+    cos, sin = math.cos(angle), math.sin(angle)
+    expected = rest + (masonry.blocks[1].corners - rest) @ np.array([(cos, -sin), (sin, cos)])
+    np.testing.assert_allclose(posed.corners[posed.corner[1] :][:4, ::2], expected, atol=1e-12)

@@ -10,8 +10,8 @@ from scipy.special import ellipj
 from space_blocks import GROUND, about_vertical, angles, block, followed, free_body, steady
 
 import mjrock as mr
-from mjrock.distinct.setup import standing
 from mjrock.geometry.poses import tilt_of
+from mjrock.scene.masonry import masonry_scene
 
 PULSE = mr.GroundMotion.sine(3.0, 0.7)
 G = mr.GRAVITY
@@ -340,7 +340,7 @@ def test_a_block_that_falls_is_named():
     run = solve(block((0.3, 0.3, 1.0)), 1.5, steady(-6.0, 2.0))
     assert list(run.fallen) == ["block"]
     assert "not in the model" not in run.message
-    assert standing(run.case.masonry)[0].bodies.names == ("block",)
+    assert masonry_scene(run.case).bodies.names == ("block",)
 
 
 @pytest.mark.parametrize("askew", [False, True])

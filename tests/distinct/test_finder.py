@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from by_hand import columns
+from by_hand import columns, stood
 from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
@@ -245,6 +245,7 @@ def decided(
         "normal_of": lambda _, face: normals[face],
         "across_edges": lambda _, a, b: ((0.0, 0.0, 1.0), across),
         "meet_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
+        "with_whole_sides": lambda solids: solids,
         "clip": lambda _, face, blocks, table, count, room: met.append(("faces", face, blocks)) or count + clipped,
         "pass_by": lambda _, face, blocks, gap, table, count: met.append(("passes", face, blocks, gap)) or count + 1,
     }.items():
@@ -331,10 +332,10 @@ def test_fixed_blocks_come_first_then_the_largest_and_then_the_lowest():
     fixed, volumes = [False, False, True, False, False, False], np.array([1.0, 1.0, 0.1, 2.0, 1.0, 1.0])
     heights = np.array([0.5, 0.2, 5.0, 3.0, 0.2, 0.2])
     expected = [5, 2, 0, 1, 3, 4]
-    assert finder.ranked(fixed, volumes, heights, 0.5).tolist() == expected
+    assert finder.ranked(np.array(fixed), volumes, heights, 0.5).tolist() == expected
     for seed in range(5):  # rounding decides nothing
         off = 1e-12 * np.random.default_rng(seed).normal(size=(2, 6))
-        assert finder.ranked(fixed, volumes * (1 + off[0]), heights + off[1], 0.5).tolist() == expected
+        assert finder.ranked(np.array(fixed), volumes * (1 + off[0]), heights + off[1], 0.5).tolist() == expected
 
 
 def test_places_do_not_depend_on_the_numbers_of_blocks_nor_on_what_is_far_away():
@@ -407,7 +408,7 @@ def poses_of(blocks, by=None, change=None):
 def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(), room=None):
     """Where blocks meet, as pairs of a face and another block, and the places. Pairs of blocks are skipped."""
     drawn, poses = poses_of(blocks, by, change)
-    whole = Finder(blocks, drawn)
+    whole = Finder(stood(blocks), flat=drawn.shape[1] == 2)
     if room:
         whole._table = rows(PLACE, room)
     which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
@@ -534,9 +535,9 @@ def test_a_corner_of_the_plane_of_any_angle_meets_a_face():
 
 @pytest.mark.parametrize("prism", [False, True])
 def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
-    """A block on one of 1 m and one of 3 m, which are one, and another block beside them."""
-    cut = mr.Compound([box(0, 1, 0, 1), box(1, 4, 0, 1)])
-    blocks = [box(9, 10, 0, 1), box(0.5, 3.5, 1.001, 2), cut, box(-1.001, -0.001, 0.3, 0.6)]
+    """A block on the legs of a U, of 1 m and of 3 m, and another block beside it."""
+    unit = mr.Compound([box(0, 1, 0, 1), box(1.5, 4.5, 0, 1), box(0, 4.5, -1, 0)])
+    blocks = [box(9, 10, 0, 1), box(0.5, 4, 1.001, 2), unit, box(-1.001, -0.001, 0.3, 0.6)]
     if prism:
         blocks = [mr.Compound.prism(b) if isinstance(b, mr.Compound) else mr.Polyhedron.prism(b) for b in blocks]
     pairs, places = found(blocks)
@@ -550,13 +551,15 @@ def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
     np.testing.assert_allclose(places.share[~over], 1 / (~over).sum(), rtol=1e-9)
     np.testing.assert_allclose(places.area[~over], 0.3, rtol=1e-9)
     drawn, _ = poses_of(blocks)
-    whole = Finder(blocks, drawn)
+    whole = Finder(stood(blocks), flat=drawn.shape[1] == 2)
     each = np.ones(3)
     pair = Found(
         *(np.array(of) for of in ([3, 1, 1], [1, 3, 2])), each, each, each, 0.25 * each, np.array([0.0, 0.0, 2.0])
     )
     edges = whole._among_blocks(pair)  # edges have the share that they have, and no area
     np.testing.assert_array_equal((edges.share, edges.area), [[0.25] * 3, [0.0, 0.0, 2.0]])
-    assert [list(whole.parts_of(i)) for i in range(4)] == [[0], [1], [2, 3], [4]]
-    np.testing.assert_array_equal(whole.between(np.array([2, 1]), np.array([3, 0])), [2 * 5 + 4, 3 * 5 + 4, 1])
-    np.testing.assert_allclose(whole.volumes / whole.volumes[0], [1.0, 2.997, 4.0, 0.3])
+    assert [list(whole.parts_of(i)) for i in range(4)] == [[0], [1], [2, 3, 4], [5]]
+    np.testing.assert_array_equal(
+        whole.between(np.array([2, 1]), np.array([3, 0])), [6 * i + 5 for i in (2, 3, 4)] + [1]
+    )
+    np.testing.assert_allclose(whole.volumes / whole.volumes[0], [1.0, 3.5 * 0.999, 8.5, 0.3])

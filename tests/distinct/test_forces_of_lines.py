@@ -8,6 +8,7 @@ from by_hand import about, books, matrix, system
 
 from mjrock.distinct import gathering
 from mjrock.distinct.contacts import contact
+from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.system import Samples
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
@@ -29,7 +30,7 @@ def held(d, bonds=0):
     Actuators drive both bodies.
     """
     whole = system(d, 4)
-    whole = whole._replace(guided=np.array([1, 0]), bonds=whole.bonds[:bonds])
+    whole = whole._replace(guided=np.array([1, 0]), laws=(Bonds(whole.laws[0].rows[:bonds]),))
     for i, line in enumerate(whole.lines):
         line.body, line.face, line.fixed = 1, 0 if i == 0 else -1, [-1, 1, 0, 1][i]
         line.at, line.origin, line.normal = AT[d] + 0.1 * i, ORIGIN[d], NORMAL[d]
@@ -82,8 +83,9 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
     """Of three bonds the second one holds a line that is open, and the third one is that of a dry line."""
     whole, samples = held(d, bonds=3)
     for p in (0, 1):
-        whole.bonds[p].k, whole.bonds[p].push, whole.bonds[p].dragged = 0.5, -30.0 - p, along(d, 0.5)
-    whole.bonds["left"], whole.bonds["share"] = [0.75, 0.5, 0.25], [1.0, 0.5, 0.25]
+        bond = whole.laws[0].rows[p]
+        bond.k, bond.push, bond.dragged = 0.5, -30.0 - p, along(d, 0.5)
+    whole.laws[0].rows["integrity"], whole.laws[0].rows["share"] = [0.75, 0.5, 0.25], [1.0, 0.5, 0.25]
     line = whole.lines[1]
     line.push = line.depth = 0.0
     whole.lines["group"][2] = 0

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from by_hand import columns
+from by_hand import columns, stood
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
@@ -159,7 +159,7 @@ def test_torsion_of_two_squares_tends_to_that_of_even_pressure(turn):
     if turn == 0:
         assert expected == pytest.approx(0.3826, rel=1e-3)
     for points, within in ((3, 0.13), (5, 0.04), (9, 0.015)):
-        finder = Finder(blocks, drawn)
+        finder = Finder(stood(blocks), flat=False)
         for jointed, off in ((np.array([1]), within), (np.zeros(0, dtype=np.int64), 1.0)):
             finder.jointed, finder.points = jointed, np.full(len(jointed), points)
             found = finder.found(poses, np.full(2, 1e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))

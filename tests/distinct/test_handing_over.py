@@ -57,7 +57,7 @@ def written(d, face, other, gap=-0.004, slack=0.0):
     """A system whose line is written by a place."""
     whole = system(d)
     whole.supports.moved[0] = cut(MOVED, d)
-    handover.write_line(whole.lines[0], 0, slack, found(d, face, other, gap), blocks(d), whole.axes)
+    handover.write_line(whole.lines[0], 0, slack, found(d, face, other, gap), blocks(d))
     return whole
 
 
@@ -96,7 +96,7 @@ def test_a_line_is_where_its_place_was_found(d, face, other, slack):
     np.testing.assert_allclose(meet.arm, arm, rtol=1e-11)
     if 0 not in (face, other):
         np.testing.assert_allclose(meet.face_arm, AT[d] + half - centre(d, face), rtol=1e-11)
-    place = handover.place_of(line, face + other, numbers, whole.axes)
+    place = handover.place_of(line, face + other, numbers)
     assert place.sense == (1.0 if carries > faced else -1.0)
     assert place.face == faced
     np.testing.assert_allclose(place.normal, normal, rtol=1e-12)
@@ -108,7 +108,7 @@ def with_points(table, both, d):
     """Lines with their points, of two blocks whose numbers have some sum."""
     lines = Lines.unwritten(table, np.zeros(len(table)))
     for line, at in zip(table, lines.at, strict=True):
-        at[:] = handover.place_of(line, both, blocks(d), system(d).axes).at
+        at[:] = handover.place_of(line, both, blocks(d)).at
     return lines
 
 
@@ -121,10 +121,10 @@ def lines_of(table, slack, depth):
 
 @BOTH
 def test_the_nearest_of_some_lines_is_found(d):
-    numbers, axes = blocks(d), system(d).axes
+    numbers = blocks(d)
     table, places = rows(kinds(d).line, 4), found(d, 1, 2, count=4)
     for i in range(4):
-        handover.write_line(table[i], i, 0.0, places, numbers, axes)
+        handover.write_line(table[i], i, 0.0, places, numbers)
     lines = with_points(table, 3, d)
     where = lines.at
     aim = where[1] + 0.004
@@ -144,7 +144,7 @@ def gone_at(d, shift=0.0, normal=None, slack=0.0, blocks_of=(1, 2)):
     place.place[0, 0] += shift
     if normal is not None:
         place.normal[0] = normal
-    handover.write_line(table[0], 0, 0.0, place, blocks(d), system(d).axes)
+    handover.write_line(table[0], 0, 0.0, place, blocks(d))
     lines = with_points(table, sum(blocks_of), d)
     lines.slack[:], lines.depth[:] = slack, 0.003
     return lines
@@ -152,7 +152,7 @@ def gone_at(d, shift=0.0, normal=None, slack=0.0, blocks_of=(1, 2)):
 
 def presses(d, gone, new=None, ends=(0, 1)):
     new = found(d, 1, 2) if new is None else new
-    return handover.pressed_at(0, new, gone, ends, blocks(d), system(d).axes)
+    return handover.pressed_at(system(d).lines[0], 0, new, gone, ends, blocks(d))
 
 
 @BOTH
@@ -248,7 +248,7 @@ def line_at(whole, number, face, other, **law):
     """A line of a system that is written by a place whose face is that of one of two blocks."""
     place = found(len(whole.axes), face, other)
     place.normal[0] *= 1.0 if other > face else -1.0
-    handover.write_line(whole.lines[number], 0, 0.0, place, blocks(len(whole.axes)), whole.axes)
+    handover.write_line(whole.lines[number], 0, 0.0, place, blocks(len(whole.axes)))
     for name, value in law.items():
         whole.lines[number][name] = value
     return whole.lines[number]
@@ -269,11 +269,11 @@ def test_a_line_takes_over_a_share_of_force_and_friction(d, old, new, k_s, share
     grip, drag = ([0.4], [0.3]) if d == 2 else ([0.4, 0.1, -0.2], [0.3, -0.5, 0.6])
     gone = line_at(whole, 0, *old, k_s=k_s[0], grip=grip, dragged=drag, push=5.0, pressed=2.0, depth=0.1, rate=0.7)
     line = line_at(whole, 1, *new, k_s=k_s[1], dragged=2.0, push=3.0, pressed=4.0, depth=0.05, rate=0.2)
-    ends = [handover.place_of(one, sum(old), blocks(d), whole.axes) for one in (gone, line)]
+    ends = [handover.place_of(one, sum(old), blocks(d)) for one in (gone, line)]
     sense = ends[0].sense * ends[1].sense
     if d == 2:
         sense *= np.dot(ends[0].normal, ends[1].normal)  # tangents turn as normals do
-    handover.give(gone, line, share, sum(old), blocks(d), whole.axes)
+    handover.give(gone, line, share, sum(old), blocks(d))
     assert (line.push, line.pressed) == pytest.approx((3.0 + 5.0 * share, 4.0 + 2.0 * share))
     assert (line.depth, line.rate) == (0.1, 0.7)
     softer = 0.5 if k_s[0] < math.inf else 1.0
@@ -281,7 +281,7 @@ def test_a_line_takes_over_a_share_of_force_and_friction(d, old, new, k_s, share
     np.testing.assert_allclose(line.dragged, 2.0 + share * sense * np.array(drag), rtol=1e-12)
     kept = line.grip.copy()
     gone.depth = 0.01
-    handover.give(gone, line, share, sum(old), blocks(d), whole.axes)
+    handover.give(gone, line, share, sum(old), blocks(d))
     assert line.depth == 0.1
     np.testing.assert_allclose(line.grip, 2 * kept, rtol=1e-12)
 
@@ -294,11 +294,11 @@ def test_places_that_are_as_near_share_what_a_line_has(d):
     for number, shift in ((1, 0.1), (2, -0.1), (3, 0.11)):
         place = found(d, 1, 2)
         place.place[0, 0] += shift
-        handover.write_line(whole.lines[number], 0, 0.0, place, blocks(d), whole.axes)
+        handover.write_line(whole.lines[number], 0, 0.0, place, blocks(d))
     lines = with_points(whole.lines, 3, d)
-    handover.give_to_nearest(gone, lines, (1, 4), 3, blocks(d), whole.axes)
+    handover.give_to_nearest(gone, lines, (1, 4), 3, blocks(d))
     np.testing.assert_allclose(whole.lines["push"], [5.0, 2.5, 2.5, 0.0])
-    handover.give_to_nearest(gone, lines, (2, 4), 3, blocks(d), whole.axes)
+    handover.give_to_nearest(gone, lines, (2, 4), 3, blocks(d))
     np.testing.assert_allclose(whole.lines["push"], [5.0, 2.5, 7.5, 0.0])
 
 
@@ -315,26 +315,26 @@ def test_places_and_lines_of_the_same_two_blocks_belong_together():
 @pytest.mark.parametrize("k_s", [2e4, math.inf])
 def test_lines_are_handed_over_pair_by_pair(d, k_s):
     """Two places of bodies 1 and 2 follow two lines, and one of the ground follows none."""
-    numbers, axes, kind = blocks(d), system(d).axes, kinds(d).line
+    numbers, kind = blocks(d), kinds(d).line
     two, one = found(d, 1, 2, count=2), found(d, 0, 1)
     places = Found(*(np.concatenate([a, b]) for a, b in zip(two, one, strict=True)))
     old = rows(kind, 3, k=1e4, k_s=k_s, friction=0.5)
     for i in range(2):
-        handover.write_line(old[i], i, 0.0, two, numbers, axes)
-    handover.write_line(old[2], 1, 0.0, two, numbers, axes)
+        handover.write_line(old[i], i, 0.0, two, numbers)
+    handover.write_line(old[2], 1, 0.0, two, numbers)
     old["push"], old["dragged"], old["grip"] = [30.0, 0.0, 0.0], [[1.0], [2.0], [4.0]], 1.0 if k_s == math.inf else 1e-5
     gone = lines_of(old, np.zeros(3), [0.003, 0.002, 0.0])
     old["depth"] = [0.003, 0.002, 0.0]
     new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
     pairs = Pairs.belonging(np.array([5, 5, 1]), np.array([5, 5, 5]))
-    handover.hand_over(new, places, gone, pairs, numbers, axes)
+    handover.hand_over(new, places, gone, pairs, numbers)
     np.testing.assert_allclose(new.depth, [0.0025, 0.0025, 0.0], rtol=1e-9)  # the sum of what pressed before
     np.testing.assert_allclose(new.slack, [0.0015, 0.0015, 0.004], rtol=1e-9)
     assert new.slack[2] > 0.004  # what follows nothing begins open, though its blocks overlap
     np.testing.assert_allclose(new.rows["push"], [30.0, 0.0, 0.0])
     np.testing.assert_allclose(new.rows["dragged"][:, 0], [1.0, 2.0, 0.0], rtol=1e-12)  # what was open gives nothing
     ends = zip(new.rows, (3, 3, 1), strict=True)
-    sides = np.array([handover.place_of(line, both, numbers, axes).at for line, both in ends])
+    sides = np.array([handover.place_of(line, both, numbers).at for line, both in ends])
     np.testing.assert_allclose(sides, places.place - 0.002 * NORMAL[d], rtol=1e-9)
     grips = np.linalg.norm(new.rows["grip"], axis=1)
     if k_s == math.inf:
@@ -343,20 +343,20 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
         np.testing.assert_allclose(grips, [1e-5 * math.sqrt(1 if d == 2 else 3)] * 2 + [0.0], rtol=1e-9)
         old["grip"] = 1.0  # more than the face holds
         new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
-        handover.hand_over(new, places, gone, pairs, numbers, axes)
+        handover.hand_over(new, places, gone, pairs, numbers)
         held = 0.5 * 1e4 * 0.0025 / k_s
         np.testing.assert_allclose(np.linalg.norm(new.rows["grip"], axis=1), [held, held, 0.0], rtol=1e-9)
 
 
 def test_friction_turns_from_the_face_of_one_block_to_that_of_the_other():
     """A place on the other block's face: what acts on its body is against what acted on the one before."""
-    numbers, axes, kind = blocks(3), system(3).axes, kinds(3).line
+    numbers, kind = blocks(3), kinds(3).line
     old, places = rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), found(3, 2, 1)
-    handover.write_line(old[0], 0, 0.0, found(3, 1, 2), numbers, axes)
+    handover.write_line(old[0], 0, 0.0, found(3, 1, 2), numbers)
     old["push"], old["depth"], old["grip"] = 30.0, 0.003, [[0.4, 0.1, -0.2]]
     places.normal[0] *= -1
     new = lines_of(rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), np.zeros(1), 0.0)
     pairs = Pairs.belonging(np.array([5]), np.array([5]))
-    handover.hand_over(new, places, lines_of(old, np.zeros(1), 0.003), pairs, numbers, axes)
+    handover.hand_over(new, places, lines_of(old, np.zeros(1), 0.003), pairs, numbers)
     before, after = turn(3, 1) @ old["grip"][0], turn(3, 2) @ new.rows["grip"][0]
     np.testing.assert_allclose(after, -before, rtol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.impacts import Impacts
+from mjrock.distinct.limit import Impacts
 from mjrock.distinct.setup import setup_of
 
 K_N = 1e8

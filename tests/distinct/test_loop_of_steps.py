@@ -9,8 +9,8 @@ from by_hand import INERTIAS, MASSES, SPIN, VELOCITY, matrix, system
 import mjrock as mr
 from mjrock.distinct import loop
 from mjrock.distinct.kinds.actuators import Actuators
+from mjrock.distinct.kinds.lists import numbered
 from mjrock.distinct.kinds.ties import Ties
-from mjrock.distinct.links import numbered
 from mjrock.distinct.loop import Clock
 from mjrock.distinct.rows import TAKEN
 from mjrock.distinct.supports import Supports
@@ -351,7 +351,7 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
         [3.0, 0.0, 9.0],
     )
     lines["rate"], lines["grip"], lines["k_s"] = 0.5, grip, [math.inf, 400.0, 500.0]
-    bond = whole.bonds[0]
+    bond = whole.laws[0].rows[0]
     bond.k, bond.secant, bond.gap, bond.k_s, bond.grip[:] = 1.0, 900.0, -0.02, 300.0, 2e-3
     account.totals[0].friction, account.totals[0].ground = 7.0, 5.0
     account.dashpots[:] = 11.0

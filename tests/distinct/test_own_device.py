@@ -1,4 +1,4 @@
-"""A device with a law of its own is one file: the bumper of the page on own effects, at which a block is thrown."""
+"""A device or a joint with a law of its own is one file: the bumper and the strap of the page on own effects."""
 
 import importlib.util
 import os
@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct import explicit, following, links
+from mjrock.distinct import following
+from mjrock.distinct.kinds import lists
 
 PACKAGE = Path(mr.__file__).parent
 PAGE = (Path(__file__).parents[2] / "docs" / "own_effect.md").read_text(encoding="utf-8")
-TEXT = re.search(r"<!-- bumpers.py -->\n```python\n(.*?)```", PAGE, re.DOTALL)[1]
+TEXTS = dict(re.findall(r"<!-- (\w+).py -->\n```python\n(.*?)```", PAGE, re.DOTALL))
 K, LENGTH, GAP, SPEED = 2e5, 0.3, 0.02, 0.8
 
 
@@ -53,41 +54,87 @@ def check(bumper, in_space):
         mr.simulate(case)
 
 
+def strapped(strap, in_space):
+    """A block of 0.4 m that is thrown up from the ground, to which a strap holds it."""
+    if in_space:
+        ground = mr.Polyhedron.box((1, 1, 1), (0, 0, -0.5), fixed=True)
+        blocks = [ground, mr.Polyhedron.box((0.4, 0.4, 0.4), (0, 0, 0.2), density=1000.0)]
+        velocity = [[0, 0, SPEED, 0, 0, 0]]
+    else:
+        ground = mr.Polygon([(-1, -1), (1, -1), (1, 0), (-1, 0)], fixed=True)
+        block = mr.Polygon([(-0.2, 0), (0.2, 0), (0.2, 0.4), (-0.2, 0.4)], density=1000.0, length=0.4)
+        blocks, velocity = [ground, block], [[0, SPEED, 0]]
+    masonry = mr.Masonry(blocks, k_n=2e6, k_s=1e6, points=3, xi=0.0, frequency=50.0, bond=strap(a=0.01))
+    return mr.MasonryCase(masonry, 0.045, velocity=velocity, settled=False)
+
+
+def check_strap(strap, in_space):
+    """The strap pulls by its law, as far as the energy of the throw allows, and gives that back."""
+    case = strapped(strap, in_space)
+    answer = mr.solve_explicit(case, timestep=1e-4, ledger=True, forces=True, output_step=1e-4)
+    mass, stiffness, gravity = case.masonry.blocks[1].mass, 2e6 * 0.16, 9.81
+    place, speed = answer.pose[:, 0, 2 if in_space else 1], answer.velocity[:, 0, 2 if in_space else 1]
+    opening = np.maximum(place, 0.0)
+    force = stiffness * (opening + opening**3 / 0.01**2)
+    energy = stiffness * (0.5 * opening**2 + 0.25 * opening**4 / 0.01**2)
+    highest = 0.5 * mass * SPEED**2
+    assert opening.max() > 0.006
+    assert energy.max() + mass * gravity * opening.max() == pytest.approx(highest, rel=1e-4)
+    up = place > 0
+    np.testing.assert_allclose(answer.forces.normal[up, 0], -force[up], rtol=1e-9)
+    np.testing.assert_allclose(answer.ledger.elastic[up], energy[up], rtol=1e-9, atol=1e-9 * highest)
+    assert np.abs(answer.ledger.residual).max() < 1e-4 * highest
+    back = np.flatnonzero(up & (speed < 0))[-1]
+    assert speed[back] == pytest.approx(
+        -np.sqrt(SPEED**2 - 2 * (energy[back] / mass + gravity * place[back])), rel=1e-4
+    )
+    with pytest.raises(ValueError, match=r"bond of .*: .* takes joints that push only; solve_explicit takes bonds"):
+        mr.simulate(case)
+
+
+EXAMPLES = {"bumpers": ("KINDS", "Bumpers", "Bumper", check), "straps": ("LAWS", "Straps", "Strap", check_strap)}
+"""The examples of the page by their module: the list that names the kind, the kind, what a user writes, the check."""
+
+
 @pytest.fixture
-def bumpers(tmp_path, monkeypatch):
-    """The module of the page, named among the kinds, with the steps as plain Python."""
-    path = tmp_path / "bumpers.py"
-    path.write_text(TEXT)
-    spec = importlib.util.spec_from_file_location("mjrock.distinct.kinds.bumpers", path)
+def listed(request, tmp_path, monkeypatch):
+    """What a user writes of an example, whose kind is listed, with the steps as plain Python; and its check."""
+    names, kind, effect, check = EXAMPLES[request.param]
+    path = tmp_path / f"{request.param}.py"
+    path.write_text(TEXTS[request.param])
+    spec = importlib.util.spec_from_file_location(f"mjrock.distinct.kinds.{request.param}", path)
     module = importlib.util.module_from_spec(spec)
     monkeypatch.setitem(sys.modules, spec.name, module)
     spec.loader.exec_module(module)
-    monkeypatch.setattr(links, "KINDS", (*links.KINDS, module.Bumpers))
+    monkeypatch.setattr(lists, names, (*getattr(lists, names), getattr(module, kind)))
     monkeypatch.setattr(following, "advance", following.advance.py_func)
-    return module
+    return getattr(module, effect), check
 
 
 @pytest.mark.parametrize("in_space", [False, True])
-def test_a_block_is_thrown_back_by_a_bumper_of_one_file(bumpers, in_space):
-    assert explicit.solve_explicit is mr.solve_explicit
-    check(bumpers.Bumper, in_space)
+@pytest.mark.parametrize("listed", EXAMPLES, indirect=True)
+def test_a_kind_of_one_file_has_its_force_and_its_energy(listed, in_space):
+    effect, check = listed
+    check(effect, in_space)
 
 
 @pytest.mark.slow
-def test_the_same_compiled_in_a_package_that_has_the_file(tmp_path):
-    """The list of kinds names it; nothing else is written."""
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_the_same_compiled_in_a_package_that_has_the_file(tmp_path, example):
+    """The list names the kind; nothing else is written."""
+    names, kind, effect, check = EXAMPLES[example]
     copy = tmp_path / "mjrock"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    (copy / "distinct" / "kinds" / "bumpers.py").write_text(TEXT)
-    listed = copy / "distinct" / "links.py"
-    text = listed.read_text()
-    named = text.replace("Actuators, ConstantForces)", "Actuators, ConstantForces, Bumpers)")
-    named = named.replace("from .kinds.dampers", "from .kinds.bumpers import Bumpers\nfrom .kinds.dampers")
-    assert named.count("Bumpers") == 2
-    listed.write_text(named)
+    (copy / "distinct" / "kinds" / f"{example}.py").write_text(TEXTS[example])
+    path = copy / "distinct" / "kinds" / "lists.py"
+    text = re.sub(rf"^({names}: .* = \(.*)\)$", rf"\1, {kind})", path.read_text(), count=1, flags=re.MULTILINE)
+    text = text.replace(",, ", ", ").replace("from .ties", f"from .{example} import {kind}\nfrom .ties")
+    assert text.count(kind) == 2
+    path.write_text(text)
     program = (
         f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_own_device as here;"
-        "from mjrock.distinct.kinds.bumpers import Bumper; print(here.mr.__file__); here.check(Bumper, False)"
+        f"from mjrock.distinct.kinds.{example} import {effect}; print(here.mr.__file__);"
+        f"here.{check.__name__}({effect}, False)"
     )
     setting = os.environ | {"PYTHONPATH": str(tmp_path), "MJROCK_INTERPRET": "0"}
     options = {"env": setting, "cwd": tmp_path, "capture_output": True, "text": True, "check": False}

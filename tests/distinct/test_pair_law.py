@@ -7,6 +7,7 @@ import pytest
 
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.search import pair_law
+from mjrock.geometry.frames import PLANE, SPACE
 
 WIDTHS = [0.2, 0.5, 0.4]
 ENDS = [(0, 1), (1, 2), (1, 2)]
@@ -20,18 +21,28 @@ def block(*sides, fixed=False, length=1.0, in_space=False):
         for a in sides
     ]
     of = [SimpleNamespace(corners=np.array(each, dtype=float)) for each in corners]
-    return SimpleNamespace(fixed=fixed, length=length, in_space=in_space, sides=of)
+    ends = SimpleNamespace(corners=np.array([(0.0, -0.5 * length, 0.0), (0.0, 0.5 * length, 0.0)]))
+    return SimpleNamespace(fixed=fixed, in_space=in_space, sides=of, drawn=(ends,))
 
 
-def masonry(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
+def scene(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
     """Blocks with joints 2 m long, as soft as each other but where something else is known."""
     joints = [
         SimpleNamespace(below=low, above=high, width=width, area=2 * width, length=2.0)
         for (low, high), width in zip(ends, widths, strict=True)
     ]
-    same = {name: np.ones(len(ends)) for name in ("joint_stiffness", "joint_shear", "retardation")}
-    given = {"joints": joints, "in_space": blocks[0].in_space, "residual_friction": residual, "polygons": blocks}
-    return SimpleNamespace(blocks=blocks, **given, **same | {name: np.array(each) for name, each in known.items()})
+    springs = {name: np.ones(len(ends)) for name in ("k_n", "k_s", "retardation")} | {"residual": residual}
+    return SimpleNamespace(
+        standing=SimpleNamespace(solids=blocks, joints=joints),
+        springs=SimpleNamespace(**springs | {name: np.array(each) for name, each in known.items()}),
+        freedom=SPACE if blocks[0].in_space else PLANE,
+    )
+
+
+def law_of(scene, table, joint):
+    """The law of lines of joints with these numbers."""
+    scene.contacts = SimpleNamespace(joint=joint)
+    return pair_law.PairLaw.of_joints(scene, table)
 
 
 JOINT = np.array([0, 0, 1, 1, 2])
@@ -46,7 +57,7 @@ def lines():
 def law(in_space=False, fixed=()):
     """Four blocks: 0 below 1, and 1 below 2 by two joints. The last one has no joint, and large faces."""
     blocks = [block(7.0, 9.0, in_space=in_space, fixed=i in fixed) for i in range(4)]
-    return pair_law.PairLaw.of_joints(masonry(blocks), lines(), JOINT)
+    return law_of(scene(blocks), lines(), JOINT)
 
 
 def expected(k, share=1.0):
@@ -109,7 +120,7 @@ def test_a_fixed_block_has_what_its_joints_have_per_area():
     assert places(2, fixed=(1, 3)) == pytest.approx(expected(3.0) | {"friction": 0.3})
 
 
-SOFT = {"joint_stiffness": [5.0, 4.0, 4.0, 4.0], "joint_shear": [1.0, 9.0, 2.0, 2.0], "retardation": [0, 0, 2.0, 1.0]}
+SOFT = {"k_n": [5.0, 4.0, 4.0, 4.0], "k_s": [1.0, 9.0, 2.0, 2.0], "retardation": [0, 0, 2.0, 1.0]}
 """Of four joints of which the last one is the softest: then the softest along its face, then the least damped."""
 
 
@@ -121,10 +132,10 @@ def loose_law(in_space=False, fixed=()):
         block(*sides, in_space=in_space, length=3.0 if i == 1 else 1.0, fixed=i in fixed)
         for i, sides in enumerate(sizes)
     ]
-    given = masonry(blocks, [(2, 3)] * 4, [0.5] * 4, np.array([0.1, 0.2, 0.3, 0.4]), **SOFT)
+    given = scene(blocks, [(2, 3)] * 4, [0.5] * 4, np.array([0.1, 0.2, 0.3, 0.4]), **SOFT)
     k = np.array([90.0, 80.0, 70.0, 8.0 if in_space else 4.0])
     table = rows(kinds(2).line, 4, k=k, c=0.1 * k, k_s=0.4 * k, c_s=0.02 * k, friction=0.9)
-    return pair_law.PairLaw.of_joints(given, table, np.arange(4))
+    return law_of(given, table, np.arange(4))
 
 
 @pytest.mark.parametrize("in_space", [False, True])
@@ -163,8 +174,8 @@ def test_a_loose_block_rules_over_one_that_is_as_stiff_whichever_comes_first(loo
     """A joint over 0.5 m has 4 N/m, as the face of the loose block. Over half of it the pair has half of them."""
     ends = [i for i in range(3) if i != loose]
     sides = [block(0.5 * (1 + rounded), length=2.0) if i == loose else block(9.0, length=2.0) for i in range(3)]
-    found = pair_law.PairLaw.of_joints(
-        masonry(sides, [ends], [0.5], np.full(1, 0.9)), rows(kinds(2).line, 1, k=4.0, friction=0.6), np.zeros(1, int)
+    found = law_of(
+        scene(sides, [ends], [0.5], np.full(1, 0.9)), rows(kinds(2).line, 1, k=4.0, friction=0.6), np.zeros(1, int)
     )
     for other in ends:
         low, high = sorted((loose, other))
@@ -173,17 +184,17 @@ def test_a_loose_block_rules_over_one_that_is_as_stiff_whichever_comes_first(loo
 
 
 def test_half_of_many_joints_is_more_than_the_stiffest():
-    given = masonry([block(1.0)] * 5, [(0, 1), (0, 2), (0, 3)], [0.5] * 3, np.full(3, 0.9))
+    given = scene([block(1.0)] * 5, [(0, 1), (0, 2), (0, 3)], [0.5] * 3, np.full(3, 0.9))
     table = rows(kinds(2).line, 3, k=[4.0, 5.0, 6.0], friction=0.6)
-    found = pair_law.PairLaw.of_joints(given, table, np.arange(3))
+    found = law_of(given, table, np.arange(3))
     assert found.of_block[0][0, 0] == pytest.approx(7.5)
 
 
 def test_the_softer_block_of_two_is_taken_whichever_comes_first():
-    given = masonry([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
+    given = scene([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
     for stiffness in ([4.0, 5.0], [5.0, 4.0]):
         table = rows(kinds(2).line, 2, k=stiffness, friction=[0.6, 0.5])
-        found = pair_law.PairLaw.of_joints(given, table, np.arange(2))
+        found = law_of(given, table, np.arange(2))
         one = found.of_places(np.array([0 * 4 + 2]), np.ones(1), np.full(1, 1e9), 4)
         assert (one["k"][0], one["friction"][0]) == (4.0, 0.5)
 
@@ -191,9 +202,9 @@ def test_the_softer_block_of_two_is_taken_whichever_comes_first():
 @pytest.mark.parametrize("damped", [(0.1, 0.2), (0.2, 0.1)])
 def test_of_two_blocks_as_stiff_the_one_that_is_less_damped_is_taken(damped):
     """Whichever has the lower number."""
-    given = masonry([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
+    given = scene([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
     table = rows(kinds(2).line, 2, k=4.0, c=np.array(damped), friction=0.6)
-    found = pair_law.PairLaw.of_joints(given, table, np.arange(2))
+    found = law_of(given, table, np.arange(2))
     assert found.of_places(np.array([0 * 4 + 2]), np.ones(1), np.full(1, 1e9), 4)["c"][0] == pytest.approx(0.1)
 
 

@@ -1,10 +1,4 @@
-"""Polygons that roll and fall on long ground: rimless wheels against their closed form, and how deep thrown ones sink.
-
-A rimless wheel of n sides and radius R pivots about one corner after the other. Each impact leaves eta of its rate, and
-between two of them it gains what it falls by, so that in the long run its rate before an impact is omega with
-(1 - eta^2) omega^2 I_0 / 2 = m g 2 R sin(pi/n) sin(slope), I_0 about a corner (McGeer, Int. J. Robotics Research 9,
-1990). It does not depend on the springs, which bend by a ten-thousandth of R.
-"""
+"""Polygons on long ground: rimless wheels against their closed form, and how deep thrown ones sink."""
 
 import math
 
@@ -12,43 +6,18 @@ import numpy as np
 import pytest
 from everyday import among
 from masonry_blocks import box
+from wheels import RADIUS, rolling, slope_of, wheel_on
 
 import mjrock as mr
 from mjrock.distinct.search import encounters
 
-RADIUS = 0.3
 SIDES = range(5, 25)
 BEHIND = (0.5, 5.0, 50.0)
 
 
-def slope_of(sides):
-    """On which a wheel passes each corner, and does not leave the ground [rad]."""
-    return math.radians(15.0 if sides == 5 else 72.0 / sides)
-
-
-def wheel_on(slope, sides, behind, others=()):
-    """A wheel that stands on a side at x = 0, on ground from -behind to 20 m, turned to a slope; with other blocks."""
-    half = math.pi / sides
-    around = 2 * half * np.arange(sides)
-    ring = RADIUS * np.column_stack([np.sin(around - half), math.cos(half) - np.cos(around - half)])
-    turn = np.array([[math.cos(slope), math.sin(slope)], [-math.sin(slope), math.cos(slope)]])
-    corners = [box(-behind, 20.0, -1.0, 0.0).corners, ring, *(box(*other).corners for other in others)]
-    ground, *free = (each @ turn.T for each in corners)
-    return [mr.Polygon(ground, fixed=True, name="ground"), *(mr.Polygon(each) for each in free)], turn
-
-
 def rolls(sides, behind, others=(), *, falls=5.0, **options):
-    """The run of a wheel at its closed-form rate, for some times of a fall from corner to corner, and this rate."""
-    slope, half = slope_of(sides), math.pi / sides
-    blocks, turn = wheel_on(slope, sides, behind, others)
-    about = blocks[1].inertia + blocks[1].mass * RADIUS**2
-    eta = (blocks[1].inertia + blocks[1].mass * RADIUS**2 * math.cos(2 * half)) / about
-    falling = 2 * blocks[1].mass * mr.GRAVITY * 2 * RADIUS * math.sin(half) * math.sin(slope)
-    rate = math.sqrt(falling / about / (1 - eta**2))
-    arm = turn @ (math.cos(half), math.sin(half))
-    velocity = [[*(eta * rate * RADIUS * arm), eta * rate], *np.zeros((len(others), 3))]
-    masonry = mr.Masonry(blocks, k_n=3e9, friction=2.0, xi=1.0, frequency=400.0)
-    case = mr.MasonryCase(masonry, falls * 2 * math.sin(half) / rate, velocity=velocity, settled=False)
+    """The run of a wheel by explicit steps, and the closed form of its rate."""
+    case, rate = rolling(sides, behind, others, falls=falls)
     return mr.solve_explicit(case, output_step=1e-4, **options), rate
 
 
@@ -126,5 +95,6 @@ def test_a_joint_ends_before_the_next_side_of_a_polygon_lands(sides):
     for ground in (blocks[0], parts):
         masonry = mr.Masonry([ground, blocks[1]], points=2)
         width = sum(joint.width for joint in masonry.joints)
-        np.testing.assert_allclose(encounters._rolled(masonry), 1 - math.cos(math.pi / sides), rtol=1e-9)
+        standing = mr.MasonryCase(masonry, 1.0).standing
+        np.testing.assert_allclose(encounters._rolled(standing), 1 - math.cos(math.pi / sides), rtol=1e-9)
         assert width == pytest.approx(2 * RADIUS * math.sin(math.pi / sides))

@@ -11,8 +11,8 @@ from mjrock.distinct.kinds import link, ties
 from mjrock.distinct.kinds.actuators import Actuators
 from mjrock.distinct.kinds.constant_forces import ConstantForces
 from mjrock.distinct.kinds.dampers import Dampers
+from mjrock.distinct.kinds.lists import act_all, hold_all, numbered
 from mjrock.distinct.kinds.ties import Ties
-from mjrock.distinct.links import act_all, hold_all, numbered
 from mjrock.distinct.rows import rows
 from mjrock.distinct.supports import Supports, moving
 from mjrock.distinct.system import ENERGY

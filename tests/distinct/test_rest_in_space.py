@@ -8,9 +8,9 @@ from everyday import among, slow
 from space_blocks import block
 
 import mjrock as mr
-from mjrock.distinct.setup import standing
 from mjrock.problem.masonry.limit.statics import falling
 from mjrock.quantities import named
+from mjrock.scene.masonry import masonry_scene
 
 UNIT = (0.4, 0.2)
 JOINTS = {"k_n": 1e9, "k_s": 1e9, "friction": 0.6, "xi": 0.0}
@@ -72,7 +72,7 @@ def test_a_facade_that_falls_is_refused_by_the_names_of_the_blocks_that_fall(fir
     falls = falling(masonry)
     assert falls
     with pytest.raises(ValueError, match=f"cannot stand: {named(falls)} would fall under the weight"):
-        standing(masonry)
+        masonry_scene(mr.MasonryCase(masonry, 1.0))
 
 
 def test_a_block_that_only_springs_let_fall_is_named():
@@ -81,4 +81,4 @@ def test_a_block_that_only_springs_let_fall_is_named():
     masonry = mr.Masonry([*block((0.8, 0.4, 1.0)).blocks, leaning], k_n=1e6, friction=0.5)
     assert not falling(masonry)
     with pytest.raises(ValueError, match="rigid blocks would, but on joints of this stiffness leaning would fall"):
-        standing(masonry)
+        masonry_scene(mr.MasonryCase(masonry, 1.0))

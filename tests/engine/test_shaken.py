@@ -62,6 +62,19 @@ def test_the_accuracy_of_free_rocking_is_as_it_was(two_sided, contacts):
     assert mr.simulate(two_sided, contacts).stats["accuracy"] == 1e-3
 
 
+def test_a_wall_that_falls_from_where_it_hardly_moved_takes_no_more_steps_for_more_accuracy():
+    """On a stiff base the first touch of a wall that a pulse tips over is a few um/s fast. Steps are those of the
+    longest that MuJoCo represents; as a free fall, its rotation at the end is that of a hundredth of the accuracy."""
+    wall = mr.Block(b=0.06, h=3.0)
+    contacts = mr.Contacts.from_damping(wall, k_base=3e13, xi_base=0.05, k_side=3e13, xi_side=0.01)
+    pulse = mr.GroundMotion.rectangular(-1.6 * mr.GRAVITY * np.tan(wall.alpha), 1 / wall.p)
+    case = mr.Case(wall, 0.0, 8 / wall.p, motion=pulse)
+    runs = [mr.simulate(case, contacts, accuracy=accuracy) for accuracy in (1e-3, 1e-4, 1e-5)]
+    assert runs[0].theta[-1] > 10 * wall.alpha
+    assert [run.theta[-1] for run in runs] == pytest.approx([runs[-1].theta[-1]] * 3, rel=1e-3)
+    assert max(run.stats["steps"] for run in runs) < 1.5 * runs[0].stats["steps"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("sides", records_accuracy.SIDES)
 def test_peaks_under_records(sides):

@@ -92,9 +92,9 @@ def test_no_touch_is_predicted_from_an_abrupt_step(ice):
 def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
     """The stop takes a share of `abrupt` of the speed of the last touch in one step. Speeds weigh with the masses."""
     h = short_step(ice, ACCURACY)
-    _, record = one_step(ice, -1e-4, h)
+    _, record = one_step(ice, -1e-3, h)
     change = ice.bodies.masses @ (record.after[0] - record.before[0]) ** 2
-    after, _ = one_step(ice, -1e-4, h, change / (share * METHOD.abrupt) ** 2)
+    after, _ = one_step(ice, -1e-3, h, change / (share * METHOD.abrupt) ** 2)
     assert bool(after.unpredictable) is (share > 1)
 
 
@@ -136,3 +136,13 @@ def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
     again = np.flatnonzero((beyond[:-1] <= 0) & (beyond[1:] > 0) & (steps.t[1:] > steps.t[beyond.argmax()]))[0] + 1
     assert steps.h[again] == short_step(scene, ACCURACY)
     assert beyond[again] / steps.record.before[again, 0] == pytest.approx(0.5 * steps.h[again], rel=0.02)
+
+
+def test_changes_are_measured_by_a_share_of_the_present_energy_at_least(ice):
+    """A change that is abrupt for what touched last is none for a block that is much faster now."""
+    h = short_step(ice, ACCURACY)
+    _, record = one_step(ice, -1e-5, h)
+    now = METHOD.faster * ice.bodies.masses @ record.after[0] ** 2
+    change = ice.bodies.masses @ (record.after[0] - record.before[0]) ** 2
+    assert change < 0.5 * METHOD.abrupt**2 * now
+    assert not one_step(ice, -1e-5, h, 0.5 * change / METHOD.abrupt**2)[0].unpredictable

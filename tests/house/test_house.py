@@ -5,6 +5,8 @@ import re
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 import mjrock
 
 ROOT = Path(mjrock.__file__).parent
@@ -88,10 +90,12 @@ def test_no_circle():
             del waits[name]
 
 
-def test_the_engine_takes_scenes_and_knows_no_blocks():
-    """What it needs of a wall or of masonry is in the scene."""
-    paths = [path for path in MODULES if path.relative_to(ROOT).parts[0] == "engine"]
+@pytest.mark.parametrize("solver", ["engine", "distinct"])
+def test_solvers_take_scenes_and_know_no_blocks(solver):
+    """What they need of a wall or of masonry is in the scene."""
+    paths = [path for path in MODULES if path.relative_to(ROOT).parts[0] == solver]
     blocks = {"problem.wall.block", "problem.masonry.masonry"}
+    blocks |= {f"problem.masonry.blocks.{name}" for name in ("polygon", "polyhedron", "compound")}
     assert [f"{path.name} imports {target}" for path in paths for target in blocks & set(imports(path)[0])] == []
     assert len(paths) > 20
 

@@ -9,10 +9,10 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 PAGE = (ROOT.parent / "docs" / "own_effect.md").read_text(encoding="utf-8")
-DEVICE, _, LAW = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
+DEVICE, _, _, LAW = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
 OF_DEVICE = r"FrictionDamper|friction_damper"
 OF_LAW = (
-    r"squeeze(:|\[|\b.*frozen)|\b(law|links|self|ties?|sprung)\.push\b|\bresisting\b|\.bearing\b"
+    r"squeeze(:|\[|\b.*frozen)|\b(law|links|self|ties?|tied|sprung)\.push\b|\bresisting\b|\.bearing\b"
     r"|class Slider\b|import Slider\b|slider_event|\bpushes = |\"reach\", \"strength\""
 )
 

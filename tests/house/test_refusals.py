@@ -12,7 +12,7 @@ from offenders import not_refused
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.result.table import csv_text
+from mjrock.files import csv_text
 from mjrock.study.campaign.store import FIXED
 
 WALL = mr.Block(0.3, 2.1)
@@ -212,11 +212,7 @@ CANNOT_BE = (
     (lambda: drawn(plotting.ties, [answer()], ["a", "b"]), "labels has 2 texts for 1 responses"),
     (lambda: drawn(plotting.acceleration, CASE, math.nan), "until = nan is outside the valid range"),
     (lambda: drawn(plotting.pushover, {"a": 1}), r"curves\['a'\] = 1 of type int is not a PushoverCurve"),
-    (lambda: drawn(plotting.pairs, [[1.0, 2.0]], ("a", "b"), (0.0, 1.0)), "limits = .* two positive numbers"),
-    (lambda: drawn(plotting.parity, [1.0], [1.0], [0.0]), "matched, predicted and color hold 0; the valid range"),
-    (lambda: drawn(plotting.overturning_map, [math.inf], [1.0], [[0]]), "frequency holds a value that is not fin"),
     (lambda: drawn(plotting.incremental, [1.0], [[1.0, 2.0]], "a"), r"peaks has the shape \(1, 2\)"),
-    (lambda: drawn(plotting.convergence, [1.0], {"a": [1.0, 2.0]}, 2), r"errors has the shape \(2,\)"),
     (lambda: plotting.panels([]), r"drawings = \[\] of type list is not a sequence of at least one"),
     (lambda: plotting.panels([("a", 3)]), r"drawings\[0\]\[1\] = 3 of type int is not a function that draws"),
     (lambda: plotting.grid([("a", [answer()])], 0), "columns = 0 is outside the valid range 1 to 50"),

@@ -57,7 +57,10 @@ WRITES = {
     "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
     "collapse": {"collapse.csv", "collapse.txt"},
+    "plain_models": {f"plain_models.{ending}" for ending in ("png", "csv", "txt")},
+    "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
+    "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
     "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
     | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
     "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")},
@@ -213,6 +216,7 @@ LONG = {
     "arching",
     "slow_push",
     "opened_in_vtk",
+    "drawn_in_space",
     "shaken_wall",
     "vaults",
     "bonded_facade",
@@ -227,6 +231,8 @@ LONG = {
     "shear_wall",
     "first_minute",
     "collapse",
+    "plain_models",
+    "second_opinion",
 }
 """Scripts that take a while even with --quick."""
 
@@ -235,7 +241,7 @@ LONG = {
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in WRITES]
 )
 def test_quick(name, tmp_path, capsys):
-    if name == "opened_in_vtk":
+    if name in ("opened_in_vtk", "drawn_in_space"):
         pytest.importorskip("pyvista", reason="the extra docs is not installed")
     main_of(name)(["--quick", "--out", str(tmp_path / "deep" / "er")])
     written = {p.name for p in (tmp_path / "deep" / "er").iterdir() if p.suffix != ".lock"}

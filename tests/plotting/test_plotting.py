@@ -94,30 +94,6 @@ def test_blocks_are_drawn_where_a_pose_has_brought_them():
         plotting.blocks(ax, masonry, [0.0, 0.0, 0.0])
 
 
-@pytest.mark.parametrize(
-    ("draw", "complaint"),
-    [
-        (
-            lambda ax: plotting.parity(ax, [0.1, True], [0.1, 0.2], [1.0, 2.0]),
-            "matched = .* does not hold real numbers",
-        ),
-        (lambda ax: plotting.parity(ax, [0.1], [0.1, 0.2], [1.0, 2.0]), r"matched has the shape \(1,\), predicted"),
-        (lambda ax: plotting.damping_curves(ax, [("a", ([0.5], ["x"]), ([0.5], [0.1]))]), "xi = .* real numbers"),
-        (lambda ax: plotting.sensitivity(ax, {"R": ([], [])}), r"shares has the shape \(0,\)"),
-        (lambda ax: plotting.obtained(ax, {"law": ([0.5], None)}), "obtained = None does not hold real numbers"),
-        (lambda ax: plotting.residuals("t", [1.0], {"R": ([1.0, 2.0], "log")}), r"R has the shape \(2,\), residual"),
-    ],
-)
-def test_pictures_of_laws_take_rows_of_one_length(draw, complaint):
-    with pytest.raises((TypeError, ValueError), match=complaint):
-        draw(Figure().subplots())
-
-
-def test_what_a_law_obtains_may_be_missing():
-    ax = plotting.obtained(Figure().subplots(), {"law": ([0.5, 0.6], [0.5, np.nan])})
-    np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), [0.5, np.nan])
-
-
 def test_a_rotation_that_overturns_below_alpha_is_drawn(wall, contacts):
     """A load at the top lowers it. Without effects there is no line, nor one far beyond the motion."""
     load, tie = mr.Load(0.4 * wall.weight, height=2 * wall.h), mr.Tie(2 * wall.h, 1e6)

@@ -1,6 +1,7 @@
 """Pictures of blocks in space: where blocks are drawn, which hide which, and what is refused."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation
 from mjrock.plotting.perspective import Faces
 from mjrock.plotting.solids import Solids
@@ -91,7 +93,51 @@ def test_a_block_within_a_frame_hides_its_far_leg_and_is_hidden_by_the_near_one(
     assert top == 2
 
 
-def test_what_has_sunk_below_the_ground_is_left_out_and_fixed_blocks_are_grey():
+def nearest(solids, point):
+    """The convex parts that a line of sight through a point meets, the nearest first."""
+    met, part = [], 0
+    poses = dict(zip(solids.masonry.free, solids.poses[0], strict=True))
+    for number, rest in zip(solids.shown, solids.rests, strict=True):
+        turn = rotations(poses[number][None])[0]
+        start, way = turn.T @ (point - rest - poses[number][:3]) + rest, turn.T @ solids.eye
+        for body in solids.masonry.polyhedra[number].parts:
+            ends = [-np.inf, np.inf]
+            for side in body.sides:
+                speed, off = side.normal @ way, side.normal @ (side.corners[0] - start)
+                ends = [max(ends[0], off / speed), ends[1]] if speed < 0 else [ends[0], min(ends[1], off / speed)]
+            met += [(ends[1], part)] if ends[0] < ends[1] - 1e-6 else []
+            part += 1
+    return [part for _, part in sorted(met, reverse=True)]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_a_line_of_sight_meets_first_is_drawn_last(seed):
+    """Bodies that lie as they fell, far from where they rested: no joint tells their order."""
+    rng = np.random.default_rng(seed)
+    cells = np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3)
+    size = np.array([1.6, 0.3, 0.8])
+    boxes = [mr.Polyhedron.box(size, size * (cell + np.array([0, 0, 0.5]))) for cell in cells[:18]]
+    cells = 1.85 * cells
+    spread = rng.normal(size=(8, 9, 3))
+    spread *= 0.8 / np.linalg.norm(spread, axis=2, keepdims=True)
+    hulls = [mr.Polyhedron(9.0 + cell + corners) for cell, corners in zip(cells[18:26], spread, strict=True)]
+    legs = mr.Polyhedron.box((0.3, 0.3, 0.9), (-9, 0, 5)), mr.Polyhedron.box((0.6, 0.3, 0.3), (-8.55, 0, 4.7))
+    ground = mr.Polyhedron.box((9, 9, 1), (0, 0, -0.5), fixed=True)
+    masonry = mr.Masonry((ground, *boxes, *hulls, mr.Compound(legs)), xi=0)
+    pose = rng.normal(size=(27, 7))
+    pose[:, :3] = rng.permutation(cells) - [body.centroid for body in masonry.polyhedra[1:]]
+    pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
+    camera = (rng.uniform(-90, 90), rng.uniform(-180, 180)) if seed else (0.0, 0.0)
+    solids = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose[None], camera=camera)
+    place, lines = np.argsort(solids.order(0)), 0
+    for point in rng.uniform(-0.5, 4.2, (300, 3)):
+        met = nearest(solids, point)
+        assert all(place[before] > place[behind] for before, behind in pairwise(met))
+        lines += len(met) > 1
+    assert lines > 50
+
+
+def test_what_has_sunk_below_the_gspreadis_left_out_and_fixed_blocks_are_grey():
     ax = axes()
     plotting.blocks(ax, MASONRY, moved(place=(0.0, 0.0, -3.0)))
     assert len(faces_of(ax).corners) == 3

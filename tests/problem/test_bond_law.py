@@ -17,14 +17,22 @@ K, TENSION, TORN = 1e8, 2e3, 1e4
 
 def row(**changed):
     """An intact bond."""
-    law = {"k": K, "tension": TENSION, "cohesion": 3e3, "bears": math.inf, "torn": TORN, "worn": 5e3, "crumbled": 50.0}
-    state = {"left": 1.0, "drawn": 0.0, "crack": 0.0, "crushed": 0.0, "secant": K}
-    plain = {"k_s": 0.4 * K, "friction": 0.75, "peak": math.inf, "hardens": 0.0}
+    law = {
+        "k": K,
+        "tension": TENSION,
+        "cohesion": 3e3,
+        "strength": math.inf,
+        "opening_rate": TORN,
+        "slip_rate": 5e3,
+        "crushing_rate": 50.0,
+    }
+    state = {"integrity": 1.0, "largest_gap": 0.0, "crack": 0.0, "crushed": 0.0, "secant": K}
+    plain = {"k_s": 0.4 * K, "friction": 0.75, "peak": math.inf, "hardening": 0.0}
     return SimpleNamespace(**law | state | plain | changed)
 
 
 def state(bond):
-    return bond.left, bond.drawn, bond.crack, bond.secant
+    return bond.integrity, bond.largest_gap, bond.crack, bond.secant
 
 
 @pytest.mark.parametrize("gap", [-1e-3, 0.0, 0.999 * TENSION / K, TENSION / K])
@@ -38,11 +46,11 @@ def test_a_bond_within_its_strength_stays_whole(gap):
 def test_a_crack_pulls_what_is_left_of_the_strength(gap):
     bond = row()
     tear(bond, gap)
-    assert bond.drawn == gap
+    assert bond.largest_gap == gap
     assert 0 < bond.crack < gap
     assert K * (gap - bond.crack) == pytest.approx(TENSION * math.exp(-TORN * bond.crack), rel=1e-12)
-    assert bond.left == pytest.approx(math.exp(-TORN * bond.crack), rel=1e-12)
-    assert bond.secant * gap == pytest.approx(TENSION * bond.left, rel=1e-12)
+    assert bond.integrity == pytest.approx(math.exp(-TORN * bond.crack), rel=1e-12)
+    assert bond.secant * gap == pytest.approx(TENSION * bond.integrity, rel=1e-12)
     before = state(bond)
     tear(bond, 0.5 * gap)  # unloading along the secant leaves it as it is
     assert state(bond) == before
@@ -57,92 +65,93 @@ def test_many_small_openings_tear_as_one():
 
 
 def test_what_slip_has_worn_is_no_longer_there_to_tear():
-    bond = row(left=0.5)
+    bond = row(integrity=0.5)
     tear(bond, 5e-5)
-    assert bond.left == pytest.approx(0.5 * math.exp(-TORN * bond.crack), rel=1e-12)
-    assert bond.secant * 5e-5 == pytest.approx(TENSION * bond.left, rel=1e-12)
+    assert bond.integrity == pytest.approx(0.5 * math.exp(-TORN * bond.crack), rel=1e-12)
+    assert bond.secant * 5e-5 == pytest.approx(TENSION * bond.integrity, rel=1e-12)
 
 
 @pytest.mark.parametrize(("rate", "breaks"), [(1.0, True), (1.0 - 1e-9, False), (1.5, True)])
 def test_a_bond_breaks_at_once_where_its_spring_gives_back_what_the_crack_takes(rate, breaks):
-    bond = row(k=2.0**27, tension=2.0**10, torn=rate * BRITTLE * 2.0**17)
+    bond = row(k=2.0**27, tension=2.0**10, opening_rate=rate * BRITTLE * 2.0**17)
     tear(bond, 2.0**-17 + 1e-7)
     if breaks:
-        assert state(bond) == (0.0, bond.drawn, bond.drawn, 0.0)
+        assert state(bond) == (0.0, bond.largest_gap, bond.largest_gap, 0.0)
     else:
-        assert 0 < bond.left < 1
+        assert 0 < bond.integrity < 1
         assert bond.secant > 0
 
 
 @pytest.mark.parametrize("sheared", [0.0, 1e4])
 def test_a_joint_is_crushed_until_it_bears_the_rest(sheared):
-    bond = row(bears=1e5)
+    bond = row(strength=1e5)
     gap = -math.sqrt(1e5**2 - (3 * sheared) ** 2) / K
     assert crush(bond, 0.999 * gap, sheared) == 0.0
-    assert (bond.left, bond.crushed, bond.bears) == (1.0, 0.0, 1e5)
+    assert (bond.integrity, bond.crushed, bond.strength) == (1.0, 0.0, 1e5)
     closing = crush(bond, 1.1 * gap, sheared)
     pressed = K * (-1.1 * gap - closing)
     assert closing > 0
     assert math.hypot(pressed, 3 * sheared) == pytest.approx(1e5 * math.exp(-50.0 * closing), rel=1e-9)
-    assert bond.bears == pytest.approx(1e5 * math.exp(-50.0 * closing), rel=1e-12)
-    assert bond.left == pytest.approx(math.exp(-50.0 * closing), rel=1e-12)
+    assert bond.strength == pytest.approx(1e5 * math.exp(-50.0 * closing), rel=1e-12)
+    assert bond.integrity == pytest.approx(math.exp(-50.0 * closing), rel=1e-12)
     assert crush(bond, 1.2 * gap + closing, sheared) > 0
     assert bond.crushed > closing
 
 
 @pytest.mark.parametrize("sheared", [0.0, 5e3])
 def test_a_joint_that_hardens_bears_a_parabola_up_to_its_peak_and_then_softens(sheared):
-    bond = row(bears=1e5 / 3, peak=1e5, hardens=2e-3)
+    bond = row(strength=1e5 / 3, peak=1e5, hardening=2e-3)
     assert crush(bond, -0.99 * math.sqrt((1e5 / 3) ** 2 - (3 * sheared) ** 2) / K, sheared) == 0.0
     for pressed in (5e4, 8e4, 0.9999e5):
         share = 1 - math.sqrt(1 - ((3 * pressed / 1e5 - 1) / 2) ** 2)
         gap = -math.sqrt(pressed**2 - (3 * sheared) ** 2) / K - 2e-3 * share
         crush(bond, gap + bond.crushed, sheared)
         assert bond.crushed == pytest.approx(2e-3 * share, rel=1e-8)
-        assert bond.bears == pytest.approx(pressed, rel=1e-8)
-        assert bond.left == 1.0
+        assert bond.strength == pytest.approx(pressed, rel=1e-8)
+        assert bond.integrity == 1.0
     closing = bond.crushed + crush(bond, -2e-3, sheared)
     assert (bond.crushed, closing) == (pytest.approx(closing), pytest.approx(bond.crushed))
     assert closing > 2e-3
-    assert bond.bears == pytest.approx(1e5 * math.exp(-50.0 * (closing - 2e-3)), rel=1e-9)
-    assert bond.left == pytest.approx(math.exp(-50.0 * (closing - 2e-3)), rel=1e-9)
+    assert bond.strength == pytest.approx(1e5 * math.exp(-50.0 * (closing - 2e-3)), rel=1e-9)
+    assert bond.integrity == pytest.approx(math.exp(-50.0 * (closing - 2e-3)), rel=1e-9)
 
 
 def test_a_joint_that_hardens_passes_its_peak_within_one_call():
-    once, twice = (row(bears=1e5 / 3, peak=1e5, hardens=2e-3) for _ in range(2))
+    once, twice = (row(strength=1e5 / 3, peak=1e5, hardening=2e-3) for _ in range(2))
     crush(once, -4e-3, 1e3)
     first = crush(twice, -2e-3, 1e3)
     crush(twice, -4e-3 + first, 1e3)
     assert once.crushed > 2e-3
-    assert (once.crushed, once.bears, once.left) == pytest.approx((twice.crushed, twice.bears, twice.left), rel=1e-9)
+    for name in ("crushed", "strength", "integrity"):
+        assert getattr(once, name) == pytest.approx(getattr(twice, name), rel=1e-9)
 
 
 def test_a_joint_that_hardens_and_closes_its_gap_under_shear_stays_below_its_peak():
-    bond = row(bears=1e5 / 3, peak=1e5, hardens=2e-3)
+    bond = row(strength=1e5 / 3, peak=1e5, hardening=2e-3)
     assert crush(bond, -1e-5, 3e4) == pytest.approx(1e-5)
-    assert bond.bears == pytest.approx(1e5 / 3 * (1 + 2 * math.sqrt(0.005 * 1.995)), rel=1e-9)
+    assert bond.strength == pytest.approx(1e5 / 3 * (1 + 2 * math.sqrt(0.005 * 1.995)), rel=1e-9)
 
 
 def test_a_joint_that_shear_alone_crushes_gives_way_until_nothing_presses():
-    bond = row(bears=1e5)
+    bond = row(strength=1e5)
     assert crush(bond, -2e-4, 5e4) == pytest.approx(2e-4)
 
 
 def test_cohesion_and_friction_within_what_the_joint_bears():
     assert bonded_limit(row(), 4e3) == pytest.approx(3e3 + 0.75 * 4e3)
-    assert bonded_limit(row(left=0.5), 4e3) == pytest.approx(1.5e3 + 0.75 * 4e3)
+    assert bonded_limit(row(integrity=0.5), 4e3) == pytest.approx(1.5e3 + 0.75 * 4e3)
     assert bonded_limit(row(), -4e3) == pytest.approx(3e3)
-    assert bonded_limit(row(bears=9e3), 4e3) == pytest.approx(3e3)
+    assert bonded_limit(row(strength=9e3), 4e3) == pytest.approx(3e3)
 
 
 def test_slip_wears_cohesion_by_its_energy():
     """A whole bond takes c / (c / G_II) in all: the energy of the line."""
-    bond = row(left=0.8)
+    bond = row(integrity=0.8)
     taken = wear(bond, 1e-4)
-    assert bond.left == pytest.approx(0.8 * math.exp(-0.5), rel=1e-12)
-    assert taken == pytest.approx(3e3 / 5e3 * (0.8 - bond.left), rel=1e-12)
+    assert bond.integrity == pytest.approx(0.8 * math.exp(-0.5), rel=1e-12)
+    assert taken == pytest.approx(3e3 / 5e3 * (0.8 - bond.integrity), rel=1e-12)
     assert wear(bond, 0.0) == 0.0
-    assert wear(row(worn=0.0), 1e-4) == 0.0
+    assert wear(row(slip_rate=0.0), 1e-4) == 0.0
     assert wear(row(), 1.0) == pytest.approx(3e3 / 5e3)
 
 

@@ -8,7 +8,7 @@ import pytest
 import mjrock as mr
 from mjrock.problem.masonry.effects import applied as applied_to
 from mjrock.problem.masonry.effects import held_at
-from mjrock.study.campaign.fingerprint import fingerprint
+from mjrock.study.campaign.task import fingerprint
 
 box = mr.Polyhedron.box
 MASONRY = mr.Masonry(

@@ -1,13 +1,14 @@
 """Limit analysis without dilatancy: closed forms, published walls, branch and bound, and what a state must hold."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 import mjrock as mr
-from mjrock.problem.masonry.limit.limit_state import Programme, states_without_dilatancy
+from mjrock.problem.masonry.limit.limit_state import SHARED, TURNS, Programme, _met, states_without_dilatancy
 from mjrock.problem.masonry.limit.statics import Pulls, weight_of
 from scripts.checks import limit_analysis as study
 
@@ -276,3 +277,28 @@ def test_a_state_that_does_not_hold_is_none():
     assert not programme.holds(state._replace(p=-state.p))
     other = programme.forces(np.zeros(len(state.x)), 1.0)
     assert not programme.holds(state._replace(x=other.x[:-1], multiplier=other.x[-1]))
+
+
+@pytest.mark.parametrize(
+    ("powers", "turns", "met"),
+    [
+        ((0.0326, 0.0173, 0.0133, 0.0025, 1.2e-6, 0.0), 6, True),  # those of a wall of Ferris and Tin-Loi
+        ((0.3, 0.1, 0.1, 0.1, 0.0), 4, False),
+        ((0.3, 0.1, 0.2, 0.09, 0.21, 0.0), 5, False),
+        ((0.3, 0.1, 0.2, 0.09, 0.1, 0.5 * SHARED), 6, True),
+        (np.geomspace(0.3, 2 * SHARED, TURNS + 1), TURNS, False),
+    ],
+)
+def test_forces_and_mechanism_take_turns_as_long_as_they_share_less_power(powers, turns, met):
+    """A search is given up when two turns have gained nothing, from the fourth one on, or after the most turns."""
+    asked = []
+
+    def forces(rates, price):
+        asked.append(price)
+        return SimpleNamespace(status=0, x=np.array([powers[len(asked) - 1], 7.0]))
+
+    programme = SimpleNamespace(mechanism=lambda x: (np.ones(1), np.array([len(asked)])), forces=forces)
+    moving = _met(programme, np.ones(1))
+    assert len(asked) == turns
+    assert (moving is not None) is met
+    assert moving is None or moving[1] == turns - 1

@@ -13,7 +13,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.problem.masonry.laws.options import JointOptions
-from mjrock.study.campaign.fingerprint import fingerprint
+from mjrock.study.campaign.task import fingerprint
 
 ROOT = Path(__file__).parents[2]
 BOND = mr.Bond(tension=0.2e6, cohesion=0.3e6, opening_energy=18.0, slip_energy=125.0)

@@ -7,7 +7,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.result.compas import at_corners
-from mjrock.result.samples import sample_at
+from mjrock.result.motion import sample_at
 
 
 @pytest.fixture(scope="module")

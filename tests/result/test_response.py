@@ -7,8 +7,7 @@ import mjrock as mr
 from mjrock.geometry.kinematics import gaps
 from mjrock.problem.damping.contacts import Uplift
 from mjrock.result.ending import ending
-from mjrock.result.history import rocking_history
-from mjrock.result.rocking import peak_energies, restitution_of
+from mjrock.result.rocking import peak_energies, restitution_of, rocking_history
 from mjrock.scene.wall import wall_scene
 from scripts.shared.paper import K_N
 

@@ -5,7 +5,7 @@ import time
 import pytest
 
 import mjrock as mr
-from mjrock.result.stopwatch import Stopwatch
+from mjrock.result.ending import Stopwatch
 from scripts.shared.paper import FIGURE_3
 
 

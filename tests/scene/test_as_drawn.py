@@ -7,7 +7,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.quantities import GRAVITY
-from mjrock.study.campaign.fingerprint import fingerprint
+from mjrock.study.campaign.task import fingerprint
 
 SIDE, K_N, DENSITY = 1.0, 1e7, 2000.0
 JOINTS = {"k_n": K_N, "k_s": K_N, "friction": 0.6, "xi": 0.0}

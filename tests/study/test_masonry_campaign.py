@@ -7,7 +7,7 @@ import pytest
 from masonry_blocks import columns
 
 import mjrock as mr
-from mjrock.study.campaign.fingerprint import fingerprint
+from mjrock.study.campaign.task import fingerprint
 
 
 def analysis(peak, blocks=2, **options):

@@ -12,7 +12,7 @@ from masonry_blocks import GROUND, box, columns
 import mjrock as mr
 from mjrock.problem.masonry.laws.joint_table import ByKind, ByName
 from mjrock.problem.masonry.pile import Pile
-from mjrock.study.campaign.fingerprint import fingerprint
+from mjrock.study.campaign.task import fingerprint
 from mjrock.study.matching.masonry import STRONG, excess, peaks, rebound, restitutions, strong
 from mjrock.theory.impact import as_one
 

@@ -7,7 +7,7 @@ import pytest
 from campaign_tasks import Square
 
 import mjrock as mr
-from mjrock.study.campaign.status import closing, status
+from mjrock.study.campaign.progress import closing, status
 
 WALL = mr.Block.from_size(0.6, 4.2)
 E = mr.Restitution.from_geometry(WALL)

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study.campaign.fingerprint import fingerprint
 from mjrock.study.campaign.store import Store
+from mjrock.study.campaign.task import fingerprint
 
 
 def row(key, position=0, **columns):

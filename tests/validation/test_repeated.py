@@ -10,6 +10,7 @@ from masonry_blocks import GROUND, box
 import mjrock as mr
 from mjrock.distinct.setup import standing
 from mjrock.engine import model
+from mjrock.scene.masonry import masonry_scene
 
 SINE = mr.GroundMotion.sine(3.0, 0.3, 2)
 WALL = mr.Block.from_size(0.5, 2.0)
@@ -135,7 +136,7 @@ def arrays_in(thing, path=""):
 
 @pytest.mark.parametrize("settled", [True, False])
 def test_a_run_writes_into_nothing_that_others_share(settled):
-    kept = standing(PILE, (), settled)
+    kept = standing(masonry_scene(mr.MasonryCase(PILE, 1.0, settled=settled)))
     before = arrays_in(kept)
     thrown(1, settled)
     after = arrays_in(kept)

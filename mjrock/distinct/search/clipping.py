@@ -13,14 +13,16 @@ import math
 import numpy as np
 
 from ...compiled import inlined
-from ...geometry.frames import SPACE
 from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
 from ...quantities import Array
 from ..rows import Row, Rows, integers, numbers, vectors
-from .solids import Solids
+from .solids import Solids, triple
 
-PLACE = np.dtype([*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area")])
-"""A place: block of the face, other block, where, normal out of the face, gap [m], share, and area of the part [m2]."""
+PLACE = np.dtype(
+    [*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area"), *integers("sides")]
+)
+"""A place: block of the face, other block, where, normal out of the face, gap [m], share, area of the part [m2], and
+number of the pair of sides, see `sides_between`."""
 OUTSIDE = 1e-9
 """Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
 SAME = 1e-6
@@ -33,7 +35,7 @@ do not meet as edges [-]."""
 @inlined
 def corner_of(solids: Solids, number: int) -> Vector:
     """Where a corner of an outline is [m]."""
-    return vector(solids.corners, solids.outline[number], SPACE.axes)
+    return triple(solids.corners, solids.outline[number])
 
 
 @inlined
@@ -45,7 +47,7 @@ def next_corner(solids: Solids, face: int, number: int) -> Vector:
 @inlined
 def normal_of(solids: Solids, face: int) -> Vector:
     """The normal of a face."""
-    return vector(solids.normals, face, SPACE.axes)
+    return triple(solids.normals, face)
 
 
 @inlined
@@ -63,6 +65,14 @@ def face_towards(solids: Solids, block: int, way: Vector) -> int:
         if cosine > largest:
             best, largest = face, cosine
     return best
+
+
+@inlined
+def sides_between(solids: Solids, faces: tuple[int, int]) -> int:
+    """One number for the sides that two faces lie on."""
+    one, other = solids.side[faces[0]], solids.side[faces[1]]
+    number: int = min(one, other) * len(solids.side) + max(one, other)
+    return number
 
 
 @inlined
@@ -113,7 +123,7 @@ def parted(polygon: Array, count: int) -> int:
     """Leave out the corners of a polygon that fall on those before them. Returns how many are left."""
     left = 0
     for i in range(count):
-        at, last = vector(polygon, i, SPACE.axes), vector(polygon, left - 1 if left else count - 1, SPACE.axes)
+        at, last = triple(polygon, i), triple(polygon, left - 1 if left else count - 1)
         if length_of(minus(at, last)) > OUTSIDE * (length_of(at) + length_of(last)):
             put(polygon[left], at)
             left += 1
@@ -123,18 +133,18 @@ def parted(polygon: Array, count: int) -> int:
 @inlined
 def turn_at(polygon: Array, count: int, i: int) -> float:
     """The angle by which the outline of a polygon turns at a corner, over a whole turn."""
-    at = vector(polygon, i, SPACE.axes)
-    before = minus(at, vector(polygon, i - 1 if i else count - 1, SPACE.axes))
-    after = minus(vector(polygon, (i + 1) % count, SPACE.axes), at)
+    at = triple(polygon, i)
+    before = minus(at, triple(polygon, i - 1 if i else count - 1))
+    after = minus(triple(polygon, (i + 1) % count), at)
     return math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
 
 
 @inlined
 def area_of(polygon: Array, count: int) -> float:
     """Area of a polygon [m2]."""
-    first, area = vector(polygon, 0, SPACE.axes), 0.0
+    first, area = triple(polygon, 0), 0.0
     for i in range(1, count - 1):
-        one, next_one = vector(polygon, i, SPACE.axes), vector(polygon, i + 1, SPACE.axes)
+        one, next_one = triple(polygon, i), triple(polygon, i + 1)
         area += 0.5 * length_of(spun(minus(one, first), minus(next_one, first)))
     return area
 
@@ -148,7 +158,7 @@ def distance_from(at: Vector, a: Vector, along: Vector) -> float:
 @inlined
 def write_place(place: Row, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
     """Write a place of a face, the first block, and of a point on the other one."""
-    place.face, place.other, place.gap = blocks[0], blocks[1], gap
+    place.face, place.other, place.gap, place.sides = blocks[0], blocks[1], gap, -1
     put(place.at, minus(at, scaled(0.5 * gap, normal)))
     put(place.normal, normal)
 
@@ -220,7 +230,8 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count:
         share = turn_at(room, corners, i)
         if share > SAME:
             if count < len(table):
-                meet(solids, faces, blocks, vector(room, i, SPACE.axes), table[count])
+                meet(solids, faces, blocks, triple(room, i), table[count])
                 table[count].share, table[count].area = share, area
+                table[count].sides = sides_between(solids, faces)
             count += 1
     return count

@@ -19,10 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...problem.masonry.laws.joint_law import Law, stored_along
-from ...problem.masonry.lines import free_numbers
-from ...problem.masonry.masonry import Masonry
+from ...problem.wall.standing import Standing
 from ...quantities import Array, Flags, Integers
-from ..contacts.bonds import holding, released
+from ...scene.scene import Scene
 from ..rows import chosen, joined, rows, unsound
 from ..supports import surges
 from ..system import Books, System
@@ -44,8 +43,7 @@ from .looking import (
     watch,
     wears,
 )
-from .loose import longest_step_of_loose
-from .pair_law import SHARED, PairLaw, least_among, pair_number
+from .pair_law import SHARED, PairLaw, least_among, longest_step_of_loose, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
 
@@ -94,30 +92,32 @@ class Encounters:
     """The blocks of masonry, and the lines where they meet beyond their joints.
 
     Args:
-        masonry: the masonry.
-        system: its bodies where they stand, and the lines of its joints.
-        joint: number of the joint of each line. The account of the encounters comes after those of the joints.
+        scene: what stands.
+        system: its bodies where they stand, and the lines of its joints. The account of the encounters comes after
+            those of the joints.
 
     `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
     """
 
-    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
-        blocks = masonry.blocks
-        self.count, self.group = len(blocks), len(masonry.joints)
-        self.names, self.sizes = masonry.names, np.array([block.size for block in blocks])
-        body, drawn = free_numbers(blocks), np.array(masonry.centroids, dtype=float)
+    def __init__(self, scene: Scene, system: System) -> None:
+        solids, joints, joint = scene.standing.solids, scene.standing.joints, scene.contacts.joint
+        self.count, self.group = len(solids), len(joints)
+        self.names, self.sizes = [solid.name for solid in solids], np.array([solid.size for solid in solids])
+        body, drawn = np.array([solid.body for solid in solids]), np.array([solid.rest for solid in solids])
+        flat = len(scene.freedom.axes) == 2
+        drawn = drawn[:, ::2].copy() if flat else drawn
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
-        self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
-        self.finder = Finder(blocks, drawn)
-        self.law = PairLaw.of_joints(masonry, system.lines, joint)
-        self.longest = longest_step_of_loose(masonry, self.law, system)
-        below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
+        self.blocks = Blocks(still, self.sizes, np.flatnonzero(body >= 0), body, fixed, np.full(self.count, -1))
+        self.finder = Finder(solids, flat=flat)
+        self.law = PairLaw.of_joints(scene, system.lines)
+        self.longest = longest_step_of_loose(solids, self.law, system)
+        below, above = np.array([(each.below, each.above) for each in joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
-        np.minimum.at(left, of, LEFT * np.array([joint.width for joint in masonry.joints]))
-        np.minimum.at(rolled, of, _rolled(masonry))
-        self.jointed, points = _jointed(masonry, self.finder, of)
+        np.minimum.at(left, of, LEFT * np.array([joint.width for joint in joints]))
+        np.minimum.at(rolled, of, _rolled(scene.standing))
+        self.jointed, points = _jointed(scene, self.finder, of)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
         self.finder.points = np.maximum.reduceat(points, first)
         self.kind, start = system.lines.dtype, self.motion(system).poses
@@ -204,8 +204,8 @@ class Encounters:
         worn, left = np.zeros(len(met.handed), dtype=bool), np.zeros(self.count, dtype=bool)
         if wears(system, wear):
             worn = wear.leave() & ~met.handed
-            if len(system.bonds):
-                worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
+            for law in system.laws:
+                worn[wear.pairs[: len(law.rows)][law.holding()]] = False
             left[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
         return worn, left
 
@@ -223,8 +223,8 @@ class Encounters:
         lines, sheared = np.asarray(system.lines), in_shear(system)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
-        if len(system.bonds):
-            released(joints, system.bonds, worn)
+        for law in system.laws:
+            law.release(joints[: len(law.rows)], worn[: len(law.rows)])
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
@@ -239,7 +239,7 @@ class Encounters:
         for name, column in law.items():
             new.rows[name] = share * column if name in SHARED else column
         blocks = self.blocks._replace(poses=poses)
-        hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
+        hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks)
         for place in unsound(np.asarray(new.rows))[:1]:
             one, other = (self.names[int(block[place])] for block in (found.face, found.other))
             raise ArithmeticError(f"the contact of {one} and {other}")
@@ -275,19 +275,19 @@ class Encounters:
 
 
 def in_shear(system: System) -> float:
-    """Energy in the shear springs of all lines and bonds [J]."""
+    """Energy in the shear springs of all lines and of the laws of their joints [J]."""
     energy = 0.0
-    for table in (system.lines, system.bonds):
+    for table in (system.lines, *(law.rows for law in system.laws)):
         sprung = np.asarray(table)[np.isfinite(table["k_s"])]
         energy += float(np.sum(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0))))
     return energy
 
 
-def _rolled(masonry: Masonry) -> Array:
+def _rolled(standing: Standing) -> Array:
     """1 less the cosine of the angle of its faces up to which each joint serves [-], shape (joints,)."""
-    normals = [np.array([side.normal for side in block.sides]) for block in masonry.blocks]
-    rolled = np.empty(len(masonry.joints))
-    for i, joint in enumerate(masonry.joints):
+    normals = [np.array([side.normal for side in solid.sides]) for solid in standing.solids]
+    rolled = np.empty(len(standing.joints))
+    for i, joint in enumerate(standing.joints):
         cosine = -1.0
         for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
             beside = normals[block] @ normals[block][side]
@@ -296,19 +296,21 @@ def _rolled(masonry: Masonry) -> Array:
     return rolled
 
 
-def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[tuple[Integers, Integers], Integers]:
+def _jointed(scene: Scene, finder: Finder, of: Integers) -> tuple[tuple[Integers, Integers], Integers]:
     """Pairs of solids whose faces make a joint: the number of the pair of blocks among those with joints, and that of
     the pair of solids, and the contact lines of the joint, shape (n,) each.
 
     Args:
-        masonry, finder: the blocks.
+        scene, finder: the blocks and their joints.
         of: number of the pair of blocks of each joint, shape (joints,).
     """
+    assert scene.springs is not None
+    standing, of_joints = scene.standing, scene.springs.points.tolist()
     pairs, numbers, points = list[int](), list[int](), list[int]()
-    for joint, pair, count in zip(masonry.joints, of.tolist(), masonry.table.points.tolist(), strict=True):
+    for joint, pair, count in zip(standing.joints, of.tolist(), of_joints, strict=True):
         ends = (joint.below, joint.above)
         one, other = (
-            [int(finder.first[block]) + part for part in masonry.blocks[block].sides[side].parts]
+            [int(finder.first[block]) + part for part in standing.solids[block].sides[side].parts]
             for block, side in zip(ends, joint.sides, strict=True)
         )
         both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]

@@ -16,16 +16,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled_at_once, inlined
-from ...geometry.frames import SPACE
-from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, vector
-from ...problem.masonry.blocks.compound import AnyBlock
-from ...problem.masonry.blocks.joints import each_with_each, numbered_parts
+from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun
+from ...problem.masonry.blocks.joints import each_with_each
+from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ..rows import Rows, rows
 from .clipping import PLACE, clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
 from .grid import lay_out
 from .pair_law import pair_number
-from .solids import Poses, Solids, inside_of, solids_of
+from .solids import Poses, Solids, parts_of, sides_of, triple, with_whole_sides
 
 EDGES = 0.8
 """Overlap along the normal of two edges, over that along the best one of a face, below which the edges meet [-]."""
@@ -115,26 +114,27 @@ class Finder:
     """Blocks, and the convex solids that they are made of.
 
     Args:
-        blocks: the blocks.
-        drawn: where their centroids are drawn [m], shape (blocks, d).
+        solids: the blocks.
+        flat: whether they are those of the plane.
 
     `jointed` has the numbers of the pairs of solids that had a joint, increasing, and `points` the lines of each.
     """
 
-    def __init__(self, blocks: Sequence[AnyBlock], drawn: Array) -> None:
-        self.flat = drawn.shape[1] == 2
+    def __init__(self, solids: Sequence[Solid], *, flat: bool) -> None:
+        self.flat = flat
         self.jointed = self.points = NONE
-        self._half = min(block.size for block in blocks)  # of the length of a prism, which plays no part
-        self.first, self.number = numbered_parts(blocks)
-        self.owner = np.repeat(np.arange(len(blocks)), self.number)
-        self._fixed = np.array([block.fixed for block in blocks])[self.owner]
-        centroids = (np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)[self.owner]
-        solids = solids_of(blocks, self._half)
-        self.volumes = np.add.reduceat([solid.volume for solid in solids], self.first)
-        self._rank = ranked([block.fixed for block in blocks], self.volumes, drawn[:, -1], self._half)
-        inside = [flags for block in blocks for flags in inside_of(block)]
-        self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
-        most = int(np.diff(self.solids.first).max())
+        self._half = min(solid.size for solid in solids)  # of the length of a prism, which plays no part
+        self.number = np.array([len(solid.drawn) for solid in solids])
+        self.first = np.cumsum(self.number) - self.number
+        self.owner = np.repeat(np.arange(len(solids)), self.number)
+        fixed, centroids = np.array([solid.fixed for solid in solids]), np.array([solid.rest for solid in solids])
+        self._fixed = fixed[self.owner]
+        parts = parts_of(solids, self._half, flat=flat)
+        self.volumes = np.add.reduceat([part.bulk.volume for part in parts], self.first)
+        self._rank = ranked(fixed, self.volumes, centroids[:, -1], self._half)
+        inside = [flags for solid in solids for flags in solid.inside]
+        self.solids = Solids.about(parts, centroids[self.owner], inside, self.owner, sides_of(solids), flat=flat)
+        most = int(np.diff([*self.solids.first, *self.solids.begin]).max())
         self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 3))
 
     def apart(self) -> Finder:
@@ -161,10 +161,20 @@ class Finder:
         near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = rows(PLACE, 2 * count)
-        table = self._table[:count]
-        found = self._in_order(Found(*(table[name].copy() for name in PLACE.names or ())))
+        table, of_parts = self._table[:count], self.number.max() > 1
+        table = self._once(table) if of_parts else table
+        found = self._in_order(Found(*(table[name].copy() for name in (PLACE.names or ())[:-1])))
         found = self._of_the_plane(found) if self.flat else found
-        return found if self.number.max() == 1 else self._among_blocks(found)
+        return self._among_blocks(found) if of_parts else found
+
+    def _once(self, table: Rows) -> Rows:
+        """Places of two sides once, that each pair of parts of their blocks has."""
+        sides, pair = table["sides"], pair_number(table["face"], table["other"], len(self.owner))
+        _, of = np.unique(sides, return_inverse=True)
+        first = np.full(len(table) + 1, np.iinfo(np.int64).max)
+        np.minimum.at(first, of, pair)
+        once: Rows = table[(sides < 0) | (pair == first[of])]
+        return once
 
     def _in_order(self, found: Found) -> Found:
         """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
@@ -214,7 +224,7 @@ class Finder:
         )
 
 
-def ranked(fixed: Sequence[bool], volumes: Array, heights: Array, size: float) -> Integers:
+def ranked(fixed: Flags, volumes: Array, heights: Array, size: float) -> Integers:
     """The rank of each block: fixed ones first, then the largest and then the lowest ones, whatever their numbers are
     and whichever side is left. Only of those that are alike in all of these the first one in the drawing comes first.
 
@@ -222,7 +232,7 @@ def ranked(fixed: Sequence[bool], volumes: Array, heights: Array, size: float) -
         fixed, volumes, heights: of the blocks, fixed or not, volume [m3] and height of the centroid [m], shape (n,).
         size: of the smallest [m].
     """
-    keys = steps_of(heights / size), steps_of(-np.log(volumes)), ~np.array(fixed)
+    keys = steps_of(heights / size), steps_of(-np.log(volumes)), ~fixed
     rank = np.empty(len(fixed), dtype=np.int64)
     rank[np.lexsort(keys)] = np.arange(len(fixed))
     return rank
@@ -318,10 +328,11 @@ def find_pair(
             way, across = across_edges(solids, a, b)
             if across > EDGES * gap:
                 return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
+    whole = with_whole_sides(solids)
     if cells[0] > 1:
-        last = lay_out(solids, face, blocks, cells, table, count, room)
+        last = lay_out(whole, face, blocks, cells, table, count, room)
     else:
-        last = clip(solids, face, blocks, table, count, room)
+        last = clip(whole, face, blocks, table, count, room)
     return last if last > count else pass_by(solids, face, blocks, best, table, count)
 
 
@@ -411,7 +422,7 @@ def farthest(solids: Solids, block: int, way: Vector) -> float:
     """How far a block reaches along a direction [m]."""
     most = -math.inf
     for i in range(solids.corner[block], solids.corner[block + 1]):
-        most = max(most, dot(way, vector(solids.corners, i, SPACE.axes)))
+        most = max(most, dot(way, triple(solids.corners, i)))
     return most
 
 
@@ -440,7 +451,7 @@ def across_edges(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
     most = -math.inf
     for i in range(solids.way[a], solids.way[a + 1]):
         for j in range(solids.way[b], solids.way[b + 1]):
-            normal = spun(vector(solids.ways, i, SPACE.axes), vector(solids.ways, j, SPACE.axes))
+            normal = spun(triple(solids.ways, i), triple(solids.ways, j))
             size = length_of(normal)
             if size < ACROSS:
                 continue

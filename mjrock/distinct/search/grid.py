@@ -13,8 +13,7 @@ import math
 from typing import NamedTuple
 
 from ...compiled import inlined
-from ...geometry.frames import SPACE
-from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
+from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun
 from ...quantities import Array
 from ..rows import Row, Rows
 from .clipping import (
@@ -29,10 +28,11 @@ from .clipping import (
     next_corner,
     normal_of,
     parted,
+    sides_between,
     turn_at,
     write_place,
 )
-from .solids import Solids
+from .solids import Solids, triple
 
 Quad = tuple[Vector, Vector, Vector, Vector]
 """Corners of a quadrilateral [m], one after the other."""
@@ -53,10 +53,10 @@ def straightened(polygon: Array, count: int, room: Array) -> int:
     left = 0
     for i in range(count):
         if turn_at(polygon, count, i) > SAME:
-            put(room[left], vector(polygon, i, SPACE.axes))
+            put(room[left], triple(polygon, i))
             left += 1
     for i in range(left):
-        put(polygon[i], vector(room, i, SPACE.axes))
+        put(polygon[i], triple(room, i))
     return left
 
 
@@ -65,7 +65,7 @@ def grid_of(polygon: Array, corners: int, cells: tuple[int, int]) -> Grid:
     """The grid of a part with so many cells a side: along x and z, and along y."""
     if corners != 4:
         return Grid(corners, corners, (cells[0] + 1) // 2, (cells[0] + 1) // 2)
-    way = minus(vector(polygon, 1, SPACE.axes), vector(polygon, 0, SPACE.axes))
+    way = minus(triple(polygon, 1), triple(polygon, 0))
     if abs(way[1]) > 0.5 * length_of(way):
         return Grid(corners, 1, cells[1], cells[0])
     return Grid(corners, 1, cells[0], cells[1])
@@ -96,10 +96,10 @@ def number_of(grid: Grid, quad: int, i: int, j: int) -> int:
 @inlined
 def middle_of(polygon: Array, count: int) -> Vector:
     """Centroid of the area of a polygon [m]."""
-    first, area = vector(polygon, 0, SPACE.axes), 0.0
+    first, area = triple(polygon, 0), 0.0
     off = scaled(0.0, first)
     for i in range(1, count - 1):
-        one, other = minus(vector(polygon, i, SPACE.axes), first), minus(vector(polygon, i + 1, SPACE.axes), first)
+        one, other = minus(triple(polygon, i), first), minus(triple(polygon, i + 1), first)
         part = length_of(spun(one, other))
         area, off = area + part, plus(off, scaled(part / 3, plus(one, other)))
     return plus(first, scaled(1 / area, off))
@@ -108,11 +108,11 @@ def middle_of(polygon: Array, count: int) -> Vector:
 @inlined
 def quad_of(polygon: Array, grid: Grid, quad: int, middle: Vector) -> Quad:
     """One of the quadrilaterals of a part."""
-    here = vector(polygon, quad, SPACE.axes)
-    after = vector(polygon, (quad + 1) % grid.corners, SPACE.axes)
-    before = vector(polygon, (quad + grid.corners - 1) % grid.corners, SPACE.axes)
+    here = triple(polygon, quad)
+    after = triple(polygon, (quad + 1) % grid.corners)
+    before = triple(polygon, (quad + grid.corners - 1) % grid.corners)
     if grid.quads == 1:
-        return here, after, vector(polygon, 2, SPACE.axes), before
+        return here, after, triple(polygon, 2), before
     return here, scaled(0.5, plus(here, after)), middle, scaled(0.5, plus(here, before))
 
 
@@ -237,4 +237,5 @@ def lay_out(
                     meet(solids, faces, blocks, at, table[number])
                 else:
                     press_at(solids, faces, blocks, at, is_on_edge(grid, i, j), table[number])
+                table[number].sides = sides_between(solids, faces)
     return count + nodes

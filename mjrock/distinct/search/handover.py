@@ -14,14 +14,13 @@ import numpy as np
 from ...compiled import compiled_at_once, inlined
 from ...geometry.vectors import (
     Vector,
-    components,
     dot,
     increase,
     minus,
     plus,
     put,
+    read,
     scaled,
-    spin_components,
     tangent,
     vector,
 )
@@ -120,9 +119,9 @@ def turned_back(poses: Poses, block: int, a: Vector) -> Vector:
 
 
 @inlined
-def centroid(poses: Poses, block: int, axes: Vector) -> Vector:
-    """Where the centroid of a block is [m]."""
-    return plus(vector(poses.drawn, block, axes), vector(poses.moved, block, axes))
+def centroid(poses: Poses, block: int, like: Vector) -> Vector:
+    """Where the centroid of a block is [m], with as many components as another vector."""
+    return plus(vector(poses.drawn, block, like), vector(poses.moved, block, like))
 
 
 class Place(NamedTuple):
@@ -142,15 +141,15 @@ class Place(NamedTuple):
 
 
 @inlined
-def place_of(line: Row, both: int, blocks: Blocks, axes: tuple[int, ...]) -> Place:
+def place_of(line: Row, both: int, blocks: Blocks) -> Place:
     """Where a line is, of a pair of blocks whose numbers have some sum."""
     poses, block = blocks.poses, blocks.free[line.body]
-    face, normal, own = both - block, components(line.normal, axes), components(line.at, axes)
+    face, normal, own = both - block, read(line.normal), read(line.at)
     arm = turned(poses, block, own)
-    at = plus(centroid(poses, block, axes), arm)
+    at = plus(centroid(poses, block, own), arm)
     if line.face == POINT:
-        way = minus(plus(minus(arm, own), vector(poses.moved, block, axes)), vector(poses.moved, face, axes))
-        at, normal = minus(at, plus(components(line.between, axes), way)), turned(poses, block, normal)
+        way = minus(plus(minus(arm, own), vector(poses.moved, block, own)), vector(poses.moved, face, own))
+        at, normal = minus(at, plus(read(line.between), way)), turned(poses, block, normal)
     elif line.face >= 0:
         normal = turned(poses, face, normal)
     return Place(at, normal, face, 1.0 if block > face else -1.0)
@@ -181,18 +180,17 @@ def nearest(lines: Lines, ends: tuple[int, int], at: Vector) -> tuple[int, float
 
 
 @inlined
-def pressed_at(
-    i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks, axes: tuple[int, ...]
-) -> float:
-    """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`. It is that of the
-    nearest line of such a normal: at a corner two joints of a pair may have their lines."""
+def pressed_at(line: Row, i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks) -> float:
+    """What presses of the overlap of place i, that of a new line [m], if a line of its pair was there, see `hand_over`.
+    It is that of the nearest line of such a normal: at a corner two joints of a pair may have their lines."""
     overlap: float = max(-found.gap[i], 0.0)
-    face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, axes), vector(found.normal, i, axes)
+    like = read(line.normal)
+    face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, like), vector(found.normal, i, like)
     bound, best, least = (BESIDE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
     for j in range(ends[0], ends[1] if overlap > 0 else ends[0]):
         square = square_between(gone, j, at)
         if square < least:
-            there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
+            there, sense = place_of(gone.rows[j], face + other, blocks), 1.0 if other > face else -1.0
             deep = dot(normal, minus(there.at, at))
             if square - deep * deep < bound and sense * there.sense * dot(normal, there.normal) > ALIKE:
                 best, least = j, square
@@ -219,24 +217,25 @@ def press(new: Lines, places: tuple[int, int], found: Found, gone: Lines, ends: 
 
 
 @inlined
-def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks, axes: tuple[int, ...]) -> None:
+def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks) -> None:
     """Write where the point and the face of place i are, in the axes of their blocks.
 
     A fixed block carries no point but where its corner meets the face of a body.
     """
-    poses, face, block, normal = blocks.poses, found.face[i], found.other[i], vector(found.normal, i, axes)
+    like = read(line.normal)
+    poses, face, block, normal = blocks.poses, found.face[i], found.other[i], vector(found.normal, i, like)
     point = blocks.body[block] < 0
     if point:
         face, block, normal = block, face, scaled(-1.0, normal)
-    held, half, place = blocks.body[face] < 0, scaled(0.5 * found.gap[i], normal), vector(found.place, i, axes)
-    at = turned_back(poses, block, minus(plus(place, half), centroid(poses, block, axes)))
+    held, half, place = blocks.body[face] < 0, scaled(0.5 * found.gap[i], normal), vector(found.place, i, like)
+    at = turned_back(poses, block, minus(plus(place, half), centroid(poses, block, like)))
     origin = minus(minus(place, half), scaled(slack, normal))
-    between = plus(vector(poses.drawn, block, axes), at)
+    between = plus(vector(poses.drawn, block, like), at)
     if held:
-        origin = minus(origin, vector(poses.moved, face, axes))
+        origin = minus(origin, vector(poses.moved, face, like))
     else:
-        origin = turned_back(poses, face, minus(origin, centroid(poses, face, axes)))
-        between = minus(between, vector(poses.drawn, face, axes))
+        origin = turned_back(poses, face, minus(origin, centroid(poses, face, like)))
+        between = minus(between, vector(poses.drawn, face, like))
     if point or not held:
         normal = turned_back(poses, block if point else face, normal)
     line.body, line.face = blocks.body[block], POINT if point else blocks.body[face]
@@ -257,43 +256,41 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 
 
 @inlined
-def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks, axes: tuple[int, ...]) -> None:
+def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks) -> None:
     """Let a line take over a share of the friction of one that is gone, and of its push of the last step.
 
     Of a spring along the face the force is kept, as that of rigid friction is. Of several the deepest
     gives its rate.
     """
-    poses, old, new = blocks.poses, place_of(gone, both, blocks, axes), place_of(line, both, blocks, axes)
+    poses, old, new = blocks.poses, place_of(gone, both, blocks), place_of(line, both, blocks)
     line.push, line.pressed = line.push + share * gone.push, line.pressed + share * gone.pressed
     if gone.depth > line.depth or line.depth == 0:
         line.depth, line.rate = gone.depth, gone.rate
-    grip = scaled(share, spin_components(gone.grip, axes))
-    if len(axes) == 3 and gone.face >= 0:
+    grip = scaled(share, read(gone.grip))
+    if gone.face >= 0:
         grip = turned(poses, old.face, grip)
     grip = along_new(grip, old, new)
-    if len(axes) == 3 and line.face >= 0:
+    if line.face >= 0:
         grip = turned_back(poses, new.face, grip)
     increase(line.grip, scaled(gone.k_s / line.k_s if line.k_s < math.inf else 1.0, grip))
-    increase(line.dragged, along_new(scaled(share, spin_components(gone.dragged, axes)), old, new))
+    increase(line.dragged, along_new(scaled(share, read(gone.dragged)), old, new))
 
 
 @inlined
-def give_to_nearest(
-    gone: Row, new: Lines, places: tuple[int, int], both: int, blocks: Blocks, axes: tuple[int, ...]
-) -> None:
+def give_to_nearest(gone: Row, new: Lines, places: tuple[int, int], both: int, blocks: Blocks) -> None:
     """Let the nearest places of a pair take over what a line has that is gone. Places that are as near share it."""
-    at, count = place_of(gone, both, blocks, axes).at, 0
+    at, count = place_of(gone, both, blocks).at, 0
     _, off = nearest(new, places, at)
     near = AS_NEAR * off * off
     for i in range(places[0], places[1]):
         count += square_between(new, i, at) <= near
     for i in range(places[0], places[1]):
         if square_between(new, i, at) <= near:
-            give(gone, new.rows[i], 1 / count, both, blocks, axes)
+            give(gone, new.rows[i], 1 / count, both, blocks)
 
 
 @compiled_at_once
-def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks, axes: tuple[int, ...]) -> None:
+def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
     """Write the lines of places, and let them take over what the lines of their pair had that are gone.
 
     What presses nothing of the overlap of a place is written too. It is the overlap of a place that no line was near,
@@ -307,27 +304,26 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
         gone: the lines that are gone, in the order of their pairs.
         pairs: which of both belong together.
         blocks: all blocks.
-        axes: of the system.
     """
     for p in range(len(pairs.low)):
         begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
         both = found.face[begin] + found.other[begin]
         for j in range(ends[0], ends[1]):
-            put(gone.at[j], place_of(gone.rows[j], both, blocks, axes).at)
+            put(gone.at[j], place_of(gone.rows[j], both, blocks).at)
         for i in range(begin, end):
-            new.depth[i] = pressed_at(i, found, gone, ends, blocks, axes)
+            new.depth[i] = pressed_at(new.rows[i], i, found, gone, ends, blocks)
         press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
             overlap = max(-found.gap[i], 0.0)
             new.slack[i] = overlap - new.depth[i] if new.depth[i] > 0 else (1 + HAIR) * overlap
-            write_line(new.rows[i], i, new.slack[i], found, blocks, axes)
-            put(new.at[i], place_of(new.rows[i], both, blocks, axes).at)
+            write_line(new.rows[i], i, new.slack[i], found, blocks)
+            put(new.at[i], place_of(new.rows[i], both, blocks).at)
         for j in range(ends[0], ends[1]):
             old = gone.rows[j]
             if old.push != 0 or max(old.depth, gone.depth[j]) > 0:  # at a start no step has written its depth
-                give_to_nearest(old, new, (begin, end), both, blocks, axes)
+                give_to_nearest(old, new, (begin, end), both, blocks)
         for i in range(begin, end):
             line = new.rows[i]
             if line.k_s < math.inf:
                 most = shear_limit(line, normal_force(line, -new.depth[i], 0.0)) / line.k_s
-                put(line.grip, shortened(spin_components(line.grip, axes), most))
+                put(line.grip, shortened(read(line.grip), most))

@@ -14,19 +14,25 @@ so that how many blocks stand on the ground plays no part.
 
 A corner or a small face of a loose block has a quarter of the largest face, and what is left of a joint that has slid
 has a quarter of the joint, with the same decrease for areas that are ten times smaller still. Otherwise they would sink
-in.
+in. The step of a run is found from the joints at rest, which loose blocks do not have. So `longest_step_of_loose` takes
+each with the springs that it has on one of its sides, twice over, as a block between two others.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...geometry.hull import Side, area_vector
-from ...problem.masonry.masonry import Masonry
+from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
-from ..rows import Rows
+from ...scene.scene import Scene
+from ..limit import longest_step
+from ..rows import Rows, chosen, joined, rows
+from ..system import System
 
 SHARED = ("k", "c", "k_s", "c_s")
 """What the places of a pair share."""
@@ -34,7 +40,8 @@ WHOLE = 0.1
 """Part of the area of a joint over which two faces that had none have all that a pair has [-]."""
 LEAST = 0.25
 """Part of what a loose block has over its largest face, or a pair over its joint, that a smaller area has too [-]."""
-
+SIDES = 2.0
+"""On how many others a block lies at once."""
 ROUNDED = 1e-9
 """Relative difference up to which what two blocks have is the same [-]."""
 
@@ -80,22 +87,25 @@ class PairLaw(NamedTuple):
     loose: Flags
 
     @classmethod
-    def of_joints(cls, masonry: Masonry, lines: Rows, joint: Integers) -> PairLaw:
-        """The law of masonry, from the lines of its joints and the number of the joint of each."""
-        blocks, joints = len(masonry.blocks), len(masonry.joints)
-        below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
-        areas = np.array([each.area if masonry.in_space else each.width for each in masonry.joints])
+    def of_joints(cls, scene: Scene, lines: Rows) -> PairLaw:
+        """The law of the joints of a scene, from their lines."""
+        solids, springs, joint = scene.standing.solids, scene.springs, scene.contacts.joint
+        in_space = len(scene.freedom.axes) == 3
+        assert springs is not None
+        blocks, joints = len(solids), len(scene.standing.joints)
+        below, above = np.array([(each.below, each.above) for each in scene.standing.joints]).T
+        areas = np.array([each.area if in_space else each.width for each in scene.standing.joints])
         sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED), areas])
         friction = np.zeros(joints)
-        friction[joint] = np.minimum(lines["friction"], masonry.residual_friction[joint])
+        friction[joint] = np.minimum(lines["friction"], springs.residual[joint])
         jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
         in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
         least = np.full(len(jointed), np.inf)
         np.minimum.at(least, of, friction)
         shared, rough = _of_blocks(np.append(below, above), sums, friction, blocks)
         loose = shared[:, 0] == 0
-        shared[loose], rough[loose] = _of_loose(masonry, sums, friction, loose)
-        fixed = np.array([block.fixed for block in masonry.blocks])
+        shared[loose], rough[loose] = _of_loose(scene, sums, friction, loose)
+        fixed = np.array([solid.fixed for solid in solids])
         return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose)
 
     @property
@@ -139,9 +149,10 @@ def part_of_face(over: Array) -> Array:
     return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
 
 
-def side_area(side: Side, *, in_space: bool) -> float:
+def side_area(side: Side) -> float:
     """Area of a side of a block [m2], in the plane its length [m]."""
-    return float(np.linalg.norm(area_vector(side.corners) if in_space else np.subtract(*side.corners)))
+    flat = side.corners.shape[1] == 2
+    return float(np.linalg.norm(np.subtract(*side.corners) if flat else area_vector(side.corners)))
 
 
 def _sums(of: Integers, values: Array, count: int) -> Array:
@@ -160,16 +171,43 @@ def _of_blocks(block: Integers, joints: Array, friction: Array, blocks: int) -> 
     return share[:, None] * sums, least
 
 
-def _of_loose(masonry: Masonry, joints: Array, friction: Array, loose: Flags) -> tuple[Array, Array]:
+def _of_loose(scene: Scene, joints: Array, friction: Array, loose: Flags) -> tuple[Array, Array]:
     """What loose blocks have over their largest faces. Of joints that are as soft, the softest along the face counts,
     then the least damped and the smoothest one."""
-    known = masonry.joint_stiffness, masonry.joint_shear, masonry.retardation, friction
+    assert scene.springs is not None
+    springs, solids = scene.springs, [scene.standing.solids[i] for i in np.flatnonzero(loose)]
+    known = springs.k_n, springs.k_s, springs.retardation, friction
     softest = int(np.lexsort(known[::-1])[0])
-    blocks = [block for block, alone in zip(masonry.blocks, loose.tolist(), strict=True) if alone]
-    areas = [max(side_area(side, in_space=block.in_space) for side in block.sides) for block in blocks]
-    largest = np.reshape(areas, (-1, 1))
+    largest = np.reshape([max(side_area(side) for side in solid.sides) for solid in solids], (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
-    if not masonry.in_space:
-        length = np.array([block.length for block in masonry.polygons])[loose][:, None]
-        per_area = per_area * np.append(length / masonry.joints[softest].length * np.ones(4), np.ones_like(length), 1)
-    return largest * per_area, np.full(len(blocks), friction[softest])
+    if len(scene.freedom.axes) == 2:
+        length = np.array([[np.ptp(solid.drawn[0].corners[:, 1])] for solid in solids]).reshape(-1, 1)
+        of_joint = scene.standing.joints[softest].length
+        per_area = per_area * np.append(length / of_joint * np.ones(4), np.ones_like(length), 1)
+    return largest * per_area, np.full(len(solids), friction[softest])
+
+
+def longest_step_of_loose(solids: Sequence[Solid], law: PairLaw, system: System) -> float:
+    """The longest stable step [s] of loose blocks on their springs, infinite where there are none."""
+    tables, kept, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
+    for i in np.flatnonzero(law.loose & ~law.fixed).tolist():
+        solid = solids[i]
+        centroid = solid.rest if in_space else solid.rest[::2]
+        for corners, normal, shared in _springs(solid, law.of_block[0][i]):
+            columns = dict(zip(SHARED, shared, strict=True))
+            ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
+            tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
+            kept.append(solid.body)
+    if not kept:
+        return math.inf
+    return longest_step(system._replace(bodies=chosen(system.bodies, np.array(kept)), lines=joined(*tables), links=()))
+
+
+def _springs(solid: Solid, shared: Array) -> list[tuple[Array, Array, Array]]:
+    """The corners of each side of a loose block [m], its normal, and the springs and dashpots that each corner has."""
+    springs = []
+    for side in solid.sides:
+        over = np.array([side_area(side) / shared[-1]])
+        part = SIDES * float(part_of_face(over)[0]) / len(side.corners)
+        springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
+    return springs

@@ -20,6 +20,7 @@ from ...geometry.vectors import (
     dot,
     moment,
     put,
+    read,
     spin_components,
     tangent,
     tangents,
@@ -83,13 +84,14 @@ def way_at(normal: Vector, i: int) -> Vector:
 
 
 @inlined
-def trace_of(body: Row, sides: Sides, side: int, p: int, along: float, across: float, axes: tuple[int, ...]) -> float:
+def trace_of(body: Row, sides: Sides, side: int, p: int, along: float, across: float) -> float:
     """The trace of the stiffness of place p over the masses of one of its bodies."""
-    trace, arm, normal = 0.0, vector(sides.arms[side], p, axes), vector(sides.normals, p, axes)
-    for way in range(len(axes)):
+    masses = read(body.inverse_mass)
+    trace, arm, normal = 0.0, vector(sides.arms[side], p, masses), vector(sides.normals, p, masses)
+    for way in range(len(masses)):
         direction = way_at(normal, way)
         turning = moment(arm, direction)
-        moved = dot(times(components(body.inverse_mass, axes), direction), direction)
+        moved = dot(times(masses, direction), direction)
         trace += (along if way == 0 else across) * (moved + dot(spin_from_many(body, turning), turning))
     return trace
 
@@ -116,16 +118,17 @@ def split(sides: Sides, room: Room) -> None:
 
 
 @inlined
-def stiffen(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[int, ...]) -> None:
+def stiffen(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room) -> None:
     """Add up the stiffness of each body with much load by its places, over its shares of them."""
     for side in range(2):
         for p in range(len(along)):
             body = sides.bodies[side, p]
             if body < 0 or room.loads[body] <= MOST:
                 continue
-            for way in range(len(axes)):
-                direction = way_at(vector(sides.normals, p, axes), way)
-                rate = direction + moment(vector(sides.arms[side], p, axes), direction)
+            normal = vector(sides.normals, p, read(bodies[body].inverse_mass))
+            for way in range(len(normal)):
+                direction = way_at(normal, way)
+                rate = direction + moment(vector(sides.arms[side], p, normal), direction)
                 k = along[p] if way == 0 else across[p]
                 for i in range(len(rate)):
                     for j in range(len(rate)):
@@ -133,12 +136,13 @@ def stiffen(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[i
 
 
 @inlined
-def over_masses(body: Row, stiffness: Array, rates: Array, axes: tuple[int, ...]) -> None:
+def over_masses(body: Row, stiffness: Array, rates: Array) -> None:
     """Write a stiffness over the masses of its body."""
+    masses = read(body.inverse_mass)
+    d = len(masses)
     for j in range(len(stiffness)):
-        column, of_spin = stiffness[:, j], stiffness[len(axes) :, j]
-        put(rates[:, j], times(components(body.inverse_mass, axes), components(column, axes)))
-        put(rates[len(axes) :, j], spin_from_many(body, spin_components(of_spin, axes)))
+        put(rates[:, j], times(masses, components(stiffness[:, j], masses)))
+        put(rates[d:, j], spin_from_many(body, spin_components(stiffness[d:, j], masses)))
 
 
 @inlined
@@ -155,7 +159,7 @@ def squared(a: Array, square: Array) -> float:
 
 
 @compiled_at_once
-def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, axes: tuple[int, ...]) -> None:
+def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room) -> None:
     """Write the share of their law that the places of each body have left, see `shares_within`.
 
     Args:
@@ -163,20 +167,19 @@ def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, 
         along, across: stiffness along the normal and along the face of each place, shape (n,).
         bodies: whose inverse inertia is taken in the axes of the world, in space.
         room: with shares of 1 and no stiffness.
-        axes: of the system.
     """
     for side in range(2):
         for p in range(len(along)):
             if sides.bodies[side, p] >= 0:
                 body = bodies[sides.bodies[side, p]]
-                room.traces[side, p] = trace_of(body, sides, side, p, along[p], across[p], axes)
+                room.traces[side, p] = trace_of(body, sides, side, p, along[p], across[p])
     add_up(sides, room)
     split(sides, room)
     add_up(sides, room)
-    stiffen(sides, along, across, room, axes)
+    stiffen(sides, along, across, bodies, room)
     for b in range(len(bodies)):
         if room.loads[b] > MOST:
-            over_masses(bodies[b], room.stiffness[b], room.powers[0], axes)
+            over_masses(bodies[b], room.stiffness[b], room.powers[0])
             trace = 0.0
             for i in range(SQUARED):
                 trace = squared(room.powers[i % 2], room.powers[1 - i % 2])
@@ -194,11 +197,11 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
     """
     along = step**2 * largest_stiffness(Law(k=law["k"])) + 2 * step * law["c"]
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
-    d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
+    nv, share = 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
     stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((2, nv, nv))
     traces, shares = np.zeros(sides.bodies.shape), np.ones(sides.bodies.shape)
     room = Room(traces, shares, np.empty(len(bodies)), stiffness, powers, share)
-    soften(sides, along, across, bodies, room, tuple(range(d)))
+    soften(sides, along, across, bodies, room)
     return np.asarray(share[sides.bodies].min(axis=0))
 
 

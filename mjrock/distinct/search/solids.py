@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from ...compiled import compiled_at_once, inlined
+from ...geometry.convex import cleaned
 from ...geometry.frames import SPACE
-from ...geometry.hull import prism
-from ...geometry.vectors import Vector, increase, put, vector
-from ...problem.masonry.blocks.compound import AnyBlock, Compound
-from ...problem.masonry.blocks.polygon import Polygon
-from ...problem.masonry.blocks.polyhedron import Polyhedron
+from ...geometry.graph import components
+from ...geometry.hull import Convex, Side, area_vector
+from ...geometry.vectors import Vector, increase, put
+from ...problem.masonry.blocks.joints import CLOSE
+from ...problem.masonry.blocks.joints_in_space import axes_across
+from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
-
-
-class Solid(NamedTuple):
-    """A block in space, with the fields of a `Polyhedron` that are asked for."""
-
-    corners: Array
-    faces: tuple[tuple[int, ...], ...]
-    normals: Array
-    edges: Array
-    volume: float
 
 
 class Solids(NamedTuple):
@@ -42,6 +36,9 @@ class Solids(NamedTuple):
         inside: which faces lie inside the block that they are a part of, where nothing meets them, shape (faces,).
         owner: number of the block that each solid is a part of, shape (solids,).
         extent: length of the outline of each face [m], of prisms of the plane without their length, shape (faces,).
+        side: number of the side of its block that each face lies on, see `sides_of`, shape (faces,).
+        around: numbers of the corners around the side of each face, one face after the other.
+        begin: where those of each face begin, and where those of the last end, shape (faces + 1,).
     """
 
     corners: Array
@@ -55,33 +52,48 @@ class Solids(NamedTuple):
     inside: Flags
     owner: Integers
     extent: Array
+    side: Integers
+    around: Integers
+    begin: Integers
 
     @classmethod
     def about(
         cls,
-        blocks: Sequence[Solid | Polyhedron],
+        blocks: Sequence[Convex],
         centroids: Array,
         inside: Sequence[Flags],
         owner: Integers,
-        axes: tuple[int, ...] = SPACE.axes,
+        side: Integers | None = None,
+        *,
+        flat: bool = False,
     ) -> Solids:
-        """Solids about the centroids of their blocks [m], shape (solids, 3). Outlines are measured along the axes."""
+        """Solids about the centroids of their blocks [m], shape (solids, 3). No side says that each face is one of its
+        own. Outlines of prisms of the plane are measured without their length, and have no edges that cross others:
+        those along y meet faces as their corners do."""
         corner = _begins(block.corners for block in blocks)
         outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
         corners = np.concatenate([block.corners - at for block, at in zip(blocks, centroids, strict=True)])
-        around = [np.diff(corners[[*outline, outline[0]]][:, axes], axis=0) for outline in outlines]
+        axes = (0, 2) if flat else SPACE.axes
+        around_faces = [np.diff(corners[[*outline, outline[0]]][:, axes], axis=0) for outline in outlines]
+        edges = [np.empty((0, 3)) if flat else block.edges for block in blocks]
+        normals = np.concatenate([block.normals for block in blocks])
+        side = np.arange(len(outlines)) if side is None else side
+        around = whole_outlines(outlines, side, corners, normals)
         return cls(
             corners,
             corner,
-            np.concatenate([block.normals for block in blocks]),
+            normals,
             _begins(block.normals for block in blocks),
-            np.concatenate([block.edges for block in blocks]),
-            _begins(block.edges for block in blocks),
+            np.concatenate(edges),
+            _begins(edges),
             np.concatenate(outlines),
             _begins(outlines),
             np.concatenate(inside),
             owner,
-            np.array([np.linalg.norm(ways, axis=1).sum() for ways in around]),
+            np.array([np.linalg.norm(ways, axis=1).sum() for ways in around_faces]),
+            side,
+            np.concatenate(around),
+            _begins(around),
         )
 
     def moved(self, place: Array, change: Array) -> Solids:
@@ -107,8 +119,16 @@ class Poses(NamedTuple):
 
 
 @inlined
+def triple(values: Array, i: int) -> Vector:
+    """Row i of vectors of space."""
+    return values[i, 0], values[i, 1], values[i, 2]
+
+
+@inlined
 def changed(change: Array, a: Vector) -> Vector:
-    """A vector after a rotation, given by the rotation less 1."""
+    """A vector after a rotation, given by the rotation less 1. A spin of the plane stays."""
+    if len(a) == 1:
+        return a
     if len(a) == 2:
         return (
             a[0] + change[0, 0] * a[0] + change[0, 1] * a[1],
@@ -121,18 +141,39 @@ def changed(change: Array, a: Vector) -> Vector:
     )
 
 
+@inlined
+def with_whole_sides(solids: Solids) -> Solids:
+    """The solids whose faces have the outlines of the sides that they lie on."""
+    return Solids(
+        solids.corners,
+        solids.corner,
+        solids.normals,
+        solids.face,
+        solids.ways,
+        solids.way,
+        solids.around,
+        solids.begin,
+        solids.inside,
+        solids.owner,
+        solids.extent,
+        solids.side,
+        solids.around,
+        solids.begin,
+    )
+
+
 @compiled_at_once
 def move(solids: Solids, place: Array, change: Array, moved: Solids) -> None:
     """Write where solids are, see `Solids.moved`."""
     for b in range(len(place)):
         turn = change[b]
         for i in range(solids.corner[b], solids.corner[b + 1]):
-            put(moved.corners[i], changed(turn, vector(solids.corners, i, SPACE.axes)))
-            increase(moved.corners[i], vector(place, b, SPACE.axes))
+            put(moved.corners[i], changed(turn, triple(solids.corners, i)))
+            increase(moved.corners[i], triple(place, b))
         for i in range(solids.face[b], solids.face[b + 1]):
-            put(moved.normals[i], changed(turn, vector(solids.normals, i, SPACE.axes)))
+            put(moved.normals[i], changed(turn, triple(solids.normals, i)))
         for i in range(solids.way[b], solids.way[b + 1]):
-            put(moved.ways[i], changed(turn, vector(solids.ways, i, SPACE.axes)))
+            put(moved.ways[i], changed(turn, triple(solids.ways, i)))
 
 
 def _begins(tables: Iterable[Array | Integers]) -> Integers:
@@ -140,25 +181,61 @@ def _begins(tables: Iterable[Array | Integers]) -> Integers:
     return np.cumsum([0, *map(len, tables)])
 
 
-def solids_of(blocks: Sequence[AnyBlock], half: float) -> list[Solid | Polyhedron]:
-    """The convex parts of blocks in space: those of the plane as prisms of some half length [m]."""
-    parts = (part for block in blocks for part in block.parts)
-    return [solid_of(part, half) if isinstance(part, Polygon) else part for part in parts]
+def parts_of(solids: Sequence[Solid], half: float, *, flat: bool) -> list[Convex]:
+    """The convex parts of blocks: those of the plane as prisms from y = -half to half [m]."""
+    parts = [part for solid in solids for part in solid.drawn]
+    return [Convex(_reaching(part.corners, half), part.faces, part.normals) for part in parts] if flat else parts
 
 
-def inside_of(block: AnyBlock) -> list[Flags]:
-    """Which faces of each solid of a block lie inside it, a prism's two ends before its sides. Nothing meets the ends,
-    as nothing meets a face inside."""
-    ends = np.ones(0 if block.in_space else 2, dtype=bool)
-    flags = block.surface.inside if isinstance(block, Compound) else [np.zeros(len(block.sides), dtype=bool)]
-    return [np.append(ends, some) for some in flags]
+def _reaching(corners: Array, half: float) -> Array:
+    """The corners of a prism with another length."""
+    x, y, z = corners.T
+    return np.column_stack([x, np.copysign(half, y), z])
 
 
-def solid_of(block: Polygon, half: float) -> Solid:
-    """A block of the plane as a prism from y = -half to half. (`Polyhedron.prism` searches its corners for a hull.)
+def sides_of(solids: Sequence[Solid]) -> Integers:
+    """A number of the side of its block that each face of each part lies on, shape (faces,). Faces of parts that lie
+    in one plane across a cut have one number, in space where they make a convex side, as their joints do."""
+    first, same = 0, list[tuple[int, int]]()
+    for solid in solids:
+        begin = first + np.cumsum([0, *map(len, solid.inside)])
+        for side in (side for side in solid.sides if len(side.parts) > 1):
+            faces = [
+                int(begin[part]) + face
+                for part in side.parts
+                for face in np.flatnonzero(~solid.inside[part]).tolist()
+                if _is_flush(solid.drawn[part], face, side)
+            ]
+            same += pairwise(faces)
+        first = int(begin[-1])
+    return components(same, first) if same else np.arange(first)
 
-    It has no edges that cross others: those along y meet faces as their corners do."""
-    across, normals = np.array([(0.0, -1.0, 0.0), (0.0, 1.0, 0.0)]), np.zeros((len(block.corners), 3))
-    normals[:, ::2] = block.normals
-    corners, faces = prism(block.corners, 2 * half)
-    return Solid(corners, faces, np.concatenate([across, normals]), np.empty((0, 3)), 2 * half * block.area)
+
+def _is_flush(part: Convex, face: int, side: Side) -> bool:
+    """Whether a face of a part lies in the plane of a side."""
+    corners, normal, axes = part.corners[list(part.faces[face])], part.normals[face], SPACE.axes
+    if len(side.normal) == 2:
+        axes = (0, 2)
+    off = (corners[:, axes] - side.corners[0]) @ side.normal
+    return bool(normal[list(axes)] @ side.normal > 0 and np.abs(off).max() <= 2 * CLOSE)
+
+
+def whole_outlines(outlines: Sequence[Integers], side: Integers, corners: Array, normals: Array) -> list[Integers]:
+    """The outline of the side that each face lies on: its own, or the hull of those of all faces of the side.
+
+    Args:
+        outlines: numbers of the corners around each face.
+        side: number of the side of each, shape (faces,).
+        corners, normals: of all, shape (corners, 3) and (faces, 3).
+    """
+    around = list(outlines)
+    of, counts = np.unique(side, return_counts=True)
+    for number in of[counts > 1]:
+        faces = np.flatnonzero(side == number)
+        points = np.unique(np.concatenate([outlines[face] for face in faces.tolist()]))
+        flat = corners[points] @ axes_across(normals[faces[:1]])[0].T
+        ring = cleaned(flat[scipy.spatial.ConvexHull(flat).vertices], CLOSE)
+        hull = points[np.array([np.hypot(*(flat - at).T).argmin() for at in ring])]
+        for face in faces.tolist():
+            around[face] = hull if area_vector(corners[hull]) @ normals[faces[0]] > 0 else hull[::-1]
+    return around

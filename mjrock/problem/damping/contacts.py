@@ -44,7 +44,7 @@ def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: flo
         given = law(wall, e, k_base)
     except TypeError as error:
         raise TypeError(f"{asked}: {error}") from None
-    if not isinstance(given, Sequence | np.ndarray) or not is_iterable(given) or len(given) != 2:
+    if not is_iterable(given) or not isinstance(given, Sequence | np.ndarray) or len(given) != 2:
         raise TypeError(f"{asked}: it gives {shown(given)}")
     xi_base, xi_side = given
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)

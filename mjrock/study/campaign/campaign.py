@@ -11,11 +11,10 @@ from typing import Any, cast
 
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
 from .pool import Workers
-from .progress import CampaignProgress
+from .progress import CampaignProgress, collect_warnings
 from .run import Runner
 from .store import Store
 from .task import Row, Task, carry_out_all, column_names, keyed
-from .warning_counter import collect_warnings
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast, overload
 
 import numpy as np
 
 from ...quantities import is_iterable, shown, spelt
-from .task import Refused
+from .task import Refused, Task
 
 
-class Grid(Sequence[Any]):
+class Grid(Sequence[Task]):
     """Every combination of the axes as a task. Each is built only when it is asked for, and labelled with its axes.
 
     A label is the value itself if that is text, a number or None; a NumPy number counts as the Python number. For any
@@ -27,7 +27,7 @@ class Grid(Sequence[Any]):
         ValueError: if an axis has no values, or more than memory holds.
     """
 
-    def __init__(self, build: Callable[..., Any], **axes: Iterable[object]) -> None:
+    def __init__(self, build: Callable[..., Task], **axes: Iterable[object]) -> None:
         if not callable(build):
             raise TypeError(f"build = {shown(build)} is not a function that makes the task of a point")
         self.build = build
@@ -41,7 +41,7 @@ class Grid(Sequence[Any]):
         """How many points there are."""
         return int(np.prod([len(values) for values in self.axes.values()], dtype=int))
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[Task]:
         """The tasks in order. A point that `build` fails to make becomes a task that fails with the same message."""
         for i in range(len(self)):
             try:
@@ -49,7 +49,13 @@ class Grid(Sequence[Any]):
             except (Exception, SystemExit) as error:
                 yield Refused.because(error, self._labels(self._point(i)))
 
-    def __getitem__(self, index: Any) -> Any:
+    @overload
+    def __getitem__(self, index: int) -> Task: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Task]: ...
+
+    def __getitem__(self, index: int | slice) -> Task | list[Task]:
         """The task of one point, or a list of them for a slice."""
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
@@ -61,7 +67,7 @@ class Grid(Sequence[Any]):
             raise ValueError(f"{error} (at {at})") from error
         return labelled(task, self._labels(point))
 
-    def _point(self, index: int) -> dict[str, Any]:
+    def _point(self, index: int) -> dict[str, object]:
         places = np.unravel_index(index, [len(values) for values in self.axes.values()])
         return {name: values[int(i)] for (name, values), i in zip(self.axes.items(), places, strict=True)}
 
@@ -70,12 +76,12 @@ class Grid(Sequence[Any]):
         return {name: label_of(value) for name, value in point.items()}
 
 
-def _listed(name: str, values: object) -> list[Any]:
+def _listed(name: str, values: object) -> list[object]:
     """The values of an axis; a TypeError or ValueError with its name if there are none."""
-    if not is_iterable(values) and not isinstance(values, str):
+    if not (isinstance(values, str) or is_iterable(values)):
         raise TypeError(f"the axis {name} = {shown(values)} is not a row of values")
     try:
-        listed: list[Any] = list(values)  # type: ignore[call-overload]
+        listed = list(values)
     except MemoryError:
         raise ValueError(f"the axis {name} = {shown(values)} has more values than memory holds") from None
     if not listed:
@@ -83,14 +89,14 @@ def _listed(name: str, values: object) -> list[Any]:
     return listed
 
 
-def labelled(task: Any, labels: Mapping[str, object]) -> Any:
+def labelled(task: Task, labels: Mapping[str, object]) -> Task:
     """The task with these labels; its own count where both have one of a name. TypeError for what is not a task."""
     if not hasattr(task, "labels"):
         raise TypeError(f"build gives {shown(task)}, which is not a task of a campaign, such as an Analysis")
     labels = dict(labels) | dict(task.labels)
     if hasattr(task, "labelled"):
-        return task.labelled(labels)
-    return replace(task, labels=labels)
+        return cast(Task, task.labelled(labels))
+    return cast(Task, replace(cast(Any, task), labels=labels))
 
 
 def label_of(value: object) -> object:

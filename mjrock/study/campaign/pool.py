@@ -21,8 +21,8 @@ from typing import Any
 from pebble import ProcessPool
 from tqdm import tqdm
 
+from .progress import collect_warnings
 from .task import Row, Task, carry_out
-from .warning_counter import collect_warnings
 
 CHUNK_SECONDS = 0.5
 """Work that a worker does before it hands over its rows [s]: long compared with the 1 ms of handing over, and short

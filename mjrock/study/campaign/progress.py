@@ -1,15 +1,119 @@
-"""How far a campaign is: a bar in a terminal, a line now and then without one."""
+"""How far a campaign is: a bar or lines while it runs, what was warned of, and what its store says."""
 
 from __future__ import annotations
 
+import argparse
+import contextlib
+import re
 import sys
 import time
-from collections.abc import Mapping, Sequence
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
-from .status import closing
+from .store import Store
+
+NUMBER = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
+
+
+class WarningCounter:
+    """Warnings by their kind. Those that differ in their numbers alone are of one kind, which keeps the first text."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+        self.texts: dict[str, str] = {}
+
+    def add(self, text: str, kind: str = "") -> bool:
+        """Count a warning, and say whether it is the first of its kind, by default its text without numbers."""
+        kind = kind or NUMBER.sub("#", text)
+        self.counts[kind] += 1
+        return self.texts.setdefault(kind, text) is text
+
+    def lines(self) -> list[str]:
+        """A line for each kind with how often it came, the most frequent first."""
+        return [
+            f"warned once: {self.texts[kind]}" if count == 1 else f"warned {count} times, first: {self.texts[kind]}"
+            for kind, count in self.counts.most_common()
+        ]
+
+
+@contextlib.contextmanager
+def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
+    """Hand the text of every warning that would be shown to `first`, and show those for which it says so."""
+    before = warnings.showwarning
+
+    def shown(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if first(f"{category.__name__}: {message}"):
+            before(message, category, *place, **more)
+
+    warnings.showwarning = shown
+    try:
+        yield
+    finally:
+        warnings.showwarning = before
+
+
+ERRORS = 3
+"""Most different errors that are shown."""
+
+
+def counted(outcomes: Mapping[str, int]) -> str:
+    """How many cases ended in each way, the most frequent first."""
+    ordered = sorted(outcomes.items(), key=lambda pair: (-pair[1], pair[0]))
+    return ", ".join(f"{number} {name}" for name, number in ordered)
+
+
+def closing(
+    kept: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], seconds: float, total: int | None
+) -> str:
+    """The last line of a campaign.
+
+    It says how many tasks had a row and were kept, how many of the others are done or failed and how they ended, how
+    long that took [s], and how many of the total are left, None if nobody knows.
+    """
+    rows = kept + sum(statuses.values())
+    of = "" if total is None else f" of {total}"
+    left = "" if total is None or rows >= total else f", {total - rows} left; the same call carries on"
+    done = f"{statuses.get('done', 0)} done, {statuses.get('failed', 0)} failed"
+    ended = f" ({counted(outcomes)})" if outcomes else ""
+    before = f", {kept} had a row before" if kept else ""
+    return f"{rows}{of} tasks have a row: {done}{ended} in {seconds:.3g} s{before}{left}"
+
+
+def status(path: str | Path) -> str:
+    """How many rows a store holds, how they ended, how long they took and what has failed, as text.
+
+    It may be asked while the campaign runs.
+
+    Raises:
+        ValueError, OSError: as `Store`.
+    """
+    with Store(path) as store:
+        rows = store.rows()
+    done = [row for row in rows if row["status"] == "done"]
+    failed = [row for row in rows if row["status"] != "done"]
+    lines = [f"{path}: {len(rows)} rows, {len(done)} done, {len(failed)} failed"]
+    outcomes = Counter(str(row["outcome"]) for row in done if row.get("outcome") is not None)
+    if outcomes:
+        lines.append(f"outcomes: {counted(outcomes)}")
+    seconds = sum(row["seconds"] or 0.0 for row in rows)
+    lines.append(f"time of all cases together: {seconds:.3g} s, {seconds / max(len(rows), 1):.3g} s a case")
+    lines.append(f"made by: {counted(Counter(str(row['version']) for row in rows))}" if rows else "made by: nobody yet")
+    errors = Counter(str(row["error"]).splitlines()[0] for row in failed)
+    lines += [f"failed {number} times: {error[:160]}" for error, number in errors.most_common(ERRORS)]
+    return "\n".join(lines)
+
+
+def answer(argv: Sequence[str]) -> str:
+    """The `status` of the store that is named."""
+    parser = argparse.ArgumentParser("python -m mjrock status", description="How far a campaign is, from its store.")
+    parser.add_argument("store", help="the SQLite file of a campaign")
+    return status(parser.parse_args(argv).store)
+
 
 EVERY = 30.0
 """Time between two lines of a campaign without a terminal [s]."""

@@ -18,10 +18,9 @@ import numpy as np
 from pebble import ProcessExpired
 
 from .pool import CHUNK_SECONDS, QUIT
-from .progress import CampaignProgress
+from .progress import CampaignProgress, WarningCounter
 from .store import Store
 from .task import VERSION, Refused, Row, Task, carry_out, column_names, failed_row, keyed
-from .warning_counter import WarningCounter
 
 DEATHS = 2
 """A task during which this many worker processes have died is run alone."""

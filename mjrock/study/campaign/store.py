@@ -9,10 +9,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...files import require_file
+from ...files import require_file, written
 from ...quantities import require_path, spelt
-from ...result.table import written
-from .values import checksum, plain, table_text
+from .task import Row, checksum, plain, table_text
 
 if TYPE_CHECKING:
     import pandas
@@ -235,7 +234,7 @@ class Store:
         """How many rows there are."""
         return int(self._ask("SELECT count(*) FROM cases")[1][0][0])
 
-    def _verified(self) -> Iterator[dict[str, Any]]:
+    def _verified(self) -> Iterator[Row]:
         """The rows in the order in which they were asked, each verified by its checksum."""
         names, rows = self._ask("SELECT * FROM cases ORDER BY position, key")
         for values in rows:
@@ -244,7 +243,7 @@ class Store:
                 raise self._explained(ValueError("a row is not as it was written"))
             yield row
 
-    def rows(self, **where: object) -> list[dict[str, Any]]:
+    def rows(self, **where: object) -> list[Row]:
         """The rows in the order in which they were asked, all or those whose columns have the values given.
 
         Raises:
@@ -271,9 +270,9 @@ class Store:
         return pandas.DataFrame(self.rows(), columns=self.columns)
 
 
-def readable(path: Path) -> list[dict[str, Any]]:
+def readable(path: Path) -> list[Row]:
     """The rows of a damaged store that are as they were written: those before the first and after the last damage."""
-    kept: dict[str, dict[str, Any]] = {}
+    kept: dict[str, Row] = {}
     for order in ("ASC", "DESC"):
         with contextlib.suppress(*UNREADABLE), contextlib.closing(sqlite3.connect(path)) as connection:
             connection.text_factory = lambda text: text.decode("utf-8", "replace")

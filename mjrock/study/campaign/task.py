@@ -1,18 +1,100 @@
-"""What a campaign runs: tasks, the rows that they return, and the version that made them."""
+"""What a campaign runs: tasks, what tells them apart, the rows that they return, and the version that made them."""
 
 from __future__ import annotations
 
+import dataclasses
+import hashlib
 import time
-from collections.abc import Mapping, Sequence
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 import mujoco
+import numpy as np
 
 from ..._version import __version__
-from .fingerprint import fingerprint
-from .values import plain, table_text
+from ...quantities import spelt
+
+Value = str | int | float | None
+
+
+def plain(value: object) -> Value:
+    """A value as a table holds it: text, a 64-bit integer, a float or None; NaN becomes None, a truth value 0 or 1.
+    ValueError for anything else."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None:
+        return None
+    if isinstance(value, str):
+        if not value.isascii() and value.encode("utf-8", "ignore").decode() != value:
+            raise ValueError(f"{table_text(value)} is text that UTF-8 cannot hold")
+        return str(value)
+    if isinstance(value, float):
+        return None if value != value else float(value)
+    if isinstance(value, int):
+        if -(2**63) <= value < 2**63:
+            return int(value)
+        raise ValueError(f"{table_text(value)} is outside the valid range of an integer, -2**63 to 2**63 - 1")
+    raise ValueError(f"{table_text(value)} is of type {type(value).__name__}, and a table holds text, numbers and None")
+
+
+def table_text(value: object) -> str:
+    """A value as short text that every table can hold."""
+    text = value.encode("utf-8", "backslashreplace").decode() if isinstance(value, str) else spelt(value)
+    return text if len(text) <= 200 else text[:200] + "..."
+
+
+def checksum(row: Mapping[str, Value]) -> int:
+    """The checksum of a row, whatever the order of its columns; a column that is None counts as one that is absent."""
+    held = sorted((name, value) for name, value in row.items() if value is not None)
+    return zlib.crc32(repr(held).encode())
+
+
+def fingerprint(*contents: object) -> str:
+    """A hash of the content of dataclasses, arrays, mappings and plain values, the same on every machine.
+
+    A field of a dataclass that does not take part in comparison does not count: a label, the name of a record.
+
+    Raises:
+        TypeError: for a value whose content is not known, such as a function.
+    """
+    digest = hashlib.sha256()
+    for piece in _pieces(contents):
+        digest.update(b"%d:" % len(piece) + piece)
+    return digest.hexdigest()[:32]
+
+
+def _pieces(value: object) -> Iterator[bytes]:
+    """The content of a value as bytes that tell it from any other."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        yield type(value).__name__.encode()
+        for field in dataclasses.fields(value):
+            if field.compare:
+                yield field.name.encode()
+                yield from _pieces(getattr(value, field.name))
+    elif isinstance(value, np.ndarray):
+        yield f"{value.dtype.str}{value.shape}".encode()
+        yield np.ascontiguousarray(value).tobytes()
+    elif isinstance(value, Mapping):
+        yield b"{%d" % len(value)
+        for name in sorted(value):
+            yield from _pieces(name)
+            yield from _pieces(value[name])
+    elif isinstance(value, tuple | list):
+        yield b"[%d" % len(value)
+        for item in value:
+            yield from _pieces(item)
+    elif isinstance(value, np.generic):
+        yield from _pieces(value.item())
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield repr(float(value)).encode()  # 1 and 1.0 are the same thickness
+    elif value is None or isinstance(value, bool | str):
+        yield repr(value).encode()
+    else:
+        raise TypeError(f"{spelt(value)} is of no type whose content can be hashed")
+
 
 VERSION = f"mjrock {__version__}, MuJoCo {mujoco.__version__}"
 """What made a row; another version makes other rows."""

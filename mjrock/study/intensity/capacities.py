@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,13 +12,14 @@ from scipy.special import stdtrit
 
 from ...quantities import Array, Flags, is_iterable, require_real, require_row, require_within, shown
 from ...result.ending import Outcome
+from ..campaign.task import Row
 from .fragility import Fragility, drawn, labels_for, numbered
 
 OUTCOMES = frozenset(outcome.value for outcome in Outcome)
 """How a row says that a run ended."""
 
 
-def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
+def lost(rows: Iterable[Row]) -> Flags:
     """Whether each run of a campaign lost its wall, for `fit_fragility`; shape (n,).
 
     A wall is lost if it overturned. One with ties is lost too if the time ended after it had leaned by alpha or more:

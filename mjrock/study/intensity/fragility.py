@@ -6,15 +6,23 @@ import math
 import warnings
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import chdtri, log_ndtr, ndtr, ndtri, stdtrit
 
-from ...files import write_text
-from ...quantities import Array, Flags, require_path, require_plain, require_reals, require_whole, require_within, shown
-from ...result.table import csv_text
+from ...files import csv_text, write_text
+from ...quantities import (
+    Array,
+    Flags,
+    Integers,
+    require_path,
+    require_plain,
+    require_reals,
+    require_whole,
+    require_within,
+    shown,
+)
 
 FEWEST_GROUPS = 5
 """Fewest groups that are resampled."""
@@ -274,7 +282,7 @@ def _flags(overturned: ArrayLike) -> Flags:
     return np.asarray(values, dtype=bool)
 
 
-def numbered(labels: NDArray[Any], least: int = FEWEST_GROUPS) -> tuple[int, NDArray[Any]]:
+def numbered(labels: NDArray[np.generic], least: int = FEWEST_GROUPS) -> tuple[int, Integers]:
     """How many groups there are, and the number of that of each value; ValueError for too few for an interval."""
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < least:
@@ -285,14 +293,14 @@ def numbered(labels: NDArray[Any], least: int = FEWEST_GROUPS) -> tuple[int, NDA
     return len(names), group
 
 
-def drawn(groups: int, resamples: int, seed: int) -> NDArray[Any]:
+def drawn(groups: int, resamples: int, seed: int) -> Integers:
     """How often each resample holds each group, drawn with replacement, shape (resamples, groups)."""
     count = require_whole("resamples", resamples, 20, 100_000)
     rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
     return rng.multinomial(groups, np.full(groups, 1 / groups), size=count)
 
 
-def labels_for(groups: ArrayLike | None, count: int) -> NDArray[Any]:
+def labels_for(groups: ArrayLike | None, count: int) -> NDArray[np.generic]:
     """What each of so many values belongs to, see `labels_of`; None takes each as a group of its own."""
     labels = np.arange(count) if groups is None else labels_of(groups)
     if labels.shape != (count,):
@@ -300,7 +308,7 @@ def labels_for(groups: ArrayLike | None, count: int) -> NDArray[Any]:
     return labels
 
 
-def labels_of(groups: ArrayLike) -> NDArray[Any]:
+def labels_of(groups: ArrayLike) -> NDArray[np.generic]:
     """What each run belongs to; TypeError or ValueError unless they are all text or all numbers, without NaN."""
     takes = "the name or the number of the group of each run"
     labels = require_plain("groups", groups, takes, "biufU")

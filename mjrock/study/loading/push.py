@@ -23,7 +23,7 @@ from ...problem.masonry.effects import laden
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effect import Effect
 from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown
-from ...result.response import Response
+from ...result.response import End, Response, State
 from ...result.start import required_start
 from .limit_analysis import horizontal
 
@@ -120,7 +120,7 @@ def push(
     mass_damping: float = 0.0,
     local_damping: float = 0.0,
     falls_to: float = 0.0,
-    start: Any = None,
+    start: State | End | None = None,
 ) -> Push:
     """Force and displacement of masonry that is pushed slowly, with the branch on which the force falls.
 
@@ -215,7 +215,7 @@ class Load:
     masonry: Masonry
     effects: tuple[Effect, ...]
     options: dict[str, Any]
-    start: Any
+    start: State | End | None
     actuator: Actuator
     level: float = field(default=0.0, init=False)
     gained: float = field(default=0.0, init=False)

@@ -12,14 +12,12 @@ import numpy as np
 from ....geometry.graph import components
 from ....geometry.hull import Convex, Side
 from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, shown
-from .joints import Joint, joints_in_plane
+from .joints import CLOSE, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
 from .polygon import Polygon, checked_name
 from .polyhedron import Polyhedron, principal_of
 from .surface import Surface, surface_in_plane, surface_in_space
 
-CLOSE = 1e-5
-"""Largest distance between the faces of two parts that are joined, and largest overlap of parts [m]."""
 MOST_PARTS = 1000
 """Most parts of a unit."""
 

@@ -20,6 +20,8 @@ PARALLEL = 0.05
 """Largest sine of the angle between two edges that make a joint [-]."""
 TOGETHER = 512
 """Pairs of blocks whose joints are found at once."""
+CLOSE = 1e-5
+"""Largest distance between the faces of two parts of a unit that are joined, and largest overlap of parts [m]."""
 LEVEL = 1e-6
 """Largest |x| of the normal of a bed joint, and largest |z| of that of a head joint [-]."""
 

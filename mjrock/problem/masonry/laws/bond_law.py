@@ -46,17 +46,17 @@ def tear(bond: Any, gap: float) -> None:
     The opening w of the crack solves k (u - w) = T exp(-w r), with u the largest gap, T the strength and r its rate.
     Where k is hardly above T r, the spring gives back what the crack takes, and the bond breaks at once.
     """
-    far = max(bond.drawn, gap)
-    bond.drawn, crack, strength = far, bond.crack, bond.tension * bond.left
+    far = max(bond.largest_gap, gap)
+    bond.largest_gap, crack, strength = far, bond.crack, bond.tension * bond.integrity
     if bond.k * (far - crack) <= strength:
         return
-    if bond.torn * strength >= BRITTLE * bond.k:
-        bond.crack, bond.left, bond.secant = far, 0.0, 0.0
+    if bond.opening_rate * strength >= BRITTLE * bond.k:
+        bond.crack, bond.integrity, bond.secant = far, 0.0, 0.0
         return
     for _ in range(PASSES):
-        held = strength * math.exp(-bond.torn * (crack - bond.crack))
-        crack = min(crack + (bond.k * (far - crack) - held) / (bond.k - bond.torn * held), far)
-    bond.left *= math.exp(-bond.torn * (crack - bond.crack))
+        held = strength * math.exp(-bond.opening_rate * (crack - bond.crack))
+        crack = min(crack + (bond.k * (far - crack) - held) / (bond.k - bond.opening_rate * held), far)
+    bond.integrity *= math.exp(-bond.opening_rate * (crack - bond.crack))
     bond.crack = crack
     bond.secant = bond.k * (far - crack) / far
 
@@ -64,7 +64,7 @@ def tear(bond: Any, gap: float) -> None:
 @inlined
 def hardened(bond: Any, closing: float) -> float:
     """What a joint that hardens bears after it has closed by so much more, up to its peak [N]."""
-    share = min((bond.crushed + closing) / bond.hardens, 1.0)
+    share = min((bond.crushed + closing) / bond.hardening, 1.0)
     bears: float = bond.peak * (YIELDS + (1 - YIELDS) * math.sqrt(share * (2 - share)))
     return bears
 
@@ -73,7 +73,7 @@ def hardened(bond: Any, closing: float) -> float:
 def harden(bond: Any, gap: float, sheared: float) -> float:
     """Close a joint at a gap [m] for good until it bears what presses, or to its peak, see `crush`. Returns by how much
     [m]."""
-    left: float = bond.hardens - bond.crushed
+    left: float = bond.hardening - bond.crushed
     low, high = 0.0, min(left, -gap)
     if math.hypot(bond.k * (gap + high), sheared) < hardened(bond, high):
         for _ in range(HALVINGS):
@@ -82,8 +82,8 @@ def harden(bond: Any, gap: float, sheared: float) -> float:
                 high = closing
             else:
                 low = closing
-    bond.bears = hardened(bond, high)
-    bond.crushed = bond.crushed + high if high < left else bond.hardens
+    bond.strength = hardened(bond, high)
+    bond.crushed = bond.crushed + high if high < left else bond.hardening
     return high
 
 
@@ -93,11 +93,11 @@ def crush(bond: Any, gap: float, sheared: float) -> float:
     sheared *= 3
     closing: float = 0.0
     pressed = bond.k * gap
-    if pressed * pressed + sheared * sheared <= bond.bears * bond.bears:
+    if pressed * pressed + sheared * sheared <= bond.strength * bond.strength:
         return 0.0
-    if bond.crushed < bond.hardens:
+    if bond.crushed < bond.hardening:
         closing = harden(bond, gap, sheared)
-    if bond.crushed >= bond.hardens:
+    if bond.crushed >= bond.hardening:
         closing += soften(bond, gap + closing, sheared)
     return closing
 
@@ -107,27 +107,27 @@ def soften(bond: Any, gap: float, sheared: float) -> float:
     """Crush a joint beyond its peak, see `crush`."""
     closing: float = 0.0
     for _ in range(PASSES):
-        left = bond.bears * math.exp(-bond.crumbled * closing)
+        left = bond.strength * math.exp(-bond.crushing_rate * closing)
         closing = max(-gap - math.sqrt(max(left * left - sheared * sheared, 0.0)) / bond.k, 0.0)
     bond.crushed += closing
-    bond.bears *= math.exp(-bond.crumbled * closing)
-    bond.left *= math.exp(-bond.crumbled * closing)
+    bond.strength *= math.exp(-bond.crushing_rate * closing)
+    bond.integrity *= math.exp(-bond.crushing_rate * closing)
     return closing
 
 
 @inlined
 def bonded_limit(bond: Any, push: float) -> float:
     """Largest force along the face that a bonded joint holds under a force along the normal [N]."""
-    limit: float = min(bond.cohesion * bond.left + shear_limit(bond, max(push, 0.0)), bond.bears / 3)
+    limit: float = min(bond.cohesion * bond.integrity + shear_limit(bond, max(push, 0.0)), bond.strength / 3)
     return limit
 
 
 @inlined
 def wear(bond: Any, slid: float) -> float:
     """Wear a bond by the way of its slider [m]. Returns what its cohesion has taken [J]."""
-    if bond.worn == 0 or slid == 0:
+    if bond.slip_rate == 0 or slid == 0:
         return 0.0
-    share = -math.expm1(-bond.worn * slid)
-    taken: float = bond.cohesion * bond.left * share / bond.worn
-    bond.left *= 1 - share
+    share = -math.expm1(-bond.slip_rate * slid)
+    taken: float = bond.cohesion * bond.integrity * share / bond.slip_rate
+    bond.integrity *= 1 - share
     return taken

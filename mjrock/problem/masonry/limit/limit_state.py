@@ -234,7 +234,7 @@ def _met(programme: Programme, x: Array) -> tuple[Array, Array] | None:
         shared.append(float(x @ moving[0]))
         if shared[-1] < SHARED:
             return moving
-        if len(shared) > 3 and shared[-3] - shared[-1] < 0.01 * SHARED:
+        if len(shared) > 3 and shared[-1] >= shared[-3]:
             return None
     return None
 

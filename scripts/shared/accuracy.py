@@ -11,22 +11,18 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from numpy.typing import ArrayLike
 
-from .arguments import equal_rows, picture
-from .style import below_figure
+from mjrock.plotting.style import below_figure
 
 PEER_COLORS = ("0.1", "#1f77b4", "#2ca02c", "#d62728", "#9467bd")
 """A colour for each code of `peers`."""
 GRID: dict[str, Any] = {"visible": True, "which": "major", "linewidth": 0.4, "color": "0.9"}
 
 
-@picture()
 def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], order: int) -> Axes:
     """Errors against the step on logarithmic axes, with the slope of an order to compare by."""
     steps = np.asarray(steps, dtype=float)
     for (label, values), marker in zip(errors.items(), "osD^v", strict=False):
-        ax.loglog(
-            *equal_rows(steps=steps * 1e3, errors=values), marker=marker, markersize=4, linewidth=1.2, label=label
-        )
+        ax.loglog(steps * 1e3, values, marker=marker, markersize=4, linewidth=1.2, label=label)
     anchor = min(float(np.min(np.asarray(v))) for v in errors.values())
     slope = 0.25 * anchor * (steps / steps.min()) ** order
     ax.loglog(steps * 1e3, slope, color="0.5", linewidth=0.8, linestyle="--", label=f"order {order}")

@@ -11,13 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from numpy.typing import ArrayLike
 
-from .arguments import anything, equal_rows, mapping, pair, picture
-from .style import titled
+from mjrock.plotting.style import titled
 
 ASKED = "restitution asked for $|e|$ [-]"
 
 
-@picture()
 def damping_curves(
     ax: Axes, families: Sequence[tuple[str, tuple[ArrayLike, ArrayLike], tuple[ArrayLike, ArrayLike]]]
 ) -> Axes:
@@ -27,8 +25,8 @@ def damping_curves(
     """
     for i, ((label, matches, curve), marker) in enumerate(zip(families, "os^vD<>p", strict=False)):
         color = colormaps["viridis"](0.9 * i / max(1, len(families) - 1))
-        ax.semilogy(*equal_rows(e=curve[0], xi=curve[1]), color=color, linewidth=1.2)
-        ax.semilogy(*equal_rows(e=matches[0], xi=matches[1]), marker, markersize=4, color=color, label=label)
+        ax.semilogy(*curve, color=color, linewidth=1.2)
+        ax.semilogy(*matches, marker, markersize=4, color=color, label=label)
     ax.set(xlabel=ASKED, ylabel=r"damping ratio $\xi$ [-]")
     ax.locator_params(axis="x", nbins=6)
     ax.set_ylim(bottom=0.1 * ax.get_ylim()[0])  # room for the legend
@@ -36,16 +34,11 @@ def damping_curves(
     return ax
 
 
-@picture()
 def parity(ax: Axes, matched: ArrayLike, predicted: ArrayLike, color: ArrayLike) -> Axes:
     """Predicted against matched damping ratios, on logarithmic axes, coloured by the softness of the base."""
-    x, y, softness = equal_rows(matched=matched, predicted=predicted, color=color)
-    least = min(x.min(), y.min(), softness.min())
-    if not least > 0:
-        raise ValueError(f"matched, predicted and color hold {least:g}; the valid range is above 0")
-    limits = 0.8 * min(x.min(), y.min()), 1.25 * max(x.max(), y.max())
+    limits = 0.8 * min(np.min(matched), np.min(predicted)), 1.25 * max(np.max(matched), np.max(predicted))
     ax.loglog(limits, limits, color="0.5", linewidth=0.8)
-    ax.scatter(x, y, c=np.log10(softness), s=6, cmap="viridis", linewidth=0)
+    ax.scatter(matched, predicted, c=np.log10(color), s=6, cmap="viridis", linewidth=0)
     ax.set(xlim=limits, ylim=limits, xlabel=r"matched $\xi$ [-]", ylabel=r"predicted $\xi$ [-]")
     return ax
 
@@ -55,8 +48,7 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
     figure = Figure(figsize=(max(3.5, 2.3 * len(variables)), 2.5), layout="constrained")
     axes = figure.subplots(1, len(variables), sharey=True, squeeze=False)[0]
     for ax, (name, (values, scale)) in zip(axes, variables.items(), strict=True):
-        x, y = equal_rows(**{name: values, "residual": residual})
-        ax.plot(x, y, linestyle="", marker="o", markersize=2, markeredgewidth=0, alpha=0.6, color="#12406b")
+        ax.plot(values, residual, linestyle="", marker="o", markersize=2, markeredgewidth=0, alpha=0.6, color="#12406b")
         ax.axhline(1, color="0.5", linewidth=0.8)
         ax.set(xscale=scale, yscale="log", xlabel=name)
         ax.xaxis.set_minor_formatter(NullFormatter())
@@ -65,26 +57,23 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
     return figure
 
 
-@picture(curves=mapping(pair(anything, anything)))
 def sensitivity(ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Axes:
     """Damping ratio, over its mean, as each parameter goes through its range; a line a parameter."""
     for (name, (shares, ratios)), marker in zip(curves.items(), "os^vD<>p", strict=False):
-        ax.semilogy(*equal_rows(shares=shares, ratios=ratios), marker=marker, markersize=4, linewidth=1.2, label=name)
+        ax.semilogy(shares, ratios, marker=marker, markersize=4, linewidth=1.2, label=name)
     ax.axhline(1, color="0.6", linewidth=0.6)
     ax.set(xlabel="place in the range of Table 1 [-]", ylabel=r"$\xi$ over its mean [-]")
     ax.legend(frameon=False, fontsize=7)
     return ax
 
 
-@picture(samples=mapping(pair(anything, anything)))
 def obtained(ax: Axes, samples: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Axes:
     """Restitution obtained against the one asked for; samples are (asked for, obtained) by law. NaN is not drawn."""
-    rows = [equal_rows(asked=asked, obtained=given) for asked, given in samples.values()]
-    wanted = np.concatenate([asked for asked, _ in rows])
+    wanted = np.concatenate([asked for asked, _ in samples.values()])
     limits = wanted.min(), wanted.max()
     ax.plot(limits, limits, color="0.5", linewidth=0.8)
     looks = zip("x.s", ("#f0a35e", "#12406b", "0.4"), strict=True)
-    for name, row, (marker, color) in zip(samples, rows, looks, strict=False):
+    for (name, row), (marker, color) in zip(samples.items(), looks, strict=False):
         ax.plot(*row, linestyle="", marker=marker, markersize=5, color=color, label=name)
     ax.set(xlabel=ASKED, ylabel="restitution obtained $|e|$ [-]")
     ax.legend(frameon=False, fontsize=8)

@@ -1,0 +1,114 @@
+"""What all laws of joints beside the dry one have: a row for each contact line, and what a run asks of a law.
+
+A contact line is dry: it presses and rubs. A law holds its lines besides, and takes over as much of their springs,
+dashpots and friction as it has itself. It is a class in a file of this folder. `LAWS` of `lists` names the laws, and
+nothing else knows which there are.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from ...compiled import inlined
+from ...problem.masonry.laws.bond import Bond
+from ...quantities import Array, Flags
+from ...scene.scene import Scene
+from ..rows import Fields, Row, Rows, numbers, rows, vectors
+from ..system import Books, System
+
+OF_A_LINE = ("k", "c", "k_s", "c_s", "friction", "margin", "grip")
+"""Numbers of a contact line that a law can take over."""
+
+
+class JointLaw:
+    """A law of joints. It is a NamedTuple too, `link.Table` or one of its own, so that compiled loops know it.
+
+    `act`, `stored` and `lost` are compiled. The others have here what most laws need.
+
+    Attributes:
+        rows: a row for each line of the joints, with the numbers of `table` and `own` ones; none where no joint has
+            the law.
+        bond: what a joint of masonry with this law has for its bond.
+        endless: numbers of a row that may be infinite.
+    """
+
+    rows: Rows
+    own: ClassVar[Fields] = []
+    bond: ClassVar[type[Bond]]
+    endless: ClassVar[tuple[str, ...]] = ("k_s", "margin")
+
+    @classmethod
+    def table(cls, d: int, count: int) -> Rows:
+        """Rows of a law in d directions, zero throughout."""
+        fields = [
+            *numbers(*OF_A_LINE[:-1]),  # of the dry line; k is 0 for a line without this law
+            *numbers("share"),  # the line's part of the area of the joint [-]
+            *numbers("gap", "push", "pressed"),  # gap [m], force, and force of the dashpot, of the last step [N]
+            *vectors(2 * d - 3, "grip", "dragged"),  # stretch of the shear spring [m], its force in the last step [N]
+            *cls.own,
+        ]
+        return rows(np.dtype(fields), count)
+
+    @classmethod
+    def of(cls, scene: Scene, lines: Rows) -> Self:
+        """The law of the joints of a scene that have it. It takes over what it holds of their lines."""
+        contacts = scene.contacts
+        joints = [i for i, bond in enumerate(contacts.bonds) if type(bond) is cls.bond]
+        law = cls(cls.table(scene.bodies.rest.shape[1], len(lines) if joints else 0))  # type: ignore[call-arg]
+        for i in joints:
+            which = contacts.joint == i
+            area = np.asarray(contacts.area)[which]
+            for name in OF_A_LINE:
+                law.rows[name][which] = lines[name][which]
+            law.rows["share"][which] = area / area.sum()
+            law.begin(lines, which, contacts.bonds[i], area)
+        return law
+
+    def begin(self, lines: Rows, which: Flags, bond: Any, area: Array) -> None:
+        """Write the numbers of the lines of one joint, and take over what the law holds of them.
+
+        Args:
+            lines: all lines.
+            which: those of the joint, shape (lines,).
+            bond: of the joint.
+            area: of each of its lines [m2].
+        """
+        raise NotImplementedError
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """Add the forces at the pose of time t [s], keep them as `push` and `dragged`, and book what the last step, of
+        length h, took."""
+        raise NotImplementedError
+
+    @inlined
+    def stored(self) -> tuple[float, float]:
+        """Energy that the law holds along the normals and along the faces [J]."""
+        raise NotImplementedError
+
+    @inlined
+    def lost(self, row: Row) -> float:
+        """Share of what the law holds that a line has lost [-]."""
+        return 0.0
+
+    def holding(self) -> Flags:
+        """Whether each line still holds something beside friction. Its joint is then not handed over."""
+        return np.asarray(self.rows["k"] > 0)
+
+    def release(self, lines: Rows, which: Flags) -> None:
+        """Give dry lines back what the law has taken over, where they are handed over."""
+        which = which & (self.rows["k"] > 0)
+        for name in ("k", "c", "friction", "margin", "grip", "dragged"):
+            lines[name][which] = self.rows[name][which]
+        for name in ("k", "grip", "dragged", "push"):
+            self.rows[name][which] = 0.0
+
+    def going_on(self) -> Self:
+        """The law with which a run starts that carries on the run of this one."""
+        return self
+
+    def cracked(self, scene: Scene) -> dict[str, float]:
+        """When each joint that cracked did [s]."""
+        return {}

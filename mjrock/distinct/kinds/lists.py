@@ -1,0 +1,104 @@
+"""The kinds of links and the laws of joints: which there are, and what the steps and a run ask of all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compiled import inlined, method
+from ...geometry.vectors import Vector, plus, read
+from ...problem.masonry.case import AnyCase
+from ...quantities import Array
+from ...scene.scene import Scene
+from ..rows import Row, Rows
+from ..system import Books, System, Tables
+from .actuators import Actuators
+from .constant_forces import ConstantForces
+from .dampers import Dampers
+from .law import JointLaw
+from .link import Kind
+from .mortar import Bonds
+from .ties import Ties
+
+KINDS: tuple[type[Kind], ...] = (Ties, Dampers, Actuators, ConstantForces)
+"""The kinds of links, in the order in which they act."""
+LAWS: tuple[type[JointLaw], ...] = (Bonds,)
+"""The laws of joints beside the dry one, which all lines have."""
+
+act, hold, stored, lost = method("act"), method("hold"), method("stored"), method("lost")
+
+
+def links_of(scene: Scene, case: AnyCase, bodies: Rows) -> tuple[tuple[tuple[str, ...], ...], Tables]:
+    """The links of a scene of a case, whose bodies are at rest: their names, and a table, for each kind."""
+    names, links = zip(*(kind.of(scene, case, bodies) for kind in KINDS), strict=True)
+    return names, numbered(links)
+
+
+def numbered(links: Tables) -> Tables:
+    """Links whose rows have the numbers of their links and of their accounts."""
+    number = account = 0
+    for table in links:
+        each, booked = np.arange(len(table.rows)), len(table.booked)
+        table.rows["number"], table.rows["account"] = number + each, account + booked * each
+        number, account = number + len(each), account + booked * len(each)
+    return links
+
+
+def laws_of(scene: Scene, lines: Rows) -> Tables:
+    """The laws of the joints of a scene, which take over what they hold of its lines."""
+    return tuple(law.of(scene, lines) for law in LAWS)
+
+
+def no_laws(d: int) -> Tables:
+    """The laws of dry joints in d directions."""
+    return tuple(law(law.table(d, 0)) for law in LAWS)  # type: ignore[call-arg]
+
+
+@inlined
+def act_all(tables: Tables, system: System, books: Books, t: float, h: float) -> None:
+    """Let all links, or all laws, act at time t, and book what the last step of length h took."""
+    if len(tables) > 0:
+        act(tables[0], system, books, t, h)
+        act_all(tables[1:], system, books, t, h)
+
+
+@inlined
+def hold_all(links: Tables, system: System, books: Books, energy: Row, pulled: Array) -> None:
+    """Add what the links of all kinds hold to the energy of a sample, and keep the force of each [N]."""
+    if len(links) > 0:
+        hold(links[0], system, books, energy)
+        for i in range(len(links[0].rows)):
+            pulled[links[0].rows[i].number] = links[0].rows[i].pulled
+        hold_all(links[1:], system, books, energy, pulled)
+
+
+@inlined
+def stored_by_laws(laws: Tables) -> tuple[float, float]:
+    """Energy that all laws hold along the normals and along the faces [J]."""
+    if len(laws) > 0:
+        (along, across), (others, others_across) = stored(laws[0]), stored_by_laws(laws[1:])
+        return along + others, across + others_across
+    return 0.0, 0.0
+
+
+@inlined
+def lost_by_laws(laws: Tables, p: int) -> float:
+    """Share of what its law holds that line p has lost, times its part of the area of its joint [-]."""
+    if len(laws) > 0:
+        here = 0.0
+        if p < len(laws[0].rows):
+            row = laws[0].rows[p]
+            here = row.share * lost(laws[0], row)
+        return here + lost_by_laws(laws[1:], p)
+    return 0.0
+
+
+@inlined
+def with_laws(laws: Tables, p: int, push: float, drag: Vector, holds: bool) -> tuple[float, Vector, bool]:
+    """Force of line p along its normal and its face in the last step with that of its laws [N], and whether one holds
+    it, from those of the dry line."""
+    if len(laws) > 0:
+        if p < len(laws[0].rows) and laws[0].rows[p].k > 0:
+            row = laws[0].rows[p]
+            push, drag, holds = push + row.push, plus(drag, read(row.dragged)), True
+        return with_laws(laws[1:], p, push, drag, holds)
+    return push, drag, holds

@@ -1,0 +1,224 @@
+"""Bonds of mortared joints: the part of a line that pulls as it pushes, and its shear spring with cohesion.
+
+While a bond holds, its line is split in two. The secant of the bond acts both ways, here. The rest of the stiffness of
+the line pushes only, in `contact`, as a dry line does. An intact bond leaves nothing to its line, and once the bond has
+gone the line is the dry one. Friction of a bonded line is that of the bond, and its faces have no ends as
+long as it holds.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar, Self
+
+import numpy as np
+
+from ...compiled import inlined
+from ...geometry.vectors import Vector, dot, increase, minus, no_spin, plus, put, read, scaled
+from ...problem.masonry.laws.bond import Bond
+from ...problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
+from ...problem.masonry.laws.joint_law import normal_force, stored_along
+from ...quantities import Array, Flags
+from ...scene.scene import Scene
+from ..contacts.contact import add_force, meeting, relative, where_friction_rubs
+from ..contacts.friction import along_face, as_vector, carried, shortened, stretched
+from ..rows import Fields, Row, Rows, numbers
+from ..system import Books, System
+from ..turning import in_body
+from .law import JointLaw
+from .link import Table
+
+GONE = math.exp(-9)
+"""What is left of a bond when it counts as gone [-]."""
+CRACKED = 0.5
+"""What is left of a bond when it counts as cracked [-]."""
+
+
+class Bonds(JointLaw, Table):
+    """Bonds, by `bond_law`: `integrity` is what is left of each, 1 - D [-]."""
+
+    own: ClassVar[Fields] = [
+        *numbers("residual", "friction_drop"),  # friction without bond, and what a whole bond adds to it [-]
+        *numbers("tension", "cohesion", "strength"),  # of the line [N], `strength` in crushing, or infinite
+        *numbers("opening_rate", "slip_rate", "crushing_rate"),  # of its loss [1/m], see `bond_law`
+        *numbers("integrity"),
+        *numbers("peak", "hardening"),  # strength in crushing at its peak [N], plastic closing there, zero for none [m]
+        *numbers("largest_gap", "crack", "crushed"),  # so far, opening of the crack and plastic closing so far [m]
+        *numbers("secant"),  # stiffness that holds both ways [N/m]
+        *numbers("age"),  # time that it has held until it cracked [s]
+    ]
+    bond: ClassVar[type[Bond]] = Bond
+    endless: ClassVar[tuple[str, ...]] = (*JointLaw.endless, "strength")
+
+    def begin(self, lines: Rows, which: Flags, bond: Bond, area: Array) -> None:
+        """With the strengths of the mortar times the area of each line."""
+        bonds, friction = self.rows, lines["friction"][which]
+        residual = friction if bond.residual_friction is None else np.full(len(area), bond.residual_friction)
+        columns = {
+            "integrity": 1.0,
+            "strength": bond.elastic_limit * area,
+            "tension": bond.tension * area,
+            "cohesion": bond.cohesion * area,
+            "residual": residual,
+            "friction_drop": friction - residual,
+            "opening_rate": bond.tension / bond.opening_energy,
+            "slip_rate": bond.cohesion / bond.slip_energy,
+        }
+        if bond.crushing is not None and bond.crushing_energy is not None:
+            columns["peak"], columns["hardening"] = bond.crushing * area, bond.hardening or 0.0
+            columns["crushing_rate"] = bond.crushing / (bond.crushing_energy - bond.energy_of_hardening)
+        lines["friction"][which], lines["grip"][which] = 0.0, 0.0
+        if bond.tension > 0:
+            columns["secant"] = lines["k"][which]
+            lines["k"][which], lines["c"][which], lines["margin"][which] = 0.0, 0.0, np.inf
+        for name, column in columns.items():
+            bonds[name][which] = column
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """Those that have gone leave their lines to themselves."""
+        for p in range(len(self.rows)):
+            line, bond = system.lines[p], self.rows[p]
+            if bond.k > 0 and bond.integrity <= GONE:
+                let_go(books, line, bond)
+            if bond.k > 0:
+                hold_line(system, books, line, bond, h)
+
+    @inlined
+    def stored(self) -> tuple[float, float]:
+        """Of the secants and of the shear springs."""
+        along_normals, along_faces = 0.0, 0.0
+        for p in range(len(self.rows)):
+            bond = self.rows[p]
+            along_normals += 0.5 * bond.secant * bond.gap * bond.gap
+            along_faces += sheared(bond)
+        return along_normals, along_faces
+
+    @inlined
+    def lost(self, row: Row) -> float:
+        """D."""
+        damage: float = 1 - row.integrity
+        return damage
+
+    def holding(self) -> Flags:
+        """Those of bonds that have not gone."""
+        bonds = self.rows
+        return np.asarray((bonds["k"] > 0) & (bonds["tension"] > 0) & (bonds["integrity"] > GONE))
+
+    def release(self, lines: Rows, which: Flags) -> None:
+        """The secants go too."""
+        self.rows["secant"][which & (self.rows["k"] > 0)] = 0.0
+        super().release(lines, which)
+
+    def going_on(self) -> Self:
+        """Ages count from the start of each run."""
+        self.rows["age"] = 0.0
+        return self
+
+    def cracked(self, scene: Scene) -> dict[str, float]:
+        """Those of which all bonds have lost half, the first first."""
+        when, contacts = {}, scene.contacts
+        for i in np.flatnonzero([type(bond) is Bond and bond.tension > 0 for bond in contacts.bonds]):
+            of_joint = self.rows[contacts.joint == i]
+            if (of_joint["integrity"] <= CRACKED).all():
+                when[contacts.joints[i]] = float(of_joint["age"].max())
+        return dict(sorted(when.items(), key=lambda item: item[1]))
+
+
+@inlined
+def let_go(books: Books, line: Row, bond: Row) -> None:
+    """Leave the line to itself whose bond has gone, but for its crushing where it has a strength for that."""
+    if bond.tension > 0:
+        books.totals[0].tension += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
+        bond.tension = bond.cohesion = bond.secant = bond.slip_rate = 0.0
+        line.k, line.c, line.margin = bond.k, bond.c, bond.margin
+    if bond.strength == math.inf:
+        line.friction = bond.residual
+        put(line.grip, read(bond.grip))
+        put(line.dragged, read(bond.dragged))
+        put(bond.grip, no_spin(read(line.normal)))
+        put(bond.dragged, no_spin(read(line.normal)))
+        bond.k = bond.push = 0.0
+
+
+@inlined
+def crush_line(books: Books, line: Row, bond: Row, gap: float) -> float:
+    """Crush a line at a gap [m]: its face steps back. Returns by how much [m]."""
+    grip = read(bond.grip)
+    closing = crush(bond, gap, bond.k_s * math.sqrt(dot(grip, grip)))
+    if closing > 0:
+        back = scaled(-closing, read(line.normal))
+        increase(line.origin, back)
+        increase(line.between, scaled(-1.0, back))
+        books.totals[0].crushing += 0.5 * bond.k * closing * (max(-bond.gap, 0.0) - gap - closing)
+    return closing
+
+
+@inlined
+def slide(
+    bodies: Rows, line: Row, bond: Row, normal: Vector, slip: Vector, push: float, h: float
+) -> tuple[Vector, float]:
+    """Force of spring and dashpot of a bond along the face [N], see `sprung_friction`, and what all its cohesion takes
+    [J]. Where crushing limits the force there is not as much."""
+    bond.friction = bond.residual + bond.friction_drop * bond.integrity
+    limit = bonded_limit(bond, push)
+    trial = stretched(bodies, line.face, bond.grip, normal, scaled(h, slip))
+    grip = shortened(trial, limit / bond.k_s)
+    drag = shortened(minus(scaled(-bond.k_s, grip), scaled(bond.c_s, slip)), limit)
+    slid = minus(trial, grip)
+    taken = wear(bond, math.sqrt(dot(slid, slid)))
+    if line.face >= 0:
+        grip = in_body(bodies[line.face], grip)
+    put(bond.grip, grip)
+    return drag, taken
+
+
+@inlined
+def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> None:
+    """Add the forces of one bond, after it has torn and been crushed as far as the pose asks."""
+    bodies, supports, before = system.bodies, system.supports, bond.gap
+    meet = where_friction_rubs(meeting(system, line))
+    gap = meet.gap
+    if gap < 0 and bond.strength < math.inf:
+        gap += crush_line(books, line, bond, gap)
+    secant = bond.secant
+    if bond.tension > 0:
+        tear(bond, gap)
+        if bond.secant < secant:
+            line.k = bond.k - bond.secant
+            line.c = bond.c * line.k / bond.k
+            if before > 0 or gap > 0:
+                books.totals[0].tension += 0.5 * before * gap * (secant - bond.secant)
+    velocity = relative(bodies, line, supports, meet)
+    rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
+    pressed = -bond.c * bond.secant / bond.k * rate
+    push = pressed - bond.secant * gap
+    books.dashpots[line.group] -= 0.5 * h * (bond.pressed + pressed) * rate
+    last = read(bond.dragged)
+    held = sheared(bond)
+    drag, taken = slide(bodies, line, bond, meet.normal, slip, push + normal_force(line, gap, rate), h)
+    mean = scaled(0.5 * h, plus(last, drag))
+    done = -dot(mean, slip)
+    taken = min(taken, max(done + held - sheared(bond), 0.0))  # no more than there is
+    books.totals[0].slip += taken
+    books.totals[0].friction += done - taken
+    if line.support >= 0:
+        work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))
+        books.totals[0].ground += carried(line, supports, work)
+    bond.gap, bond.push, bond.pressed = gap, push, pressed
+    line.widest = max(line.widest, gap)
+    put(bond.dragged, drag)
+    if bond.integrity > CRACKED:
+        bond.age += h
+    force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
+    add_force(bodies[line.body], meet.arm, force)
+    if line.face >= 0:
+        add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
+
+
+@inlined
+def sheared(bond: Row) -> float:
+    """Energy in the spring of a bond along the face [J]."""
+    grip = read(bond.grip)
+    energy: float = stored_along(bond, dot(grip, grip))
+    return energy

@@ -1,0 +1,297 @@
+"""Follow: MuJoCo's steps of a plain model, and what they say of energy and forces at the samples.
+
+A step takes the velocities from half a step before its pose to half a step after it. So the velocity at the pose is the
+mean of both, and a force does the work that is its product with that mean and the step. At a sample half of the work of
+its step is done.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from tqdm import tqdm
+
+from ...geometry.frames import PLANE
+from ...problem.masonry.histories import Support
+from ...quantities import GRAVITY, Array, Integers
+from ...result.ledger import StepError
+from ...scene.course import Course
+from ...scene.ground import mean_acceleration
+from ...scene.scene import Scene
+from .overlap import Overlap
+from .pairs import Pairs
+from .pieces import Piece
+
+LOOK = 1000
+"""Steps between two looks at warnings of the engine."""
+NEGLIGIBLE = 1e-4
+"""Depth of a contact, over the smallest thickness of the two pieces, that is no overlap to speak of [-]."""
+WAYS = {2: (0, 2), 3: (0, 1, 2)}
+"""Which axes of MuJoCo's world a vector of the plane or of space has."""
+
+
+class Met(NamedTuple):
+    """The contacts that MuJoCo has found at a pose, those in the constraints.
+
+    Args:
+        number: of each among all that it lists, shape (n,).
+        pair: number of its pair, the number of pairs for one without a joint, shape (n,).
+        k: its spring [N/m], shape (n,).
+        row: its first row among the constraints, shape (n,).
+        gap: negative where it is pressed [m], shape (n,).
+        pieces: numbers of the two pieces, the one that its normal points out of first, shape (n, 2).
+    """
+
+    number: Integers
+    pair: Integers
+    k: Array
+    row: Integers
+    gap: Array
+    pieces: Integers
+
+
+@dataclass(frozen=True, eq=False)
+class PlainEngine:
+    """A compiled plain model and its data, and how its geoms belong to pieces and pairs.
+
+    Args:
+        model, data: of MuJoCo.
+        scene, pieces, pairs: what stands.
+        supports: fixed blocks that are moved, in the order of their bodies.
+    """
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    scene: Scene
+    pieces: list[Piece]
+    pairs: Pairs
+    supports: tuple[Support, ...]
+
+    @cached_property
+    def piece(self) -> Integers:
+        """Number of the piece of each geom, shape (geoms,)."""
+        numbers = {piece.name: i for i, piece in enumerate(self.pieces)}
+        return np.array([numbers[self.model.geom(i).name] for i in range(self.model.ngeom)])
+
+    @cached_property
+    def known(self) -> Integers:
+        """One number for the two pieces of each pair; they increase."""
+        return np.asarray(self.pairs.pieces @ np.array([len(self.pieces), 1]))
+
+    @cached_property
+    def inverse_weight(self) -> Array:
+        """Of the body of each geom [1/kg], shape (geoms,)."""
+        return np.asarray(self.model.body_invweight0[self.model.geom_bodyid, 0])
+
+    @cached_property
+    def thickness(self) -> Array:
+        """The smallest extent of each piece along the axes at rest, that of the ground without end [m], (pieces,)."""
+        return np.array([piece.thickness for piece in self.pieces])
+
+    @property
+    def driven(self) -> int:
+        """How many velocities belong to fixed blocks that are moved; they come first."""
+        return 3 * len(self.supports)
+
+    @cached_property
+    def masses(self) -> Array:
+        """Masses that the ground pushes along the axes of the scene, by velocity [kg], shape (d, nv)."""
+        bodies, d = self.scene.bodies, self.scene.freedom.translations
+        masses = np.zeros((d, self.model.nv))
+        first = self.driven + self.scene.freedom.nv * np.arange(len(bodies.mass))
+        for axis in range(d):
+            masses[axis, first + axis] = bodies.mass
+        return masses
+
+    @cached_property
+    def dampers(self) -> list[int]:
+        """Numbers of the tendons with a dashpot."""
+        return [self.scene.links.names.index(name) for name in self.scene.links.damped.names]
+
+    def met(self) -> Met:
+        """The contacts of the last step."""
+        contact = self.data.contact
+        number = np.flatnonzero(contact.efc_address >= 0)
+        geoms = contact.geom[number]
+        pieces = self.piece[geoms]
+        key = np.sort(pieces, axis=1) @ np.array([len(self.pieces), 1])
+        at = np.minimum(np.searchsorted(self.known, key), len(self.known) - 1)
+        pair = np.where(self.known[at] == key, at, len(self.known))
+        weight = np.where(pair < len(self.known), 1.0, self.inverse_weight[geoms].sum(axis=1))
+        k, gap = self.pairs.k[pair] / weight, contact.dist[number]
+        return Met(number, pair, k, contact.efc_address[number], gap, pieces)
+
+    def deepest(self, met: Met, t: float, than: Overlap | None) -> Overlap | None:
+        """The deepest contact at the pose of a time [s], or the one that was found before where that is deeper."""
+        depth = -met.gap / self.thickness[met.pieces].min(axis=1)
+        i = int(depth.argmax()) if len(depth) else -1
+        if i < 0 or depth[i] <= (NEGLIGIBLE if than is None else than.depth):
+            return than
+        data, one, two = self.data, *(self.pieces[j] for j in met.pieces[i].tolist())
+        of = self.model.geom_bodyid[data.contact.geom[met.number[i]]]
+        return Overlap(float(depth[i]), t, (one, two), data.xpos[of].copy(), data.xmat[of].reshape(2, 3, 3).copy())
+
+    def pose(self) -> Array:
+        """Pose of the bodies as in a `Response`, shape (bodies, nq)."""
+        pose = self.data.qpos[self.driven :].reshape(len(self.scene.bodies.names), -1).copy()
+        if self.scene.freedom != PLANE:
+            pose[:, :3] -= self.scene.bodies.rest
+        return pose
+
+    def drive(self, course: Course, t: float) -> Array:
+        """Set gravity and moved supports for the step at a time [s]; the acceleration of the ground, shape (d,)."""
+        h, ground, ways = self.model.opt.timestep, course.ground, WAYS[self.scene.freedom.translations]
+        shaken = np.array([mean_acceleration(shaking, t, h) for shaking in (ground.x, ground.y, ground.z)])
+        self.model.opt.gravity[:] = -shaken - (0.0, 0.0, GRAVITY)
+        for i, support in enumerate(self.supports):
+            before, here, after = support.at(np.array([t - 0.5 * h, t, t + 0.5 * h]))
+            for axis, place, rate in zip(ways, here, (after - before) / h, strict=True):
+                self.data.qpos[3 * i + axis], self.data.qvel[3 * i + axis] = place, rate
+        return shaken[list(ways)]
+
+
+class Work(NamedTuple):
+    """Work in a step, or since the release [J], of one step or along the first axis of several.
+
+    Args:
+        ground: of the ground and of moved supports.
+        pressed: of the normal forces of each pair, and in the last place of all other contacts, shape (p + 1,).
+        rubbed: of friction.
+        damped: what each damper has taken, shape (dampers,).
+    """
+
+    ground: Array
+    pressed: Array
+    rubbed: Array
+    damped: Array
+
+    def plus(self, other: Work, share: float = 1.0) -> Work:
+        """This and a share of another one."""
+        return Work(
+            self.ground + share * other.ground,
+            self.pressed + share * other.pressed,
+            self.rubbed + share * other.rubbed,
+            self.damped + share * other.damped,
+        )
+
+
+class Sample(NamedTuple):
+    """What is kept at a sample: its time [s], pose and velocity (bodies, nq) and (bodies, nv), the energy in the
+    springs of each pair and of all others (p + 1,) and the work since the release [J], the deepest contact since
+    the sample before, and what was pressed on each joint and each fixed block, see `Gathered`."""
+
+    t: float
+    pose: Array
+    velocity: Array
+    elastic: Array
+    work: Work
+    deepest: Overlap | None
+    loads: Array
+    held: Array
+    pulled: Array
+
+
+def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints: JointForces | None) -> list[Sample]:
+    """The samples of a run of so many steps, every `stride`-th of which and the last are kept.
+
+    Args:
+        engine: at the release.
+        course: what happens.
+        steps, stride: numbers of steps.
+        joints: gathers forces, None where they are not asked for.
+
+    Raises:
+        StepError: if the engine warns or the state is not finite.
+    """
+    h, data, samples = float(engine.model.opt.timestep), engine.data, list[Sample]()
+    before, mean, none = np.zeros(engine.model.nv), np.zeros(engine.model.nv), len(engine.pairs.k)
+    total = Work(np.zeros(()), np.zeros(none), np.zeros(()), np.zeros(len(engine.dampers)))
+    nv, deepest = engine.scene.freedom.nv, None
+    with tqdm(total=steps, desc="MuJoCo", unit="step", delay=3, disable=None, leave=False) as bar:
+        for n in range(steps + 1):
+            t, kept = n * h, n % stride == 0 or n == steps
+            shaken = engine.drive(course, t)
+            pose = engine.pose() if kept else None
+            before[:] = data.qvel
+            mujoco.mj_step(engine.model, data)
+            np.multiply(before + data.qvel, 0.5, out=mean)
+            mean[: engine.driven] = before[: engine.driven]
+            met = engine.met()
+            done = work_of_step(engine, met, mean, shaken)
+            deepest = engine.deepest(met, t, deepest)
+            if pose is not None:
+                elastic = by_pair(engine, met, 0.5 * met.k * np.minimum(met.gap, 0.0) ** 2)
+                forces = (np.empty(0), np.empty(0)) if joints is None else joints.gathered(engine, met)
+                pulled = -engine.scene.links.damped.c * data.ten_velocity[engine.dampers]
+                velocity = mean[engine.driven :].reshape(-1, nv).copy()
+                samples.append(Sample(t, pose, velocity, elastic, total.plus(done, 0.5), deepest, *forces, -pulled))
+                deepest = None
+            total = total.plus(done)
+            if n % LOOK == 0 or n == steps:
+                require_well(data, t)
+                bar.update(n - bar.n)
+    return samples
+
+
+def require_well(data: mujoco.MjData, t: float) -> None:
+    """Raise a StepError if the engine has warned or the state is not finite, at a time [s]."""
+    warned = [mujoco.mjtWarning(i).name for i in np.flatnonzero(data.warning.number)]
+    if warned or not (np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()):
+        raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
+
+
+def by_pair(engine: PlainEngine, met: Met, values: Array) -> Array:
+    """Sums of values of the contacts of each pair, and in the last place of all others, shape (p + 1,)."""
+    return np.asarray(np.bincount(met.pair, weights=values, minlength=len(engine.pairs.k)), dtype=float)
+
+
+def work_of_step(engine: PlainEngine, met: Met, mean: Array, shaken: Array) -> Work:
+    """Work in the step that was made, from the mean velocities and the acceleration of the ground."""
+    data, h, own = engine.data, float(engine.model.opt.timestep), slice(engine.driven)
+    ground = -h * float(shaken @ (engine.masses @ mean) + data.qfrc_constraint[own] @ mean[own])
+    rates = np.zeros(data.nefc)
+    if data.nefc:
+        mujoco.mj_mulJacVec(engine.model, data, rates, mean)
+    powers = rates * data.efc_force
+    pressed = by_pair(engine, met, h * powers[met.row])
+    rubbed = h * float(powers.sum()) - float(pressed.sum())
+    damped = h * engine.scene.links.damped.c * data.ten_velocity[engine.dampers] ** 2
+    return Work(np.asarray(ground), pressed, np.asarray(rubbed), damped)
+
+
+@dataclass(frozen=True, eq=False)
+class JointForces:
+    """What presses on joints and fixed blocks.
+
+    Args:
+        joint: number of the joint of each pair, shape (p,).
+        above: number of the body above each joint, shape (joints,).
+        fixed: number of each fixed block by its name.
+    """
+
+    joint: Integers
+    above: Integers
+    fixed: dict[str, int]
+
+    def gathered(self, engine: PlainEngine, met: Met) -> tuple[Array, Array]:
+        """Loads of joints and forces of fixed blocks, see `Gathered`."""
+        freedom, model, data = engine.scene.freedom, engine.model, engine.data
+        ways, local = list(WAYS[freedom.translations]), np.zeros(6)
+        loads = np.zeros((len(self.above), freedom.nv))
+        held = np.zeros((len(self.fixed), freedom.translations))
+        for number, pair, (first, second) in zip(met.number, met.pair, met.pieces, strict=True):
+            mujoco.mj_contactForce(model, data, number, local)
+            contact = data.contact[number]
+            force = contact.frame.reshape(3, 3).T @ local[:3]  # on the second
+            moment = np.cross(contact.pos, force)
+            for piece, sense in ((engine.pieces[first], -1.0), (engine.pieces[second], 1.0)):
+                if piece.block in self.fixed:
+                    held[self.fixed[piece.block]] -= sense * force[ways]
+                elif pair < len(self.joint) and piece.body == self.above[self.joint[pair]]:
+                    about = moment if freedom != PLANE else moment[1:2]
+                    loads[self.joint[pair]] += sense * np.concatenate([force[ways], about])
+        return loads, held

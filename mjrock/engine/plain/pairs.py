@@ -1,0 +1,121 @@
+"""Pairs: which pieces of a plain model are neighbours, and the law of the contacts that MuJoCo finds between any two.
+
+A joint has k_n times its area, and MuJoCo finds four points where two faces lie on each other, two where one stands on
+an edge: a point has a quarter of the joint. Any two pieces without a joint meet with the frequency and the damping of
+the median joint: MuJoCo then gives each two of them the stiffness that their masses ask for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...method import METHOD
+from ...quantities import Array, Integers
+from ...scene.checks import GROUND
+from ...scene.scene import Scene
+from ..solref import body_weight, pair_values, row
+from .pieces import Piece
+
+NEWMARK = 0.25
+"""Newmark's beta of the contacts: average acceleration, which is stable at every step [-]."""
+HELD_MASSES = 100.0
+"""Inertia of a friction row of several bodies in masses of the body that it holds [-]. Under an acceleration a along
+its face a contact that sticks creeps at a h / HELD_MASSES. With ten times as much a step of thirty blocks takes 1.7
+times as long."""
+NOTHING = -2
+"""The body of what is only seen."""
+POINTS = 4
+"""Points that MuJoCo finds where two faces lie on each other [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Neighbours, and in the last place what any two others have, as if their inverse weight were one.
+
+    Args:
+        pieces: numbers of the two pieces of each pair, shape (p, 2).
+        joint: number of their joint, shape (p,).
+        weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (p + 1,).
+        k, c: spring [N/m] and dashpot [N s/m] of one point, shape (p + 1,).
+        friction: coefficient of friction [-], shape (p + 1,).
+        held: inertia of a friction row in masses of the body that it holds [-].
+    """
+
+    pieces: Integers
+    joint: Integers
+    weight: Array
+    k: Array
+    c: Array
+    friction: Array
+    held: float
+
+    @classmethod
+    def of(cls, scene: Scene, pieces: list[Piece]) -> Pairs:
+        """The pairs of pieces between which the scene has contacts."""
+        contacts, bodies = scene.contacts, scene.bodies
+        first, second = _carriers(scene, pieces)
+        both = np.sort(np.stack([first, second], axis=1), axis=1)
+        found, some, of = np.unique(both, axis=0, return_index=True, return_inverse=True)
+        of = of.ravel()
+        sums = [np.bincount(of, weights=values) for values in (contacts.k, contacts.c, contacts.friction * contacts.k)]
+        k, c, friction = sums[0] / POINTS, sums[1] / POINTS, sums[2] / sums[0]
+        inverse = np.append(body_weight(bodies.mass, scene.freedom.translations), 0.0)  # the last one of the ground
+        carrier = np.array([piece.body for piece in pieces])
+        weight = inverse[carrier[found]].sum(axis=1)
+        law = np.stack([weight, k, c, friction])
+        others = [1.0, *np.median([weight * k, weight * c, friction], axis=1)]
+        held = METHOD.held_masses if len(bodies.names) == 1 else HELD_MASSES
+        weight, k, c, friction = np.column_stack([law, others])
+        return cls(found, contacts.joint[some], weight, k, c, friction, held)
+
+    def rows(self, timestep: float) -> PairRows:
+        """What MuJoCo needs for the pairs at a step [s], see `mjrock.engine.rows`."""
+        count = len(self.k)
+        solref, impedance, inertia = np.zeros((count, 2)), np.zeros(count), np.zeros(count)
+        for i in range(count):
+            given = self.k[i], self.c[i], timestep, self.weight[i], NEWMARK, 0.0, METHOD.borne
+            dashpot, inertia[i] = row(*given)
+            *solref[i], impedance[i] = pair_values(self.k[i], dashpot, inertia[i], self.weight[i])
+        grips = self.friction > 0
+        held = self.held / self.weight[grips]
+        ratio = float((held / inertia[grips]).min()) if grips.any() else 1.0
+        return PairRows(solref, impedance, -impedance / timestep, max(1.0, ratio))
+
+
+@dataclass(frozen=True, eq=False)
+class PairRows:
+    """Rows of pairs: solref in the direct format (p + 1, 2), the impedance [-], the second number of solreffriction
+    [1/s], shape (p + 1,) each, and the impratio of the model [-]."""
+
+    solref: Array
+    impedance: Array
+    grip: Array
+    impratio: float
+
+
+def _carriers(scene: Scene, pieces: list[Piece]) -> tuple[Integers, Integers]:
+    """The piece that carries each contact point, and the one whose face it meets, shape (m,) each."""
+    contacts, rest = scene.contacts, scene.bodies.rest
+    place = rest[contacts.body] + contacts.at
+    met = np.where((contacts.face_body == GROUND)[:, None], 0.0, rest[contacts.face_body])
+    first = _nearest(pieces, contacts.body, contacts.at, -contacts.normal)
+    return first, _nearest(pieces, contacts.face_body, place - met, contacts.normal)
+
+
+def _nearest(pieces: list[Piece], body: Integers, points: Array, normals: Array) -> Integers:
+    """The piece of its body on which each point lies, shape (m,), from points in the frame of the body [m] and the
+    normals of the body there."""
+    chosen, points, normals = np.zeros(len(points), dtype=np.int64), _in_space(points), _in_space(normals)
+    carrier = np.array([piece.body if piece.meets else NOTHING for piece in pieces])
+    for j in np.unique(body):
+        own, here = np.flatnonzero(carrier == j), body == j
+        far = np.array([pieces[i].beside(points[here], normals[here]) for i in own])
+        chosen[here] = own[far.argmin(axis=0)]
+    return chosen
+
+
+def _in_space(vectors: Array) -> Array:
+    """Vectors of the plane as those of space with y = 0."""
+    return vectors if vectors.shape[1] == 3 else np.insert(vectors, 1, 0.0, axis=1)

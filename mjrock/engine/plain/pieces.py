@@ -1,0 +1,96 @@
+"""Pieces: the convex solids of a scene, each of which is a geom of a plain model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...geometry.hull import Convex, hull_of
+from ...problem.wall.standing import Solid
+from ...quantities import Array
+from ...scene.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A convex solid that belongs to a body or stands fixed.
+
+    Args:
+        name: of its geom.
+        block: name of the block that it belongs to.
+        body: number of the body that carries it, or -1 where it is fixed.
+        shape: in the frame of its body, or of the world where it is fixed [m].
+        is_ground: whether it stands for level ground without an end, whose surface is its top.
+        is_seen: whether it is seen.
+        meets: whether it meets others.
+    """
+
+    name: str
+    block: str
+    body: int
+    shape: Convex
+    is_ground: bool = False
+    is_seen: bool = True
+    meets: bool = True
+
+    @cached_property
+    def middle(self) -> Array:
+        """Middle between its outermost corners [m], shape (3,)."""
+        return np.asarray(0.5 * (self.shape.corners.min(axis=0) + self.shape.corners.max(axis=0)))
+
+    @cached_property
+    def thickness(self) -> float:
+        """Its smallest extent along the axes, that of the ground without end [m]."""
+        return np.inf if self.is_ground else float(np.ptp(self.shape.corners, axis=0).min())
+
+    @property
+    def has_mesh(self) -> bool:
+        """Whether it is neither a box nor a plane, which MuJoCo has as shapes of their own."""
+        return not (self.is_ground or self.shape.box)
+
+    def beside(self, points: Array, normals: Array) -> Array:
+        """How far points with normals are from being on its surface, with the normals out of it [m], shape (n,)."""
+        away = points @ self.shape.normals.T - self.shape.offsets
+        size = float(np.ptp(self.shape.corners, axis=0).max())
+        off = np.abs(away) + size * (1 - normals @ self.shape.normals.T)
+        return np.asarray(off.min(axis=1) + np.maximum(away.max(axis=1), 0.0))
+
+
+def pieces_of(scene: Scene) -> list[Piece]:
+    """The pieces of a scene: those of its bodies in their order, and then what stands fixed."""
+    solids = sorted(scene.standing.solids, key=lambda solid: solid.fixed)
+    return [piece for solid in solids for piece in _of_solid(solid, scene)]
+
+
+def _of_solid(solid: Solid, scene: Scene) -> Iterator[Piece]:
+    """The convex parts of a solid."""
+    parts, is_wall = solid.drawn if solid.fixed else solid.parts, solid.block is None or not solid.sides
+    if is_wall and not solid.fixed:
+        yield from _of_wall(solid, scene)
+        return
+    for i, part in enumerate(parts):
+        name = solid.name if i == 0 else f"{solid.name} part {i}"
+        yield Piece(name, solid.name, solid.body, part, is_ground=is_wall and solid.name == "base")
+
+
+def _of_wall(solid: Solid, scene: Scene) -> Iterator[Piece]:
+    """A wall meets its base and its side as one convex solid. Where it has openings or another section, the parts that
+    are seen meet nothing."""
+    corners = solid.corners
+    rests = scene.contacts.at[scene.contacts.normal[:, 1] == 1, 0]
+    ends, low = np.array([rests.min(), rests.max()]), corners[:, 2].min()
+    foot = corners[corners[:, 2] == low]
+    inset = float(np.abs(np.array([foot[:, 0].min(), foot[:, 0].max()]) - ends).max())
+    if inset > 1e-12 * np.abs(corners).max():  # edges that have been crushed are cut off
+        edges = np.array([(x, y, low) for x in ends for y in (foot[:, 1].min(), foot[:, 1].max())])
+        corners = np.concatenate([corners[corners[:, 2] > low], foot + np.array((0.0, 0.0, inset)), edges])
+    hull = hull_of(corners)
+    whole = Convex(corners[list(hull.corners)], hull.faces, hull.normals)
+    simple = len(solid.parts) == 1
+    yield Piece(solid.name, solid.name, solid.body, whole, is_seen=simple)
+    if not simple:
+        for i, part in enumerate(solid.parts):
+            yield Piece(f"{solid.name} part {i}", solid.name, solid.body, part, meets=False)

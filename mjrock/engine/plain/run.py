@@ -1,0 +1,290 @@
+"""Run: a case as a plain model, stepped by MuJoCo, as a `Response`."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+
+from ...geometry.frames import PLANE
+from ...patience import expect
+from ...problem.masonry.case import AnyCase
+from ...quantities import Array, require_size, require_within
+from ...result.bodies import Moving
+from ...result.ending import Outcome, Stopwatch
+from ...result.forces import Forces, Gathered, forces_of
+from ...result.ledger import Ledger, StepError, warn_if_open
+from ...result.motion import SampledMotion, required_spacing
+from ...result.problem import Problem
+from ...result.reading import BesidePoses
+from ...result.response import End, Response, State
+from ...result.start import require_unbreakable
+from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
+from ...scene.course import Course
+from ...scene.scene import Scene
+from ...scene.structure import energies
+from ..estimate import interpreted_seconds
+from ..mjcf import Keyframe
+from ..model import SimulationError, released
+from ..run_warnings import require_known, warn_if_sheared
+from .follow import JointForces, PlainEngine, Sample, Work, follow
+from .pairs import Pairs
+from .pieces import Piece, pieces_of
+from .text import plain_text
+
+RESOLVED, RESOLVED_OF_MANY = 0.1, 1.0
+"""omega h of the step that is taken where none is asked for, omega the highest frequency of the closed contacts, of one
+body and of several [-] (`scripts/studies/plain_models.py`)."""
+OPEN = 0.01
+"""Energy without an account that is warned of, over the largest part of the ledger [-]."""
+DOUBTED = 0.01
+"""Volume that two solids have in common that is warned of, over that of the smaller one [-]."""
+LOOKED_AT = 10
+"""How many of the deepest contacts are looked at for it."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlainModel:
+    """A case as a plain model.
+
+    Args:
+        problem, scene, course: what was asked, what stands, and what happens to it.
+    """
+
+    problem: Problem
+    scene: Scene
+    course: Course
+
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """The solids."""
+        return pieces_of(self.scene)
+
+    @cached_property
+    def pairs(self) -> Pairs:
+        """The law of their contacts."""
+        return Pairs.of(self.scene, self.pieces)
+
+    @property
+    def start(self) -> tuple[Array, Array]:
+        """Positions and velocities of the release as MuJoCo has them: fixed blocks that are moved come first."""
+        pose, supports = self.course.pose.copy(), self.problem.case.supports
+        if self.scene.freedom != PLANE:
+            pose[:, :3] += self.scene.bodies.rest
+        still = np.zeros(3 * len(supports))
+        return np.append(still, pose), np.append(still, self.course.velocity)
+
+    def text(self, timestep: float, keyframe: Keyframe | None = None) -> str:
+        """The model text at a step [s]; without a keyframe its velocities are those of the release."""
+        moved = tuple(support.block for support in self.problem.case.supports)
+        key = Keyframe(*self.start, np.empty(0)) if keyframe is None else keyframe
+        return plain_text(self.scene, self.pieces, self.pairs, timestep, key, moved)
+
+    def engine(self, timestep: float) -> PlainEngine:
+        """The compiled model at its release."""
+        model = mujoco.MjModel.from_xml_string(self.text(timestep))
+        data = mujoco.MjData(model)
+        released(model, data, *self.start)
+        return PlainEngine(model, data, self.scene, self.pieces, self.pairs, self.problem.case.supports)
+
+    def released_text(self, timestep: float) -> str:
+        """The model text whose keyframe has the velocities half a step before the release."""
+        data = self.engine(timestep).data
+        return self.text(timestep, Keyframe(data.qpos, data.qvel, data.plastic))
+
+
+@dataclass(frozen=True, eq=False)
+class PlainRun:
+    """A run of a plain model, by its samples."""
+
+    of: PlainModel
+    samples: list[Sample]
+
+    @cached_property
+    def t(self) -> Array:
+        """Times of the samples [s], shape (n,)."""
+        return np.array([sample.t for sample in self.samples])
+
+    @cached_property
+    def pose(self) -> Array:
+        """Poses, shape (n, bodies, nq)."""
+        return np.array([sample.pose for sample in self.samples])
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocities, shape (n, bodies, nv)."""
+        return np.array([sample.velocity for sample in self.samples])
+
+    @cached_property
+    def elastic(self) -> Array:
+        """Energy in the springs of each pair and of all others [J], shape (n, p + 1)."""
+        return np.array([sample.elastic for sample in self.samples])
+
+    @cached_property
+    def work(self) -> Work:
+        """The work since the release at all samples [J]."""
+        ground, pressed, rubbed, damped = zip(*(sample.work for sample in self.samples), strict=True)
+        return Work(np.array(ground), np.array(pressed), np.array(rubbed), np.array(damped))
+
+    @cached_property
+    def stored(self) -> tuple[Array, Array]:
+        """Kinetic, potential and elastic energy [J], shape (n, 3), and what ties have taken, shape (n, ties)."""
+        scene, flat = self.of.scene, (len(self.t), -1)
+        without = scene.structure._replace(k=np.zeros_like(scene.contacts.k))
+        parts, taken = energies(without, self.pose.reshape(flat), self.velocity.reshape(flat))
+        parts[:, 2] += self.elastic.sum(axis=1)
+        return parts, taken
+
+    @cached_property
+    def energy(self) -> Array:
+        """Energy above the scene at rest [J], shape (n,): that of the start, and what has been added since."""
+        held = self.stored[0].sum(axis=1)
+        return np.asarray(held - held[0] + self.of.course.energy(self.of.scene))
+
+    def ledger(self) -> Ledger:
+        """Where the energy is, and what took it."""
+        (parts, taken), work, scene = self.stored, self.work, self.of.scene
+        lost = -(work.pressed - work.pressed[0]) - (self.elastic - self.elastic[0])
+        groups = (*scene.contacts.joints, "encounters")
+        of = np.append(self.of.pairs.joint, len(groups) - 1)
+        dashpots = {name: lost[:, of == i].sum(axis=1) for i, name in enumerate(groups)}
+        if len(scene.bodies.names) == 1 and not self.of.problem.case.joints:
+            dashpots.pop("encounters")
+        damped = dict(zip(scene.links.damped.names, (work.damped - work.damped[0]).T, strict=True))
+        return Ledger(
+            t=self.t,
+            kinetic=parts[:, 0],
+            potential=parts[:, 1],
+            elastic=parts[:, 2],
+            dashpots=dashpots | damped,
+            friction=work.rubbed[0] - work.rubbed,
+            ground=work.ground - work.ground[0],
+            ties=dict(zip(scene.links.sprung.names, (taken - taken[0]).T, strict=True)),
+        )
+
+    @cached_property
+    def overlap(self) -> tuple[float, str]:
+        """The largest volume that two solids have in common, over that of the smaller one [-], and where, in words."""
+        found = [sample.deepest for sample in self.samples if sample.deepest is not None]
+        shares = [(one.share, one) for one in sorted(found, key=lambda one: -one.depth)[:LOOKED_AT]]
+        if not shares:
+            return 0.0, ""
+        share, worst = max(shares, key=lambda pair: pair[0])
+        names = " and ".join(piece.name for piece in worst.pieces)
+        return share, f"{names} lie inside each other by {share:.1%} at {worst.t:.4g} s"
+
+    def plastic(self) -> dict[str, Plastic]:
+        """What each tie has yielded."""
+        taken, links = self.stored[1][-1], self.of.scene.links.sprung
+        never = np.full(len(taken), np.inf)
+        return plastic_of(self.of.scene, taken / links.strength, taken, never, np.zeros(len(taken)))
+
+    def forces(self, plastic: dict[str, Plastic]) -> Forces:
+        """The forces of joints, links and fixed blocks."""
+        case, scene = self.of.problem.case, self.of.scene
+        ties = motion_of_ties(Moving(case, self.t, self.pose), plastic)
+        pulled = {name: ties[name].force for name in scene.links.sprung.names}
+        pulled |= dict(zip(scene.links.damped.names, np.array([s.pulled for s in self.samples]).T, strict=True))
+        loads, held = (np.array([getattr(sample, name) for sample in self.samples]) for name in ("loads", "held"))
+        return forces_of(case, case.standing.frames, Gathered(self.t, self.pose, loads, held, pulled))
+
+
+class Wanted(NamedTuple):
+    """What is asked of a run, as `simulate` explains it, and the state that it starts from instead of its release."""
+
+    timestep: float | None
+    output_step: float | None
+    ledger: bool
+    forces: bool
+    state: State | None
+
+
+def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
+    """`simulate` with collisions.
+
+    Raises:
+        ValueError: for a step or a spacing outside its range, or what no plain model has.
+        SimulationError: if MuJoCo warns or the state is not finite.
+    """
+    case = problem.case
+    require_plain(case)
+    spacing = required_spacing(wanted.output_step, case.duration)
+    scene = problem.scene()
+    warn_if_sheared(scene)
+    course = problem.course(scene)
+    if wanted.state is not None:
+        course = course.continued(*wanted.state)
+    h = plain_timestep(scene, case.duration) if wanted.timestep is None else wanted.timestep
+    h = require_within("timestep", h, 1e-9, min(1.0, case.duration), "s")
+    require_size("the steps of this run", case.duration / h, "take a longer timestep")
+    require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
+    expect(interpreted_seconds(scene, course.duration, spacing))
+    model, watch = PlainModel(problem, scene, course), Stopwatch()
+    frames = case.standing.frames
+    gathers = JointForces(model.pairs.joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
+    steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
+    try:
+        run = PlainRun(model, follow(model.engine(h), course, steps, stride, gathers if wanted.forces else None))
+    except StepError as error:
+        raise SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; halve the step") from None
+    stats = {"steps": steps, "timestep": h, "resolved": h * scene.highest_frequency, **watch.stepping()}
+    response = response_of_plain(run, stats, wanted)
+    if response.outcome is not Outcome.OVERTURNED:
+        warn_of_ties(case, response.plastic)
+    return response
+
+
+def plain_timestep(scene: Scene, duration: float) -> float:
+    """The step that a plain model takes where none is asked for [s]."""
+    resolved = RESOLVED if len(scene.bodies.names) == 1 else RESOLVED_OF_MANY
+    return min(resolved / scene.highest_frequency, duration)
+
+
+def require_plain(case: AnyCase) -> None:
+    """Raise a ValueError for what no plain model has: bonds, effects of explicit steps, ties that break or that are
+    anchored on supports that move."""
+    require_known(case)
+    require_unbreakable(case)
+    moved = {support.block for support in case.supports}
+    for name, link in case.links.items():
+        if link.anchor_block is not None and case.blocks[link.anchor_block] in moved:
+            raise ValueError(
+                f"{name} is anchored on a support that moves, which a plain model has not; take solve_explicit"
+            )
+
+
+def response_of_plain(run: PlainRun, settings: dict[str, Any], wanted: Wanted) -> Response:
+    """The response of a run."""
+    model, motion = run.of, SampledMotion(run.pose, run.velocity, run.energy)
+    elsewhere = bool((run.elastic[:, -1] > 0).any())
+    beside = BesidePoses(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
+    reading = model.problem.read(model.scene, run.t, motion, released=model.course.released, beside=beside)
+    plastic, account = run.plastic(), run.ledger()
+    overlap, said = run.overlap
+    if overlap > DOUBTED:
+        warnings.warn(
+            f"{said}, over the smaller one; a shorter timestep or stiffer joints keep them apart",
+            stacklevel=4,
+        )
+    residual = float(np.abs(account.residual).max())
+    advice = f"the step is long for this motion, take timestep = {0.5 * settings['timestep']:.2g} s"
+    warn_if_open(residual, account.largest, OPEN, "its largest part", lambda share: advice)
+    return Response(
+        case=model.problem.case,
+        solver="plain MuJoCo",
+        t=run.t,
+        motion=motion,
+        outcome=reading.outcome,
+        message=reading.message + told_of_ties(plastic),
+        rocking=reading.rocking,
+        joints=reading.joints,
+        plastic=plastic,
+        ledger=account if wanted.ledger else None,
+        stats=reading.stats | {"overlap": overlap, "mujoco": mujoco.__version__} | settings,
+        end=End(run.pose[-1].copy(), run.velocity[-1].copy()),
+        kept_forces=run.forces(plastic) if wanted.forces else None,
+    )

@@ -1,0 +1,220 @@
+"""A facade and a dome after they have fallen, drawn by this package, by PyVista and by MuJoCo's renderer.
+
+This package draws blocks with matplotlib, from the farthest to the nearest. PyVista and MuJoCo compare depths pixel by
+pixel. Prints what a frame takes, how many pixels inside the blocks show another block than in PyVista, in the order of
+this package and by the mean depth of faces as matplotlib takes it, and how large PyVista is. MuJoCo draws through EGL.
+Writes drawn_in_space.png and .txt. Needs PyVista, which `pip install 'mjrock[docs]'` brings.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from importlib.metadata import files
+from typing import Any
+
+os.environ.setdefault("MUJOCO_GL", "egl")
+
+import mujoco
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+import mjrock as mr
+from mjrock import plotting
+from mjrock.geometry.poses import rotations
+from mjrock.plotting import animation
+from mjrock.plotting.solids import TINTS, Solids
+from mjrock.quantities import Array, Integers
+from mjrock.result.bodies import Body, bodies_of
+from scripts.shared import cli
+from scripts.studies import dome, facade_in_space
+
+try:
+    import pyvista as pv
+except ImportError:
+    pv = None
+
+SIZE = 800, 450
+"""Of a picture [pixel]."""
+FRAMES = 20
+"""Frames that are timed."""
+
+
+class View:
+    """What a camera sees of a response in a picture: the axes of the picture, its middle and half of its height [m]."""
+
+    def __init__(self, answer: mr.Response, camera: tuple[float, float]) -> None:
+        self.answer, self.solids = answer, Solids.of(answer, camera=camera)
+        self.bodies = bodies_of(answer.case, answer.t, answer.pose, answer.velocity)
+        eye, azimuth = self.solids.eye, np.radians(camera[1])
+        right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+        self.axes = np.column_stack([right, np.cross(eye, right)])
+        low, high = self.solids.extent()
+        self.middle, self.half = 0.5 * (low + high), 0.3 * float(np.linalg.norm(high - low))
+
+    @property
+    def shown(self) -> list[Body]:
+        """The bodies that are drawn as blocks."""
+        return [self.bodies[i] for i in self.solids.shown]
+
+
+def plotter(view: View, colours: Sequence[Any], **look: Any) -> tuple[Any, Callable[[int], Array]]:
+    """A scene of PyVista, and what draws a frame, shape (height, width, 3)."""
+    scene, actors = pv.Plotter(off_screen=True, window_size=SIZE), []
+    scene.set_background("white")
+    for body, colour in zip(view.shown, colours, strict=True):
+        mesh = pv.PolyData(body.corners, np.concatenate([[len(face), *face] for face in body.faces]))
+        actors.append(scene.add_mesh(mesh, color=colour, **look))
+    scene.enable_parallel_projection()
+    scene.camera.focal_point, scene.camera.up = view.middle, (0.0, 0.0, 1.0)
+    scene.camera.position, scene.camera.parallel_scale = view.middle + 50 * view.half * view.solids.eye, view.half
+    scene.camera.clipping_range = 1.0, 100 * view.half
+
+    def draw(frame: int) -> Array:
+        for body, actor in zip(view.shown, actors, strict=True):
+            place = np.eye(4)
+            place[:3, :3], place[:3, 3] = rotations(body.pose[frame]), body.rest + body.pose[frame, :3]
+            actor.user_matrix = place
+        scene.render()
+        return np.asarray(scene.screenshot(return_img=True))
+
+    return scene, draw
+
+
+def named_by_colour(count: int) -> Array:
+    """A colour for each of up to 225 bodies that says its number, shape (count, 3), 0 to 1."""
+    number = np.arange(count)
+    return np.asarray((16 * np.column_stack([number % 15, number // 15, np.zeros(count)]) + 8) / 255)
+
+
+def painted(view: View, frame: int, place: Array | Integers) -> Array:
+    """Which body each pixel shows where faces are drawn in an order; that of PyVista's pictures."""
+    solids, corners = view.solids, view.solids.corners(frame)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    faces = np.flatnonzero(normals @ solids.eye > 0)
+    faces = faces[np.argsort(place[faces], kind="stable")]
+    figure = Figure(figsize=(SIZE[0] / 100, SIZE[1] / 100), dpi=100)
+    ax, wide = figure.add_axes((0, 0, 1, 1)), view.half * SIZE[0] / SIZE[1]
+    middle = view.middle @ view.axes
+    ax.set(xlim=(middle[0] - wide, middle[0] + wide), ylim=(middle[1] - view.half, middle[1] + view.half))
+    ax.axis("off")
+    colours = named_by_colour(len(solids.shown))[solids.facets.body[faces]]
+    ax.add_collection(
+        PolyCollection(list(corners[faces] @ view.axes), facecolors=colours, antialiased=False, snap=False)
+    )
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3]
+
+
+def wrong(view: View, frame: int) -> tuple[float, float]:
+    """Share of pixels of blocks that show another one than PyVista, by this package and by mean depths of faces."""
+    scene, draw = plotter(view, list(named_by_colour(len(view.shown))), lighting=False)
+    true, solids = draw(frame) // 16, view.solids
+    scene.close()
+    own = np.argsort(solids.order(frame))[solids.facets.part]
+    depth = solids.corners(frame).mean(axis=1) @ solids.eye
+    shares = []
+    for place in (own, depth):
+        found = painted(view, frame, place) // 16
+        inside = np.ones(true.shape[:2], dtype=bool)
+        for shift in ((0, 1), (1, 0), (0, -1), (-1, 0)):  # edges fall on one pixel or the next
+            inside &= (true == np.roll(true, shift, (0, 1))).all(axis=-1)
+        inside &= (true != 15).any(axis=-1)
+        shares.append(float((true != found).any(axis=-1)[inside].mean()))
+    return shares[0], shares[1]
+
+
+def rendered(view: View) -> Callable[[int], Array]:
+    """What draws a frame with MuJoCo's renderer."""
+    meshes, bodies = [], []
+    for i, body in enumerate(view.shown):
+        colour = " ".join(str(int(TINTS[i % len(TINTS)][k : k + 2], 16) / 255) for k in (1, 3, 5))
+        meshes.append(f'<mesh name="{i}" vertex="{" ".join(map(str, body.corners.ravel()))}"/>')
+        bodies.append(f'<body mocap="true"><geom type="mesh" mesh="{i}" rgba="{colour} 1"/></body>')
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><visual><global offwidth="{SIZE[0]}" orthographic="true" fovy="{2 * view.half}"/>'
+        f'<headlight ambient="0.6 0.6 0.6"/></visual><asset>{"".join(meshes)}</asset>'
+        f"<worldbody>{''.join(bodies)}</worldbody></mujoco>"
+    )
+    data, camera, renderer = mujoco.MjData(model), mujoco.MjvCamera(), mujoco.Renderer(model, SIZE[1], SIZE[0])
+    elevation, azimuth = view.solids.camera or (0.0, 0.0)
+    camera.lookat[:], camera.distance, camera.orthographic = view.middle, 8 * view.half, 1
+    camera.azimuth, camera.elevation = 180 + azimuth, -elevation
+
+    def draw(frame: int) -> Array:
+        for i, body in enumerate(view.shown):
+            data.mocap_pos[i], data.mocap_quat[i] = body.rest + body.pose[frame, :3], body.pose[frame, 3:]
+        mujoco.mj_kinematics(model, data)
+        renderer.update_scene(data, camera)
+        return np.asarray(renderer.render())
+
+    return draw
+
+
+def filmed(view: View) -> Callable[[int], Array]:
+    """What draws a frame as `plotting.animate` does."""
+    figure, update = animation.scene(view.solids, [], None)
+    stage = animation.Stage(figure, 100.0)
+
+    def draw(frame: int) -> Array:
+        update(frame)
+        return np.asarray(stage.picture().convert("RGB"))
+
+    return draw
+
+
+def megabytes(*packages: str) -> float:
+    """How large packages are where they are installed [MB]."""
+    return sum(os.path.getsize(file.locate()) for one in packages for file in files(one) or ()) / 1e6
+
+
+def timed(draw: Callable[[int], Array], frames: Integers) -> tuple[Array, float]:
+    """The last frame, and the time of one [s]."""
+    draw(0)
+    begun = time.perf_counter()
+    pictures = [draw(int(frame)) for frame in frames]
+    return pictures[-1], (time.perf_counter() - begun) / len(pictures)
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run, draw, time and compare."""
+    args = cli.parser(__doc__, "drawn_in_space").parse_args(argv)
+    out = cli.folder(args.out)
+    if pv is None:
+        raise RuntimeError("PyVista is not installed; pip install 'mjrock[docs]' brings it")
+    answers = {"facade": (facade_in_space.shaken(facade_in_space.facade(), 0.1 if args.quick else 7.0), (20.0, 38.0))}
+    if not args.quick:
+        answers["dome"] = dome.growing(dome.dome(0.038, dome.FACETS[-1], dome.STIFFNESSES[0])), (28.0, 35.0)
+    figure = Figure(figsize=(12.0, 2.5 * len(answers)), layout="constrained")
+    axes, lines = figure.subplots(len(answers), 3, squeeze=False), []
+    for row, (name, (answer, camera)) in zip(axes, answers.items(), strict=True):
+        view, last = View(answer, camera), len(answer.t) - 1
+        frames = np.linspace(0, last, FRAMES).astype(int)
+        colours = [TINTS[i % len(TINTS)] for i in range(len(view.shown))]
+        ways = {"matplotlib": filmed(view), "PyVista": plotter(view, colours)[1]}
+        if not args.quick:  # a process chooses how MuJoCo draws before it imports it
+            ways["MuJoCo"] = rendered(view)
+        found = {way: timed(draw, frames) for way, draw in ways.items()}
+        shares = np.max([wrong(view, frame) for frame in frames], axis=0)
+        lines.append(
+            f"{name}, {len(view.shown)} blocks: "
+            + ", ".join(f"{way} {1e3 * took:.0f} ms a frame" for way, (_, took) in found.items())
+            + f"; pixels of another block than PyVista's, most in a frame: {shares[0]:.2%}, "
+            f"by the mean depth of faces {shares[1]:.1%}"
+        )
+        for ax, (way, (picture, _)) in zip(row, found.items(), strict=False):
+            ax.imshow(picture)
+            ax.set_axis_off()
+            ax.set_title(f"{name}, {way}", fontsize=9)
+    lines.append(f"PyVista and VTK are {megabytes('pyvista', 'vtk'):.0f} MB, MuJoCo and matplotlib are there")
+    plotting.save(figure, out / "drawn_in_space.png")
+    cli.report(out / "drawn_in_space", "\n".join(lines))
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))
