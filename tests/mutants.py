@@ -36,12 +36,10 @@ OTHERS = (
     "scene/rest.py",
     "result/rocking.py",
     "reference/equations.py",
-    *(
-        f"problem/masonry/{name}.py"
-        for name in ("laws/bond", "blocks/compound", "effects", "histories", "blocks/surface")
-    ),
+    *(f"problem/masonry/{name}.py" for name in ("laws/bond", "blocks/compound", "effects", "blocks/surface")),
     "problem/masonry/histories.py",
-    "distinct/search/encounters.py",
+    "distinct/search/contact_search.py",
+    "distinct/search/constants.py",
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
@@ -58,7 +56,7 @@ LINKS = (
 )
 """Modules of the links of explicit steps."""
 FINDING = tuple(
-    f"search/{name}" for name in ("clipping", "finder", "handover", "looking", "overlap", "pair_law", "solids")
+    f"search/{name}" for name in ("clipping", "finder", "handover", "validity", "overlap", "pair_law", "solids")
 )
 """Modules that find where blocks meet."""
 OWN = {
@@ -97,7 +95,8 @@ OWN = {
     "problem/masonry/blocks/surface.py": ("compound", "compound_blocks"),
     "problem/masonry/actuator.py": ("actuators",),
     **{name: ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit") for name in LINKS},
-    "distinct/search/encounters.py": ("encounters", "encounters_in_space", "alike"),
+    "distinct/search/contact_search.py": ("encounters", "encounters_in_space", "alike"),
+    "distinct/search/constants.py": ("encounters", "encounters_in_space", "overlap_of_blocks", "polygons_that_roll"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
     "problem/masonry/limit/collapse.py": ("collapse_without_dilatancy",),
     "problem/masonry/laws/joint_law.py": ("joint_law", "explicit", "encounters"),
@@ -132,7 +131,8 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/search/handover.py": ("handing_over",),
     "distinct/limit.py": ("impacts",),
     **{name: ("pulls_of_links",) for name in LINKS},
-    "distinct/search/looking.py": ("looking",),
+    "distinct/search/validity.py": ("validity",),
+    "distinct/search/constants.py": ("clipping", "finder", "handing_over", "validity", "softening", "pair_law"),
     "distinct/loop.py": ("loop_of_steps",),
     "distinct/search/overlap.py": ("overlap_of_blocks",),
     "distinct/search/pair_law.py": ("pair_law",),
@@ -144,7 +144,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "geometry/vectors.py": ("contact_lines", "friction_of_lines", "clipping", "pulls_of_links"),
     "problem/masonry/actuator.py": ("actuator_inputs",),
     "problem/masonry/laws/bond_law.py": ("bond_law", "bonds_of_lines"),
-    "problem/masonry/laws/joint_law.py": ("joint_law", "contact_lines", "looking", "touches_of_lines", "handing_over"),
+    "problem/masonry/laws/joint_law.py": ("joint_law", "contact_lines", "validity", "touches_of_lines", "handing_over"),
     "scene/rest.py": ("search_for_rest", "potential", "scene_in_space"),
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
@@ -195,7 +195,9 @@ EQUIVALENT = {
         f"{bounds})) > 0]": "what reaches a height to a nanometre does to two"
         for bounds in ("-2e-09, 1e-9", "-1e-9, 2e-09")
     },
-    "encounters.py: fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -2)": "any negative number stands for a body",
+    "contact_search.py: fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -2)": (
+        "any negative number stands for a body"
+    ),
     **{
         f"limit_state.py: if turn % EVERY {which}:": "other turns are as good to start from as every third one"
         for which in ("!= EVERY - 1", "== EVERY - 2")
@@ -226,7 +228,7 @@ EQUIVALENT = {
             "if half <= SMALL:",
         )
     },
-    "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > ALIKE:": (
+    "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > SAME_NORMAL:": (
         "a sense is 1 or -1"
     ),
     "pair_law.py: per_area = per_area * np.append(length / of_joint / np.ones(4), "
@@ -262,7 +264,7 @@ EQUIVALENT = {
     "handover.py: of_force, of_energy = (min(REGAINED, had / force), held / energy) if force > 0 else (1, 0.0)": (
         "where no place presses, none has an overlap that a share is taken of"
     ),
-    "handover.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
+    "constants.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
     "contact.py: PASSES = 6": "more passes take time only",
     "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
         "at a gap of zero nothing presses"
@@ -275,8 +277,8 @@ EQUIVALENT = {
     **{
         f"clipping.py: {line}": "no place is so far from a corner to the last bit"
         for line in (
-            "if length_of(minus(at, corner)) <= SAME * length_of(along):",
-            "if length_of(off) <= SAME * length_of(own):",
+            "if length_of(minus(at, corner)) <= ONE_PLACE * length_of(along):",
+            "if length_of(off) <= ONE_PLACE * length_of(own):",
         )
     },
     **{
@@ -324,7 +326,7 @@ EQUIVALENT = {
         f"finder.py: best: Vector = {way}": "where no direction is across both, none is taken"
         for way in ("(1, 0.0, 0.0)", "(0.0, 1, 0.0)", "(0.0, 0.0, 1)")
     },
-    "finder.py: if size <= ACROSS:": "no sine is the bound to the last bit",
+    "finder.py: if size <= NOT_PARALLEL:": "no sine is the bound to the last bit",
     "faces.py: ROUNDS = 6": "more rounds take time only",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
@@ -347,27 +349,27 @@ EQUIVALENT = {
     "softening.py: stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((4, nv, nv))": (
         "the first two are used"
     ),
-    "looking.py: for turn in range(4):": "the passes after the second one find the same",
-    "looking.py: serve = max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09)": (
+    "validity.py: for turn in range(4):": "the passes after the second one find the same",
+    "validity.py: valid = max(VALID_APPROACH * size, 0.5 * found.gap[i]) / max(speed, 2e-09)": (
         "any small speed serves to divide by"
     ),
-    "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * fallen(look) + NEAR * size)": (
+    "validity.py: may_touch[i] = found.gap[i] <= REACH * (speed * until + 2 * fall_within(interval) + NEAR * size)": (
         "no gap is the bound to the last bit"
     ),
     **{
-        f"looking.py: {line}": "no time is the bound to the last bit"
+        f"validity.py: {line}": "no time is the bound to the last bit"
         for line in (
-            "stale = (moved and due <= EARLY * look) or speed * due > kept",
-            "seen.due[block] = due if due > EARLY * look else look",
+            "outdated = (moved and valid_for <= SEARCHED_TOGETHER * interval) or speed * valid_for > kept",
+            "validity.valid_for[block] = valid_for if valid_for > SEARCHED_TOGETHER * interval else interval",
         )
     },
     **{
-        f"looking.py: flags, speeds = np.zeros(({flags}, count), dtype=bool), np.zeros(({speeds}, count))": (
+        f"validity.py: flags, speeds = np.zeros(({flags}, count), dtype=bool), np.zeros(({speeds}, count))": (
             "the first two rows of each are used"
         )
         for flags, speeds in ((4, 2), (2, 4))
     },
-    "looking.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
+    "validity.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
     "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }

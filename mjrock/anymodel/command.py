@@ -1,6 +1,6 @@
 """`python -m mjrock inspect model.xml`: what the contacts of a MuJoCo model are in N/m and N s/m.
 
-The table has the worst first, and says notes that are alike once."""
+The worst contacts come first, and equal notes are given once."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from .notes import VARIES
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
 GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
-"""Parts of notes by which a contact is worse than others, or of no account."""
+"""Parts of notes that put a contact first or last in the table."""
 
 
 def is_of(contact: InspectedContact, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
-    """Whether a contact is of names with the wildcards `*`, `?` and `[...]`.
+    """Whether a contact has names that match, with the wildcards `*`, `?` and `[...]`.
 
     Args:
         contact: the contact.
@@ -118,7 +118,7 @@ def values(contact: InspectedContact, speed: float) -> list[str]:
 
 
 def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:
-    """Whether one of the names is as one of the patterns says."""
+    """Whether one of the names matches one of the patterns."""
     return any(name == pattern or fnmatchcase(name, pattern) for name in names for pattern in patterns)
 
 

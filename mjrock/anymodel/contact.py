@@ -44,7 +44,7 @@ LEAST_SPEED, MOST_SPEED = 1e-9, 1e4
 
 @dataclass(frozen=True)
 class PairContact:
-    """A spring and dashpot between two geoms that never pull, and the numbers with which MuJoCo has them.
+    """A spring and dashpot between two geoms that never pull, and MuJoCo's parameters for them.
 
     Args:
         geom1, geom2: names of the geoms; an empty name is a geom without one.
@@ -234,7 +234,7 @@ class PairContact:
         return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
 
     def __str__(self) -> str:
-        """Its numbers as one line that is read."""
+        """Its numbers as one line of text."""
         with_gravity = "" if self.speed is None else f" at {self.speed:g} m/s with gravity"
         grip = f"; friction {self.friction[0]:g}, impratio {self.impratio:.2g}" if self.condim > 1 else ""
         return (
@@ -306,7 +306,7 @@ def write(
 
 
 def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
-    """Write the numbers with which a contact is kept; whether that can be."""
+    """Write the numbers that keep a contact as it was; returns whether MuJoCo has such numbers."""
     geoms, numbers = changed.pair, changed.kept
     if numbers is None or len(geoms.listed) > 1:
         return False
@@ -340,7 +340,7 @@ def document(contacts: Sequence[PairContact]) -> str:
 
 
 def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
-    """What `apply` does not mend."""
+    """What `apply` does not correct, one sentence each."""
     model = pair.model
     yield from model_spoilers(model)
     yield from duplicates(pair)
@@ -358,7 +358,7 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
 
 
 def weight_spoilers(contact: PairContact) -> Iterator[str]:
-    """What the weight of the bodies does to a small restitution."""
+    """The effect of weight on a small restitution, as a sentence."""
     e = rebound_restitution(contact.xi)
     if contact.speed is not None or contact.gravity <= 0 or not NOTHING < e < SMALL:
         return
@@ -392,7 +392,7 @@ def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Ite
 
 
 def step_spoilers(contact: PairContact) -> Iterator[str]:
-    """What a long step does to the restitution."""
+    """The effect of a long step on the restitution, as a sentence."""
     h, omega = contact.timestep, contact.frequency
     longest = resolving_step(contact.k, contact.c, contact.mass)
     softer = f"or k = {rounded_down(0.999 * stiffest(h, contact.xi, contact.mass))} N/m at this step"

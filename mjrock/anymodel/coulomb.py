@@ -14,9 +14,9 @@ import numpy as np
 from ..quantities import Array, Integers, require_kind
 
 LOOKS = 10
-"""Most looks at a step in which the friction is brought up to date."""
+"""Most iterations for the friction in a step."""
 KNOWN = 1e-6
-"""Change of the friction in a look from which on it is known, as a share of it [-]."""
+"""Change of the friction in an iteration at which it has converged, as a share of it [-]."""
 SATURATED = 0.99
 """Friction over mu times the normal force from which on a contact is taken to slide [-]."""
 VELOCITY = int(mujoco.mjtStage.mjSTAGE_VEL)

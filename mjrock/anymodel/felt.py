@@ -26,7 +26,7 @@ from .geoms import GeomPair
 
 JOINT, TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
 Owner = tuple[mujoco.mjtObj, int]
-"""What holds: a joint, a tendon or an actuator, and its number."""
+"""Owner of a spring, damper or dry friction: a joint, a tendon or an actuator, and its number."""
 
 
 class JointSprings:
@@ -92,9 +92,9 @@ def _dense(values: Array, count: Integers, start: Integers, columns: Integers, w
 
 
 RIGID = 5.0
-"""Frequency of an equality constraint over that of the contact from which it is as good as rigid [-]."""
+"""Frequency of an equality constraint over that of the contact above which it counts as rigid without a note [-]."""
 HOLDS = 1.0
-"""The same from which it is taken as rigid. A slower one is taken to add the inertia of its row only."""
+"""Ratio of these frequencies above which it is rigid in the mass. A slower one adds only the inertia of its row."""
 TIED = 0.05
 """A point of which friction leaves less than this share of its freedom along the normal slides as it lands [-]."""
 FIXED = 1e-10
@@ -102,7 +102,7 @@ FIXED = 1e-10
 FALL_ALIKE = 1e-9
 """Share of the accelerations of the joints up to which two bodies fall alike [-]."""
 MATTERS = 0.02
-"""A constraint that changes the mass by less than this share is left out of what is said [-]."""
+"""A constraint that changes the mass by less than this share gets no sentence [-]."""
 LIMITS = (int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT), int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON))
 EQUALITY = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 
@@ -239,7 +239,7 @@ class PoseConstraints:
         return np.array(moved.T)
 
     def answer(self, free: Array, softness: Array, counted: Flags) -> Array:
-        """The same with the constraints that count, shape (nv, n); `free` is that without them."""
+        """Change of the joints' velocity with the constraints that count, shape (nv, n); `free` without them."""
         if not counted.any():
             return free
         held, own = self.rows[counted], self.moved[:, counted]

@@ -124,7 +124,7 @@ class ContactRequest:
 
 
 def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:
-    """The contact of a pair in a pose, which says in `remarks` what keeps it from being what was asked, and what lands
+    """The contact of a pair in a pose, with `remarks` on how it differs from what was asked, and what lands
     with it."""
     option = pair.model.opt
     k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
@@ -251,7 +251,7 @@ def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, grav
 def _remarks(
     pair: GeomPair, pose: Pose, asked: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
 ) -> tuple[str, ...]:
-    """What in the pose keeps a contact from being what was asked, one sentence each."""
+    """Reasons in the pose for which a contact differs from what was asked, one sentence each."""
     if asked.mass is not None or not met.felt.mass < math.inf:
         return ()
     xi = c / (2 * math.sqrt(k * met.share))

@@ -208,7 +208,7 @@ class Pose:
 
 
 class Company(NamedTuple):
-    """The other geoms of two bodies that land about when a pair does.
+    """The other geoms of two bodies that land at about the same time as a pair.
 
     Args:
         level: those that land together with it, and share the mass.

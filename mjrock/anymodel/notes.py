@@ -1,4 +1,4 @@
-"""What keeps a contact in N/m from being what it says: options of the model, the step, and what has not been written.
+"""Reasons for which a contact differs from its numbers: options of the model, the step, and what was not written.
 
 Each function gives sentences. Those on one contact stand beside `PairContact`: `spoilers` of what `apply` leaves as it
 is, `missing` of what it writes.
@@ -39,7 +39,7 @@ VARIES = re.compile(
     r" (limits?)?|equality constraints? .*? yields?|(?<=lands together with ).*(?=, and shares)"
     r"|keyframe=?\s?'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?"
 )
-"""What differs in sentences that are alike."""
+"""Parts in which sentences of one kind differ."""
 
 
 class ContactWarning(UserWarning):
@@ -47,7 +47,7 @@ class ContactWarning(UserWarning):
 
 
 def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
-    """What the options of a model do to every contact."""
+    """Effects of the options of a model on every contact, one sentence each."""
     option = model.opt
     if option.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE:
         yield (
@@ -59,7 +59,7 @@ def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
 
 
 def uneven(points: int) -> str:
-    """What uneven ground does."""
+    """The effect of uneven ground, as a sentence."""
     return (
         "one of the geoms is uneven, and the number of contact points changes from place to place; the mass is that "
         f"of {points}"

@@ -1,4 +1,4 @@
-"""The other contacts of a model, which new options change: they are named, or kept as they were.
+"""The other contacts of a model, which new options change: they are named, or given numbers that keep them.
 
 With the pyramidal cone the rows of a contact with friction are as stiff as one row of the elliptic cone times
 `Mixed.pyramid`, f. A contact is kept by a row that is f times as large in all three of its numbers. For K [1/s2],
@@ -57,7 +57,7 @@ class Changed(NamedTuple):
 
     @property
     def kept(self) -> Mixed | None:
-        """What an explicit pair has to have for its row to be as before; None where MuJoCo has no such row."""
+        """Parameters of an explicit pair that keep its row as before; None where MuJoCo has no such row."""
         before, factor = self.before, self.before.scale / self.after.scale
         d, dw, *shape = before.solimp
         if before.constant:

@@ -139,8 +139,13 @@ class Grip(NamedTuple):
         return self.friction[0] if self.condim > 1 else 0.0
 
     def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
-        """The same with what stops slip: at a rate [1/s], omega at most, as the page on contacts says, for the mass of
-        the contact point [kg] and impedance and inertia of its normal row [-, kg]."""
+        """The same with the parameters that stop slip.
+
+        Args:
+            rate: at which slip stops [1/s], omega at most, see the page on contacts.
+            impedance, inertia: of the normal row [-, kg].
+            mass: of the contact point [kg].
+        """
         if self.condim == 1:
             return self
         impratio = max(1.0, HOLD / rate * mass / inertia)
@@ -224,7 +229,7 @@ class ModelRow:
         return near + y * (full - near)
 
     def notes(self) -> Iterator[str]:
-        """What else is to be known of the row, one sentence each."""
+        """Notes on the row, one sentence each."""
         mixed = self.mixed
         if not self.constant:
             yield "the impedance grows with penetration, and stiffness and damping with it"

@@ -106,7 +106,7 @@ def solve_explicit(
     books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.is_slowed)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    samples = Samples.room(count, setup.system, books, ledger=ledger, looks=len(steps.looks(steps.last + 1)))
+    samples = Samples.room(count, setup.system, books, ledger=ledger, checks=len(steps.checks(steps.last + 1)))
     if forces:
         joints, fixed, _, actuators = required_room(case, count)
         samples = samples.with_forces(joints, fixed, actuators)
@@ -126,10 +126,10 @@ def solve_explicit(
     }
     kept = slice(followed.samples)
     samples = samples.taken(kept).since_the_start()
-    if setup.encounters is not None:
+    if setup.search is not None:
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
-    looked = steps.looks(followed.steps)
-    run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], looked)
+    checked = steps.checks(followed.steps)
+    run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], checked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)

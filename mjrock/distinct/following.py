@@ -17,12 +17,12 @@ from ..scene.explicit_step import stepping_seconds
 from .loop import Clock, advance
 from .memory import Memory, remember
 from .rows import ENDLESS, unsound
-from .search.encounters import Encounters
+from .search.contact_search import ContactSearch
 from .setup import Setup
 from .system import Books, Samples, System
 
-LOOKED, LOOKS = 100, 1_000_000
-"""Steps from one look at the energy to the next, and most looks."""
+CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
+"""Steps from one check of the energy to the next, and most checks."""
 LEAD = 0.5
 """By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
 In long steps what is foreseen is worse than that velocity, see `Setup.foresees`."""
@@ -79,14 +79,14 @@ class Stepping(NamedTuple):
         return cls(timestep, every, round(steps / every), last, last * timestep)
 
     @property
-    def look(self) -> int:
-        """Steps from one look at the energy to the next."""
-        return max(LOOKED, -(-self.last // LOOKS))
+    def check(self) -> int:
+        """Steps from one check of the energy to the next."""
+        return max(CHECKED_EVERY, -(-self.last // MOST_CHECKS))
 
-    def looks(self, steps: int) -> Array:
-        """Times of the looks of so many steps [s]."""
-        count = steps // self.look + 1 if steps <= self.last else -(-self.last // self.look) + 1
-        return self.h * np.minimum(self.look * np.arange(count), self.last)
+    def checks(self, steps: int) -> Array:
+        """Times of the checks of so many steps [s]."""
+        count = steps // self.check + 1 if steps <= self.last else -(-self.last // self.check) + 1
+        return self.h * np.minimum(self.check * np.arange(count), self.last)
 
     @property
     def samples(self) -> int:
@@ -118,28 +118,28 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
         RuntimeError: where a row is not finite at the start, or the motion of a block is not after a call. No compiled
             loop gets such a row.
     """
-    system, encounters, stop, memory = setup.system, setup.encounters, stepping.last + 1, setup.memory
+    system, search, stop, memory = setup.system, setup.search, stepping.last + 1, setup.memory
     clock = Clock(
-        0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look
+        0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.check
     )
     clock = clock._replace(lead=LEAD if setup.foresees(stepping.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)
-    look = 0
+    next_search = 0
     require_sound_rows(system)
     if memory is not None:
-        clock, look = clock._replace(before=memory.before, pushed=memory.pushed), memory.look
+        clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
     at_once, ended, memory = max(1, FIRST // max(1, len(system.lines))), False, None
     with tqdm(total=stepping.end, desc="explicit", unit="s", delay=3, disable=None, leave=False) as bar:
         while clock.step < stop and not ended:
             if clock.step == stepping.last:
                 memory = remember(setup.of, system, clock, setup.blocks)
-                if encounters is not None:
-                    memory = memory._replace(met=deepcopy(encounters.met), look=look - clock.step)
-            if encounters is not None and clock.step == look:
-                system, books, steps = looked_on(encounters, system, books, clock)
-                look = clock.step + steps
+                if search is not None:
+                    memory = memory._replace(search=deepcopy(search.state), until_search=next_search - clock.step)
+            if search is not None and clock.step == next_search:
+                system, books, steps = searched(search, system, books, clock)
+                next_search = clock.step + steps
             begun = time.perf_counter()
-            ahead = (look if encounters is not None else stop, clock.step + at_once)
+            ahead = (next_search if search is not None else stop, clock.step + at_once)
             clock = clock._replace(stop=min(stop if clock.step == stepping.last else stepping.last, *ahead))
             step, row, ended = advance(system, books, samples, clock)
             took = time.perf_counter() - begun
@@ -151,10 +151,10 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     return Followed(system, clock.step, clock.row, None if ended else memory)
 
 
-def looked_on(encounters: Encounters, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
-    """A look at the encounters, see `Encounters.look_on`. What is not finite there ends the run."""
+def searched(search: ContactSearch, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
+    """An update of the search, see `ContactSearch.update`. What is not finite there ends the run."""
     try:
-        return encounters.look_on(system, books, clock.step * clock.h, clock.h)
+        return search.update(system, books, clock.step * clock.h, clock.h)
     except ArithmeticError as error:
         raise breakdown(str(error), clock.step * clock.h) from None
 

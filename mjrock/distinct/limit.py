@@ -107,13 +107,13 @@ class Impacts(NamedTuple):
         """Those of the joints of a system, which are the groups of its lines."""
         lines, inverse = system.lines, np.asarray(system.bodies["inverse_mass"])
         along = np.asarray(lines["normal"]) ** 2
-        light = (inverse[lines["body"]] * along).sum(axis=1)
-        light += np.where(lines["face"] >= 0, (inverse[np.maximum(lines["face"], 0)] * along).sum(axis=1), 0.0)
-        moves = light > 0  # where guides hold both blocks along the normal there is no impact
+        inverse_mass = (inverse[lines["body"]] * along).sum(axis=1)
+        inverse_mass += np.where(lines["face"] >= 0, (inverse[np.maximum(lines["face"], 0)] * along).sum(axis=1), 0.0)
+        moves = inverse_mass > 0  # where guides hold both blocks along the normal there is no impact
         _, first, joint = np.unique(lines["group"][moves], return_index=True, return_inverse=True)
-        light = light[moves][first]
+        inverse_mass = inverse_mass[moves][first]
         springs = largest_stiffness(lines), lines["c"]
-        stiffness, damping = (light * np.bincount(joint, each[moves]) for each in springs)
+        stiffness, damping = (inverse_mass * np.bincount(joint, each[moves]) for each in springs)
         frequency = np.sqrt(stiffness)
         return cls(frequency, damping / (2 * frequency))
 

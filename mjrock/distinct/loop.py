@@ -66,7 +66,7 @@ class Clock(NamedTuple):
         ends: rotation at which the run ends [rad], infinite for a run to its end.
         before: length of the step that led to the start, zero for a start that no step led to [s].
         pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
-        look: steps from one look to the next.
+        check: steps from one check of the energy to the next.
         drag, local: mass-proportional damping [1/s] and local damping [-] of the motion, see `slowing`.
         lead: by how many steps dashpots look ahead, see `touches.foreseen`.
     """
@@ -80,25 +80,25 @@ class Clock(NamedTuple):
     ends: float
     before: float
     pushed: Vector
-    look: int = sys.maxsize
+    check: int = sys.maxsize
     lead: float = 0.0
     drag: float = 0.0
     local: float = 0.0
 
 
 @inlined
-def accelerated(ground: Ground, t: float, h: float, axes: tuple[int, ...]) -> Vector:
-    """Mean acceleration of the ground over the window of a step [m/s2]."""
+def accelerated(ground: Ground, t: float, h: float, like: Vector) -> Vector:
+    """Mean acceleration of the ground over the window of a step [m/s2], with as many components as another vector."""
     x, z = mean_acceleration(ground.x, t, h), mean_acceleration(ground.z, t, h)
-    if len(axes) == 2:
+    if len(like) == 2:
         return x, z
     return x, mean_acceleration(ground.y, t, h), z
 
 
 @inlined
-def upwards(size: float, axes: Vector) -> Vector:
+def upwards(size: float, like: Vector) -> Vector:
     """A vertical vector of as many components as another one."""
-    if len(axes) == 2:
+    if len(like) == 2:
         return 0.0, size
     return 0.0, 0.0, size
 
@@ -231,28 +231,20 @@ def is_astray(bodies: Rows, ends: float) -> bool:
 
 @compiled_at_once
 def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
-    """Steps up to that before which to stop. Samples and looks are made of every so many, and of the last.
+    """Steps up to that before which to stop. Samples and checks are made of every so many, and of the last.
 
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
-    return make_steps(system, books, samples, clock, system.axes)
-
-
-@inlined
-def make_steps(
-    system: System, books: Books, samples: Samples, clock: Clock, axes: tuple[int, ...]
-) -> tuple[int, int, bool]:
-    """The steps of `advance`. The compiler drops what is of the plane or of space by the length of the axes."""
-    n, h, row = clock.step, clock.h, clock.row
+    n, h, row, like = clock.step, clock.h, clock.row, read(system.bodies[0].place)
     accounted = samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0
     while n < clock.stop:
         before = h if n > 0 else clock.before
         kick = 0.5 * (before + h)
         sampled = n % clock.every == 0 or n == clock.last
-        looked = n % clock.look == 0 or n == clock.last
+        checked = n % clock.check == 0 or n == clock.last
         kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
         move_supports(system.supports, n * h, before)
-        push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
+        push = scaled(h / kick, accelerated(system.ground, n * h, h, like))
         if n == 0:
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
         start_forces(system, books, push, before)
@@ -261,26 +253,26 @@ def make_steps(
             keep_burden(system, samples, row)
         act_all(system.laws, system, books, n * h, before)
         sticking, touched = press_lines(system, books, before, kick, clock.lead)
-        if sampled or looked:
+        if sampled or checked:
             keep_pose(system, books, samples, kept, before)
         if clock.local > 0:
             oppose(system, books, clock.local, kick)
         kick_bodies(system.bodies, kick)
-        stick(system, books.active, sticking, kick, axes)
+        stick(system, books.active, sticking, kick)
         taken, put_in = settle_touches(system, books, touched, kick)
         samples.energy[kept].elastic += taken
         samples.energy[kept].ground += put_in
         if accounted:
-            rubbed, put_in = book_rubbing(system, books, sticking, axes)
+            rubbed, put_in = book_rubbing(system, books, sticking)
             if before > 0:  # halves that belong to the time before the pose
                 samples.energy[kept].friction += rubbed
                 samples.energy[kept].ground += put_in
         if clock.drag > 0:
             slow_down(system, books, clock.drag * kick)
-        if sampled or looked:
+        if sampled or checked:
             keep_velocity(system.bodies, samples, kept, before)
-        if looked:
-            samples.looks[-(-n // clock.look)] = samples.energy[kept]
+        if checked:
+            samples.checks[-(-n // clock.check)] = samples.energy[kept]
         if sampled:
             keep_forces(system, samples, row)
             row += 1

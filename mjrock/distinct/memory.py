@@ -13,7 +13,7 @@ from ..quantities import Array
 from ..result.response import End
 from .assembly import copied, guided_as
 from .loop import Clock, accelerated
-from .search.encounters import Met
+from .search.contact_search import SearchState
 from .supports import places
 from .system import System
 
@@ -27,8 +27,8 @@ class Memory(NamedTuple):
         before: length of the step that led to the pose [s].
         pushed: mean acceleration of the ground over the half of that step before the pose [m/s2].
         moved: displacement of each fixed block that moves in that step, by name, shape (d,) each [m].
-        met: what was known of the encounters.
-        look: steps until the next look for encounters.
+        search: what was known of the contact search.
+        until_search: steps until its next update.
     """
 
     of: object
@@ -36,8 +36,8 @@ class Memory(NamedTuple):
     before: float
     pushed: Vector
     moved: dict[str, Array]
-    met: Met | None = None
-    look: int = 0
+    search: SearchState | None = None
+    until_search: int = 0
 
 
 def memory_of(start: object, of: object) -> Memory | None:
@@ -47,7 +47,7 @@ def memory_of(start: object, of: object) -> Memory | None:
 
 
 def remember(of: object, system: System, clock: Clock, blocks: tuple[str, ...]) -> Memory:
-    """What the steps know before the last of them, but for the encounters.
+    """What the steps know before the last of them, but for the contact search.
 
     Args:
         of: what stands.

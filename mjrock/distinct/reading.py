@@ -39,7 +39,7 @@ ROUNDING = 1e-12
 @dataclass(frozen=True, eq=False)
 class Run:
     """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s], and the times of
-    the looks [s]."""
+    the checks [s]."""
 
     case: AnyCase
     contacts: Contacts | None
@@ -49,7 +49,7 @@ class Run:
     books: Books
     samples: Samples
     t: Array
-    looked: Array
+    checked: Array
 
     @property
     def links(self) -> Iterator[tuple[Any, Row, str]]:
@@ -73,7 +73,7 @@ class Run:
         return self.above_rest(self.samples.energy)
 
     def above_rest(self, energy: Rows) -> Array:
-        """The same of samples or looks, the first of which is the start."""
+        """The same of samples or checks, the first of which is the start."""
         at_rest = self.scene.rest_energies.sum()
         there = energy["kinetic"] + energy["potential"] + energy["elastic"]
         preloaded = float(there[0] - at_rest - self.setup.course.energy(self.scene))
@@ -152,8 +152,8 @@ def reading_of(run: Run) -> Reading:
     """What is read from a run."""
     samples, system, joint = run.samples, run.followed.system, run.scene.contacts.joint
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
-    met = None if run.followed.memory is None else run.followed.memory.met
-    left = met is not None and bool(met.handed.any())
+    search = None if run.followed.memory is None else run.followed.memory.search
+    left = search is not None and bool(search.handed_over.any())
     cracked = dict(item for law in system.laws for item in law.cracked(run.scene).items())
     beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked)
     problem = problem_of(run.case, run.contacts)
@@ -164,7 +164,7 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     """Raise a RuntimeError if energy appears from nowhere, or if the motion is not finite; warn if much appears at ends
     of faces, which have an account.
 
-    The looks decide, which are made every so many steps, so that the spacing of the samples plays no part.
+    The checks decide, which are made every so many steps, so that the spacing of the samples plays no part.
 
     Args:
         run: the run.
@@ -172,15 +172,15 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     """
     if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
-    looks = run.samples.looks[: len(run.looked)]
-    work, left = looks["ground"] + looks["driven"], looks["joint_ends"] + looks["encounter_ends"]
-    there = run.above_rest(looks)
+    checks = run.samples.checks[: len(run.checked)]
+    work, left = checks["ground"] + checks["driven"], checks["joint_ends"] + checks["encounter_ends"]
+    there = run.above_rest(checks)
     given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
-    kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
-    elastic = float(looks["elastic"].max())  # and masonry that is wedged, or pushed by supports
+    kinetic = float(checks["kinetic"].max())  # what falls below its rest has more
+    elastic = float(checks["elastic"].max())  # and masonry that is wedged, or pushed by supports
     scale = max(given, kinetic, elastic, run.rounding / ENERGY_GAIN)
     try:
-        require_no_gain(run.looked, there - work + left, scale)
+        require_no_gain(run.checked, there - work + left, scale)
     except StepError as gain:
         raise RuntimeError(f"{gain} by t = {gain.t:.4g} s; {advice(stats, 4 * gain.share, ENERGY_GAIN)}") from None
     if -left.min() > OPEN * scale:

@@ -23,7 +23,7 @@ from .assembly import copied, guide, moved_by, started, system_of, take_grips
 from .kinds.lists import laws_of, links_of
 from .limit import Impacts, longest_step
 from .memory import Memory, memory_of, recalled
-from .search.encounters import Encounters
+from .search.contact_search import ContactSearch
 from .system import System
 
 SHORT = 0.25
@@ -45,7 +45,7 @@ class Setup:
         limit, share: the longest stable step [s], and the step that is taken over it [-].
         spacing: largest spacing of the samples [s].
         ends: rotation at which the run ends [rad].
-        encounters: where blocks that fall meet others, or None where that is not followed.
+        search: where blocks that fall meet others, or None where that is not followed.
         impacts: flat impacts at the joints of masonry. A wall has none: its steps are below `SHORT`.
         of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
         blocks: the fixed blocks that move, in the order of the supports.
@@ -61,7 +61,7 @@ class Setup:
     share: float
     spacing: float = math.inf
     ends: float = math.inf
-    encounters: Encounters | None = None
+    search: ContactSearch | None = None
     impacts: Impacts | None = None
     of: object = None
     blocks: tuple[str, ...] = ()
@@ -110,8 +110,8 @@ def carried_on(setup: Setup, start: object) -> Setup:
     memory = memory_of(start, setup.of)
     if memory is None:
         return setup
-    if setup.encounters is not None and memory.met is not None:
-        setup.encounters.met = deepcopy(memory.met)
+    if setup.search is not None and memory.search is not None:
+        setup.search.state = deepcopy(memory.search)
     return replace(setup, memory=memory, system=recalled(memory, setup.system, setup.blocks))
 
 
@@ -145,9 +145,9 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
     share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
     of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
-    encounters = drawn.begun(blocks)
+    search = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
-    apart = {"encounters": encounters, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
+    apart = {"search": search, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
     return Setup(scene, course, system, limit, share, **apart)  # type: ignore[arg-type]
 
 
@@ -157,7 +157,7 @@ def continued(course: Course, state: State | None) -> Course:
 
 
 @lru_cache(maxsize=16)
-def standing(scene: Scene) -> tuple[System, Encounters]:
+def standing(scene: Scene) -> tuple[System, ContactSearch]:
     """The system of masonry at rest, or as drawn where it is not settled, and its blocks as they may meet, which cases
     with the same scene share."""
     system = system_of(scene, ended=True)
@@ -165,4 +165,4 @@ def standing(scene: Scene) -> tuple[System, Encounters]:
         pose, drag = scene.found
         take_grips(system.lines, drag)
         started(system, pose)
-    return system, Encounters(scene, system)
+    return system, ContactSearch(scene, system)

@@ -17,8 +17,8 @@ Tables = tuple[Any, ...]
 
 HELD, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *TAKEN)
 ENERGY = np.dtype([(name, float) for name in (*HELD, *WORK)])
-"""Energy at a sample or a look, and the work since the start [J]: what friction has taken, what ground and supports and
-what actuators have put in, and what `rows.TAKEN` says."""
+"""Energy at a sample or a check, and the work since the start [J]: what friction has taken, what ground and supports
+and what actuators have put in, and what `rows.TAKEN` says."""
 
 
 class System(NamedTuple):
@@ -92,7 +92,8 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
-        looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
+        checks: rows of `ENERGY` at checks of the energy, which are made every so many steps, however far the samples
+            are apart.
         dashpots, links: what `Books` say, (samples, accounts), without a ledger (samples, 0).
         pulled: force of each link [N], shape (samples, links).
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
@@ -105,7 +106,7 @@ class Samples(NamedTuple):
     pose: Array
     velocity: Array
     energy: Rows
-    looks: Rows
+    checks: Rows
     dashpots: Array
     links: Array
     pulled: Array
@@ -115,8 +116,8 @@ class Samples(NamedTuple):
     guided: Array
 
     @classmethod
-    def room(cls, count: int, system: System, books: Books, *, ledger: bool = False, looks: int = 2) -> Samples:
-        """Room for some samples and looks, for a sample that is not kept, and for the accounts of a ledger."""
+    def room(cls, count: int, system: System, books: Books, *, ledger: bool = False, checks: int = 2) -> Samples:
+        """Room for some samples and checks, for a sample that is not kept, and for the accounts of a ledger."""
         freedom = PLANE if len(system.axes) == 2 else SPACE
         count, bodies, links = count + 1, len(system.bodies), sum(len(table.rows) for table in system.links)
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
@@ -124,7 +125,7 @@ class Samples(NamedTuple):
         arrays: list[Any] = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         sizes: tuple[tuple[int, ...], ...] = ((freedom.nv,), (freedom.translations,), (), (freedom.nv,))
         arrays += [np.zeros((count, links)), *(np.zeros((count, 0, *size)) for size in sizes)]
-        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *arrays)
+        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, checks), *arrays)
 
     def with_forces(self, joints: int, blocks: int, actuators: int) -> Samples:
         """The same with room for the forces of so many joints, fixed blocks and actuators."""
@@ -133,13 +134,13 @@ class Samples(NamedTuple):
         return self._replace(**{name: np.zeros((len(old), n, *old.shape[2:])) for name, (n, old) in parts.items()})
 
     def taken(self, which: slice | Integers) -> Samples:
-        """Some of the samples, and all looks."""
-        kept = {name: part[which] for name, part in self._asdict().items() if name != "looks"}
+        """Some of the samples, and all checks."""
+        kept = {name: part[which] for name, part in self._asdict().items() if name != "checks"}
         return self._replace(**kept)
 
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""
-        for table in (self.energy, self.looks):
+        for table in (self.energy, self.checks):
             for name in WORK:
                 table[name] -= table[name][0]
         for account in (self.dashpots, self.links):

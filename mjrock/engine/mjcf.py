@@ -101,7 +101,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         extent=value_text(2 * half),
         meshes="".join(f"\n    {mesh}" for mesh in meshes(scene)),
     )
-    camera = _camera(scene, middle, half)
+    camera = camera_of(scene, middle, half)
     key = {"qpos": keyframe.pose.ravel(), "qvel": keyframe.velocity.ravel()}
     if len(keyframe.plastic):
         key["plastic"] = keyframe.plastic
@@ -121,7 +121,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
 
 
-def _camera(scene: Scene, middle: Array, half: float) -> dict[str, object]:
+def camera_of(scene: Scene, middle: Array, half: float) -> dict[str, object]:
     """Where the camera stands: before the plane, or in space before the facade and beside it."""
     if scene.freedom == PLANE:
         at = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)

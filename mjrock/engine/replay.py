@@ -30,12 +30,16 @@ BROKEN = "stopped: the model has only the contacts of rest"
 TILTED = math.sqrt(0.5)
 """Cosine of the tilt from which a block has fallen, as in `mjrock.result.joint_motion` [-]."""
 BAD = mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC
+QUATERNION = tuple(f"quaternion {part}{{of}} [-]" for part in "wxyz")
 COORDINATES = {
     mujoco.mjtJoint.mjJNT_SLIDE: ("{axis}{of} [m]",),
     mujoco.mjtJoint.mjJNT_HINGE: ("rotation{of} [rad]",),
-    mujoco.mjtJoint.mjJNT_BALL: tuple(f"quaternion {part}{{of}} [-]" for part in "wxyz"),
+    mujoco.mjtJoint.mjJNT_BALL: QUATERNION,
+    mujoco.mjtJoint.mjJNT_FREE: (*(f"{axis}{{of}} [m]" for axis in "xyz"), *QUATERNION),
 }
 """Columns of `Response.csv` with the coordinates of a joint."""
+OTHER = ("the joint {axis}{of}",)
+"""What is said of a joint of another model."""
 
 
 def read_motion(model: mujoco.MjModel, path: Path) -> tuple[Array, Array]:
@@ -58,7 +62,11 @@ def read_motion(model: mujoco.MjModel, path: Path) -> tuple[Array, Array]:
     t = values[:, header.index("t [s]")]
     if len(t) < 2 or not (np.diff(t) >= 0).all() or not t[-1] > t[0]:
         raise ValueError(f"answer {path} has {len(t)} samples whose times [s] do not grow")
-    return t, values[:, [header.index(name) for name in columns_of(model)]]
+    places = values[:, [header.index(name) for name in columns_of(model)]]
+    for i in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE):  # displacements are from rest
+        at = model.jnt_qposadr[i]
+        places[:, at : at + 3] += model.qpos0[at : at + 3]
+    return t, places
 
 
 def columns_of(model: mujoco.MjModel) -> list[str]:
@@ -67,7 +75,9 @@ def columns_of(model: mujoco.MjModel) -> list[str]:
     for i in range(model.njnt):
         joint = model.joint(i)
         body, _, axis = joint.name.rpartition("_")
-        kind = COORDINATES.get(mujoco.mjtJoint(model.jnt_type[i]), ("the joint {axis}{of}",))
+        kind = COORDINATES.get(mujoco.mjtJoint(model.jnt_type[i]), OTHER)
+        if model.jnt_type[i] == mujoco.mjtJoint.mjJNT_FREE and axis != "free":
+            kind = OTHER
         names += [name.format(axis=axis, of=f" of {body}" if body else "") for name in kind]
     return names
 

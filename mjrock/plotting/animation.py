@@ -92,10 +92,10 @@ def filmed(case: AnyCase) -> Filmed:
 
 MOST_FRAMES = 20_000
 HUNDREDTHS = 100
-"""A GIF counts the time of a frame in hundredths of a second, and browsers slow down below two of them [1/s]."""
+"""A GIF gives the time of a frame in hundredths of a second, and browsers play below two of them slower [1/s]."""
 
 JUST = 1 - 1e-9
-"""The writers cut the milliseconds of a frame off to a whole number, which rounding must not make one less [-]."""
+"""Factor on the rate of frames [-]: writers round the milliseconds of a frame down, which must not lose one."""
 
 
 class Stage:
@@ -163,7 +163,7 @@ ICONS = {
     "fa-fast-forward": "&#9654;&#9654;|",
     "fa-plus": "&#43;",
 }
-"""What stands on the buttons of matplotlib's player in place of an icon font from the web."""
+"""Characters on the buttons of matplotlib's player, in place of an icon font from the web."""
 
 
 def standalone(text: str, title: str) -> str:
@@ -303,11 +303,11 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
             options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
             return PageWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
-    raise ValueError(f"path = {(path.name or str(path))!r} ends in none of .gif, .mp4, .html")
+    raise ValueError(f"path = {(path.name or str(path))!r} does not end in .gif, .mp4 or .html")
 
 
 def frame_times(t: Array, step: float) -> Array:
-    """Times of the frames [s], `step` apart from the first sample to the last; a ValueError says if they are many."""
+    """Times of the frames [s], `step` apart from the first sample to the last; a ValueError for too many."""
     count = int((t[-1] - t[0]) / step * (1 + 1e-12)) + 1
     if count > MOST_FRAMES:
         raise ValueError(f"the picture would have {count} frames; the valid range is 1 to {MOST_FRAMES}; raise speed")

@@ -28,7 +28,7 @@ from ..study.intensity.fragility import Fragility
 P = ParamSpec("P")
 Picture = TypeVar("Picture", bound=Callable[..., Any])
 Check = Callable[[str, object], object]
-"""Raises a TypeError or ValueError with the name and the value of an argument that cannot be."""
+"""Raises a TypeError or ValueError with the name and the value of an invalid argument."""
 MOST_COLUMNS = 50
 """Most panels beside each other."""
 
@@ -76,7 +76,7 @@ def anything(name: str, value: object) -> None:
 
 
 def mapping(check: Check, least: int = 1) -> Check:
-    """A check for so many values by texts at least, each with a check of its own."""
+    """A check for a mapping of at least so many names to values, each with a check of its own."""
 
     def checked(name: str, value: object) -> None:
         if not isinstance(value, Mapping) or len(value) < least:
@@ -170,7 +170,7 @@ class Checked(Protocol):
 
 
 def own_axes(about: object) -> Axes:
-    """An Axes in a figure of its own, of three dimensions for masonry in space or what was found of it."""
+    """An Axes in a figure of its own, of three dimensions for masonry in space and results of it."""
     about = getattr(about, "case", about)
     deep = getattr(getattr(about, "masonry", about), "in_space", False)
     figure = Figure(figsize=(6.4, 4.8) if deep else (5.2, 3.6), layout="constrained")

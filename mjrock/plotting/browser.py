@@ -27,7 +27,7 @@ SUPPORT, TIE = "#bdbdbd", "#1f5f9e"
 THICK = 0.005
 """Thickness of lines, over the extent of what moves [-]."""
 WAY = np.array([0.7, -0.9, 0.3])
-"""From what moves to the eye, over its extent [-]."""
+"""Vector from the middle of what moves to the camera, over its extent [-]."""
 PANEL = """
 const world = K3DInstance.getWorld(), objects = Object.values(world.ObjectsListJson);
 const panel = document.createElement('div'), last = LAST;

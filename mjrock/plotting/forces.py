@@ -19,7 +19,7 @@ from .section import FORCE, Update
 SHOWN = ("thrust", "bars", "cracks")
 """How forces are shown."""
 WIDEST, BAR = 5.0, 2.5
-"""Width of the line of thrust at a large force, and of a bar [point]."""
+"""Width of the line of thrust at the force of the scale, and of a bar [point]."""
 CLOSED, CRACK = 0.8, 4.0
 """Width of the line of a closed joint that has lost its bond, and of the widest crack of a run [point]."""
 CRACKED = "#c0392b"
@@ -27,7 +27,7 @@ CRACKED = "#c0392b"
 LONGEST = 0.12
 """Length of the bar of a large force, over the extent of the joints [-]."""
 LARGE = 2.0
-"""Force over that of the scale beyond which a line grows no more [-]. In a film impacts would hide the rest."""
+"""Force over that of the scale above which a line stays as wide [-]. In a film impacts would hide the rest."""
 NOTHING = 1e-6
 """Force over that of the scale below which nothing is drawn [-]."""
 
@@ -172,7 +172,7 @@ def edges_of(outline: Array) -> Array:
 
 
 def forces_on(ax: Axes, response: Response, bodies: Moving, how: str, *, animated: bool = True) -> Update:
-    """Draw the forces of the joints on blocks that are drawn already, and say what a large one is."""
+    """Draw the forces of the joints on blocks that are drawn already, and write the force of the scale."""
     acting = Acting(response, bodies)
     cracks = how == "cracks"
     colour, capstyle = (CRACKED, "butt") if cracks else (FORCE, "round")

@@ -224,7 +224,7 @@ def reversed_ground(left: Response, right: Response) -> bool:
 
 
 def required_labels(responses: Sequence[Response], labels: object) -> list[str] | None:
-    """The labels of responses: those given, or solvers and numbers where cases differ, or None where solvers say it.
+    """Labels of responses: those given, or solvers with numbers where cases differ, or None where solvers suffice.
 
     Raises:
         TypeError, ValueError: if they are not texts, or another number of them.

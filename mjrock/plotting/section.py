@@ -1,4 +1,4 @@
-"""The section of a wall and of all that it meets: base, side stop, toes, ties, openings, loads, thrusts and masses."""
+"""The section of a wall with base, side stop, toes, ties, openings, loads, thrusts and masses."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
 
 
 def tie_texts(ties: Sequence[Anchored], left: float, height: float) -> list[str]:
-    """What stands at each tie: how many are there, at the first of them, and how far behind a hidden anchor is, at the
+    """Text at each tie: how many are at one place, at the first of them, and how far behind a hidden anchor is, at the
     highest of those that are as long."""
     placed = [(round(tie.height / (0.03 * height)), tie.length, tie.rise) for tie in ties]
     texts = []

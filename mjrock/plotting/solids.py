@@ -27,7 +27,7 @@ TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9
 ASIDE = 1e-9
 """Cosine of the angle between the line of sight and the normal of a plane that is seen as a line [-]."""
 TOUCHING = 1e-4
-"""How far two bodies have to lie one before the other for an order, over the extent of all in the picture [-]."""
+"""Overlap of bodies, or of their outlines in the picture, that counts as touching, over the extent of all [-]."""
 
 
 class Facets(NamedTuple):
@@ -198,7 +198,7 @@ class Solids:
         """The convex parts of all bodies from the farthest to the nearest, shape (parts,).
 
         A part that another one hides comes before it. Parts that hide one another in a ring, or that overlap, have no
-        such order, and then one of them is wrong.
+        such order: one of them is drawn too early.
         """
         parts, hidden = self._parts, [set[int]() for _ in self._parts.body]
         corners = self._drawn(frame, parts.body, parts.corners)

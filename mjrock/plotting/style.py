@@ -25,7 +25,7 @@ STYLES: dict[str, dict[str, Any]] = {
 """Lines that a black-and-white print still tells apart."""
 
 Drawing = Callable[[Axes], Axes]
-"""What a panel needs."""
+"""A function that draws a panel."""
 
 
 OWN: tuple[dict[str, Any], ...] = (
@@ -124,7 +124,7 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
         path = path.with_suffix(".png")
     formats = drawn.canvas.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:
-        raise ValueError(f"path = {(path.name or str(path))!r} ends in none of .{', .'.join(sorted(formats))}")
+        raise ValueError(f"path = {(path.name or str(path))!r} does not end in .{', .'.join(sorted(formats))}")
     with replacing(path) as partial:
         drawn.savefig(partial, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
     return path

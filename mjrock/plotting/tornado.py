@@ -1,4 +1,4 @@
-"""Pictures of what an answer depends on."""
+"""Pictures of the sensitivity of a result to its settings."""
 
 from __future__ import annotations
 

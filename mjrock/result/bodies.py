@@ -44,15 +44,15 @@ class Body(NamedTuple):
 
     @property
     def triangles(self) -> list[tuple[int, ...]]:
-        """Numbers of the corners of triangles that make up the faces."""
+        """Triangles of the faces, each by the numbers of its corners."""
         return [(face[0], *pair) for face in self.faces for pair in pairwise(face[1:])]
 
     def turned(self, vectors: Array) -> Array:
-        """Vectors of the body at rest, shape (m, 3), as they are turned, shape (n, m, 3)."""
+        """Vectors that are given at rest, shape (m, 3), turned with the body, shape (n, m, 3)."""
         return rotated(vectors, self.pose)
 
     def placed(self, about: Array) -> Array:
-        """Where points are that are given about the centroid at rest [m], shape (m, 3), shape (n, m, 3)."""
+        """Positions of points that are given about the centroid at rest, shape (m, 3) [m], shape (n, m, 3)."""
         return self.rest + self.pose[:, None, :3] + self.turned(about)
 
     def rate(self, about: Array) -> Array:
@@ -61,7 +61,7 @@ class Body(NamedTuple):
 
 
 class Moving(NamedTuple):
-    """Where the bodies of a case are: the one text for forces, ties and pictures.
+    """Positions of the bodies of a case, for forces, ties and pictures.
 
     Args:
         case: of a wall or of masonry.
@@ -93,11 +93,11 @@ class Moving(NamedTuple):
         return self._replace(t=self.t[number : number + 1], pose=self.pose[number : number + 1])
 
     def placed(self, block: int | None, points: Array) -> Array:
-        """Where these points are, or are drawn [m], shape (n, m, d)."""
+        """Positions of these points, magnified for pictures [m], shape (n, m, d)."""
         return points + self.magnify * self.displaced(block, points)
 
     def joints(self, frames: JointFrames) -> tuple[Array, Array]:
-        """Middles [m] and axes of joints where what is below them is, shapes (n, j, d) and (n, j, d, d)."""
+        """Middles [m] and axes of joints, which move with the block below, shapes (n, j, d) and (n, j, d, d)."""
         d, on_body = frames.middle.shape[1], frames.below >= 0
         middle, axes = (np.repeat(part[None], len(self.t), axis=0) for part in (frames.middle, frames.axes))
         of = frames.below[on_body]
@@ -110,7 +110,7 @@ class Moving(NamedTuple):
 
 
 def frames_at(t: Array, fps: float) -> Integers:
-    """Numbers of the samples that are the first in each frame, and of the last one. Their times differ as 32 bits."""
+    """Numbers of the first sample in each frame, and of the last sample. Their times differ as numbers of 32 bits."""
     rate = require_within("fps", fps, 1.0, 1e4, "1/s")
     first = np.unique(np.floor((t - t[0]) * rate * (1 + 1e-12)), return_index=True)[1]
     kept = np.unique(np.append(first, len(t) - 1))

@@ -49,7 +49,7 @@ def results_text(case: MasonryCase, bodies: list[Body], at: float, forces: Force
 
 
 def _transformation(body: Body, name: str) -> dict[str, object]:
-    """From where a body is drawn to where it is."""
+    """The transformation from the drawn to the present position of a body."""
     turn, matrix = rotations(body.pose)[0], np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = turn, body.rest + body.pose[0, :3] - turn @ body.rest
     return held("compas.geometry/Transformation", {"matrix": matrix.tolist()}, guid_of("transformation", name))
@@ -113,7 +113,7 @@ def _edge(
 def at_corners(corners: Array, eccentricity: Array) -> Array:
     """Shares of a force at corners, none of them negative, that add up to it and act where it does.
 
-    They are the least shares in the sense of squares, where none of these pulls. A force beyond the outline, as on an
+    They have the least sum of squares, where none of these pulls. A force beyond the outline, as on an
     edge that has slipped, is put on it.
 
     Args:

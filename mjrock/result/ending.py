@@ -1,4 +1,4 @@
-"""How runs end, the same in words, and how long a solver took."""
+"""How runs end, in words too, and how long a solver took."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Outcome(enum.Enum):
 def ending(
     case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float, velocity: Array
 ) -> tuple[Outcome, str]:
-    """How a run on compliant contacts ended, and the same in words.
+    """Outcome of a run of a wall on compliant contacts, and a sentence that says it.
 
     The wall is at rest when its energy above the settled wall no longer lifts an edge off the base, nor does its
     kinetic energy alone: a wall that a thrust pushes along has less than at rest. `velocity` is that at the end, shape
@@ -55,7 +55,7 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
 
 
 def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, everywhere: bool) -> tuple[Outcome, str]:
-    """How a run ended, and the same in words; `everywhere` says whether blocks meet wherever they are."""
+    """Outcome of a run of masonry, and a sentence that says it; `everywhere` says whether all contacts are found."""
     if fallen:
         left_out = "" if everywhere else "; contacts other than those of the joints at rest are not in the model"
         (name, first), *others = fallen.items()
@@ -69,7 +69,7 @@ def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, ev
 
 
 class Stopwatch:
-    """Times since it was made [s]: on the clock, and of this thread on the processor."""
+    """Wall time, and processor time of this thread, since it was made [s]."""
 
     def __init__(self) -> None:
         self._began = time.perf_counter(), time.thread_time()
@@ -79,5 +79,5 @@ class Stopwatch:
         return {wall: time.perf_counter() - self._began[0], processor: time.thread_time() - self._began[1]}
 
     def stepping(self) -> dict[str, float]:
-        """The two times as those of the steps alone."""
+        """The two times under the names for the steps alone."""
         return self.took("stepping_time", "stepping_processor_time")

@@ -1,4 +1,4 @@
-"""Forces of joints, of links and of what stands fixed, at the samples of a run."""
+"""Forces of joints and links, and reactions of fixed blocks, at the samples of a run."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def forces_of(case: AnyCase, frames: JointFrames, gathered: Gathered) -> Forces:
 
 
 def guides_of(case: AnyCase, gathered: Gathered) -> dict[str, Array]:
-    """What guides do to the blocks of actuators, see `Forces`: they balance all else that acts on them."""
+    """Forces of guides on the blocks of actuators, see `Forces`: they balance all other forces on these blocks."""
     guides: dict[str, Array] = {}
     d = 3 if case.in_space else 2
     for i, actuator in enumerate(case.actuators.values()):

@@ -19,7 +19,7 @@ from .bodies import Body
 Json = dict[str, object]
 """An object in the text of the file."""
 FLOAT, WHOLE = 5126, 5125
-"""glTF's numbers of the kinds of 32 bits."""
+"""glTF's codes for numbers of 32 bits: floating point, and whole."""
 COLOURS = {"masonry": (0.77, 0.55, 0.40, 1.0), "fixed": (0.5, 0.5, 0.5, 1.0)}
 
 
@@ -30,7 +30,7 @@ class Numbers:
         self.data, self.views, self.accessors = bytearray(), list[Json](), list[Json]()
 
     def add(self, values: Array | Integers, kind: str, whole: bool = False) -> int:
-        """Append values of a kind such as "VEC3", as 32 bits; the number of their accessor."""
+        """Append values of a kind such as "VEC3", as numbers of 32 bits; returns the number of their accessor."""
         packed = np.ascontiguousarray(values, dtype="<u4" if whole else "<f4")
         rows = packed.reshape(len(packed), -1)
         self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": packed.nbytes})

@@ -1,4 +1,4 @@
-"""What masonry does in a run: how far its joints open and slide, which blocks fall, and which weigh past an edge."""
+"""What masonry does in a run: openings and slips of its joints, blocks that fall, and blocks that overhang."""
 
 from __future__ import annotations
 
@@ -124,13 +124,13 @@ def below_everything(masonry: Masonry, supports: tuple[Support, ...], t: Array, 
 
 
 def in_order(when: Mapping[str, float]) -> dict[str, float]:
-    """The finite times, the first first."""
+    """The finite times, the earliest first."""
     return {name: when[name] for name in sorted(when, key=when.__getitem__) if np.isfinite(when[name])}
 
 
 def sunk_ground(masonry: Masonry, supports: tuple[Support, ...], t: Array) -> Array:
-    """How far the ground of each free block has sunk [m], shape (n, bodies): the fixed block that the fewest joints
-    part it from."""
+    """How far the ground of each free block has sunk [m], shape (n, bodies). Its ground is the fixed block to which the
+    fewest joints lead."""
     fixed = [i for i, block in enumerate(masonry.blocks) if block.fixed]
     nearest = nearest_roots(_pairs(masonry), len(masonry.blocks), fixed)
     sunk = {masonry.names.index(support.block): -support.at(t)[:, -1] for support in supports}
@@ -144,14 +144,14 @@ def _pairs(masonry: Masonry) -> Integers:
 
 
 def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
-    """Which free blocks no joint connects with a fixed block, shape (bodies,), from the pairs that a joint holds."""
+    """Whether no chain of joints connects each free block with a fixed one, shape (bodies,); `pairs` of joints."""
     labels = components(pairs, len(masonry.blocks))
     standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
     return ~np.isin(labels[list(masonry.free)], list(standing))
 
 
 AT_ONCE = 1_000_000
-"""Most gaps that are held at once while the joints of a run are looked at."""
+"""Most gaps that are held in memory at once."""
 
 
 class JointRecord(NamedTuple):
@@ -172,7 +172,7 @@ class JointRecord(NamedTuple):
 
 
 def in_parts(pose: Array, shift: Array, joints: int, look: Callable[[Array, Array], JointRecord]) -> JointRecord:
-    """What joints did at poses, looked at a part of the steps at a time.
+    """What joints did at poses. The steps are taken in parts, so that they fit into memory.
 
     `look` takes the poses of some steps and where supports are then, and gives what the joints do at each: all but
     `deepest` has the shape (steps, joints).
@@ -304,7 +304,7 @@ def _looked(scene: Scene, points: JointPoints, pose: Array, shift: Array) -> Loo
 
 @inlined
 def _along(places: Places, i: int, meets: Meeting, frames: Array) -> Vector:
-    """Where point i is along its face, from the origin of the face, in the axes of the face [m]."""
+    """Position of point i along its face, from the origin of the face, in the axes of the face [m]."""
     along, face = minus(meets.across, scaled(meets.gap, meets.normal)), places.face_body[i]
     return along if face < 0 else plus(along, inverse_rotation_change(frames, face, along))
 
@@ -338,9 +338,9 @@ def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames
 
 
 LOOKS = 200
-"""Most times at which a run is looked at."""
+"""Most times at which overhangs are computed."""
 WORTH_SAYING = 1e-3
-"""Distance past an edge that is said, over the size of the block [-]."""
+"""Overhang that is reported, over the size of the block [-]."""
 UPRIGHT = 1e-9
 """Vertical part of the normal of a joint up to which it carries no weight [-]."""
 
@@ -348,9 +348,9 @@ UPRIGHT = 1e-9
 def past_support(
     standing: MasonryStanding, motion: JointRecord, slips: Callable[[Integers], Array]
 ) -> dict[str, float]:
-    """How far the weight of each block has passed the edge of the faces that it stands on [m], at most, by its name.
+    """Largest distance by which the centroid of each block has passed the edge of its support [m], by name.
 
-    Blocks that stand on horizontal joints alone are looked at. What overhangs as it is drawn counts from there.
+    Only blocks whose joints are horizontal count. The overhang of the drawing is subtracted.
 
     Args:
         standing: the masonry at rest.
@@ -378,7 +378,7 @@ def past_support(
 
 
 def told_of_overhang(past: Mapping[str, float]) -> str:
-    """Whose weight has passed its support, and how far, as a sentence after a message; nothing where none has."""
+    """A sentence for a message that names the blocks that overhang, and how far; empty where none does."""
     far = [f"{name} by {past[name]:.3g} m" for name in sorted(past, key=past.__getitem__, reverse=True)]
     return (
         f" The weight passed the edge of what it stands on: {named(far)}. Faces have no end in MuJoCo, where such a "
@@ -389,7 +389,7 @@ def told_of_overhang(past: Mapping[str, float]) -> str:
 
 
 def _beds(masonry: Masonry) -> dict[int, list[int]]:
-    """Numbers of the horizontal joints that each block stands on, of blocks that no inclined one carries too."""
+    """Numbers of the horizontal joints below each block, for blocks without inclined joints below."""
     beds: dict[int, list[int]] = {}
     inclined = set()
     for j, joint in enumerate(masonry.joints):

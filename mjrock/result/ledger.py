@@ -1,4 +1,4 @@
-"""The energy ledger of a run: where its energy is, what took energy from it, and what does not add up."""
+"""The energy ledger of a run: energy that is there, that was taken and put in, and the error of their balance."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..scene.fixed_step import ENERGY_GAIN
 
 
 class StepError(RuntimeError):
-    """Steps have broken down at the time `t` [s]; `share` of the energy there was has appeared from nowhere [-]."""
+    """Steps have become unstable at the time `t` [s]; energy has grown by `share` of the energy before [-]."""
 
     def __init__(self, what: str, t: float, share: float = 0.0) -> None:
         super().__init__(what)
@@ -23,7 +23,7 @@ class StepError(RuntimeError):
 
 
 def require_no_gain(t: Array, balance: Array, scale: float) -> None:
-    """Make sure that at most ENERGY_GAIN of the energy there was appears from nowhere.
+    """Raise if energy grows by more than ENERGY_GAIN of the scale without work being done.
 
     Args:
         t: times at which energy is judged [s], shape (n,). Each solver takes those at which it knows its energy best.
@@ -134,7 +134,7 @@ class Ledger:
         return max(float(np.abs(part).max()) for part in parts)
 
     def columns(self) -> dict[str, Array]:
-        """All of it as columns of a table, with their unit, shape (n,) each."""
+        """All accounts as columns of a table, with their unit, shape (n,) each."""
         held = {f"{name} energy [J]": getattr(self, name) for name in ("kinetic", "potential", "elastic")}
         taken = {f"taken by {name} [J]": account for name, account in self.taken.items()}
         return held | taken | {f"put in by {name} [J]": account for name, account in self.put_in.items()}

@@ -1,4 +1,4 @@
-"""The motion of bodies at samples, and samples between steps."""
+"""The motion of bodies at the samples of a response, and interpolation between steps."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class SampledMotion:
 
 
 ROUNDING = 1e-12
-"""Part of an interval that is put down to rounding, over the number of intervals [-]."""
+"""Part of an interval that counts as rounding, over the number of intervals [-]."""
 
 
 def required_spacing(output_step: float | None, duration: float, otherwise: float = 1e-3) -> float:

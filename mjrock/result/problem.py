@@ -21,10 +21,10 @@ from .motion import Motion, SampledMotion
 from .reading import BesidePoses, Reading, masonry_reading, wall_reading
 
 OPEN = 0.05
-"""Energy that the ledger of a wall may have too much before that is said, over the energy of the release and of the
+"""Error of the balance of a wall above which there is a warning, over the energy of the release and of the
 ground motion [-]."""
 UNPAID = 0.01
-"""Energy of masonry without an account that is said, over the largest part of the ledger [-]."""
+"""Error of the balance of masonry above which there is a warning, over the largest part of the ledger [-]."""
 
 
 class Unpaid(NamedTuple):
@@ -55,7 +55,7 @@ class Problem(Protocol):
         """What a motion says; `released` and `beside` are as in `wall_reading` and `masonry_reading`."""
 
     def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
-        """Energy without an account in a ledger, from the energy there was [J]."""
+        """Error of the balance of a ledger [J]."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class WallProblem:
         return wall_reading(self.case, self.contacts, t, motion, released=released)
 
     def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
-        """That which has appeared while the wall could still come back."""
+        """Energy that has appeared while the wall could still come back."""
         unpaid = ledger.residual[self.case.returns_from(motion.theta[:, 0])].max(initial=0.0)
         return Unpaid(float(unpaid), scale, "the energy there was", OPEN)
 
@@ -106,7 +106,7 @@ class MasonryProblem:
         return masonry_reading(self.case, scene, t, motion, beside)
 
     def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
-        """That which has appeared or vanished."""
+        """Energy that has appeared or vanished."""
         return Unpaid(float(np.abs(ledger.residual).max()), ledger.largest, "its largest part", UNPAID)
 
 
@@ -130,7 +130,7 @@ def problem_of(case: AnyCase, contacts: Contacts | None = None) -> Problem:
 
 
 def scene_of(case: AnyCase, contacts: Contacts | None = None, method: Method = METHOD) -> Scene:
-    """What stands in a case: a wall on its contacts, or masonry, which has joints of its own.
+    """The scene of a case: a wall on its contacts, or masonry, which has joints of its own.
 
     Raises:
         ValueError: if the contacts do not fit the case, or what stands in it falls under its weight.

@@ -1,4 +1,4 @@
-"""Reading: what a motion of a wall or of masonry on compliant contacts says, whichever solver found it."""
+"""Results read from a motion of a wall or of masonry on compliant contacts, whichever solver found it."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Reading:
 
 
 class BesidePoses(NamedTuple):
-    """What is known of blocks that meet wherever they are, beside their poses.
+    """What a solver that finds all contacts knows beside the poses.
 
     Args:
         widest: the widest gap of each contact in any step [m], shape (m,).

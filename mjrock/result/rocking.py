@@ -90,7 +90,7 @@ def restitution_of(leaving: Array, reaching: Array) -> Array:
 
 
 def farthest(case: Case, rocking: Rocking, theta: Array) -> tuple[float, float]:
-    """Largest rotation of a wall outwards, and inwards [rad], from its peaks and the rotations at the samples, (n,).
+    """Largest rotation of a wall outwards and inwards [rad], from its peaks and the rotations at the samples, (n,).
 
     The largest rotation may be that of the last sample, where a run ends on its way out. Against a side stop peaks are
     outward, and the inward rotation is that of the wall as it presses the stop or leans over it.

@@ -9,6 +9,7 @@ frequency of the closed contacts. Writes plain_models.csv, .png and .txt.
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 import warnings
@@ -87,6 +88,11 @@ def drawn_walls(count: int) -> list[Released]:
     return made
 
 
+def first(values: NDArray[np.float64]) -> float:
+    """The first rebound; NaN where it is too low to be one."""
+    return float(values[0]) if len(values) else math.nan
+
+
 def told(values: NDArray[np.float64], count: int = 3) -> str:
     """The first rebounds in words."""
     return " ".join(f"{value:.4f}" for value in values[:count])
@@ -125,8 +131,9 @@ def table_2(lines: list[str], rows: list[list[object]], specimens: Sequence[pape
             h, law = 0.1 / wall.omega, wall.law()
             (plain, _), (points, _) = (wall.run(h, collisions=given) for given in (True, False))
             sides = "one-sided" if one_sided else "two-sided"
-            lines.append(f"  {specimen.name}, {sides}: {law[0]:.4f} {plain[0]:.4f} {points[0]:.4f}")
-            rows.append([f"{specimen.name}, {sides}", h, 0.1, law[0], plain[0], points[0]])
+            three = first(law), first(plain), first(points)
+            lines.append(f"  {specimen.name}, {sides}: " + " ".join(f"{value:.4f}" for value in three))
+            rows.append([f"{specimen.name}, {sides}", h, 0.1, *three])
 
 
 def table_1(
@@ -138,17 +145,17 @@ def table_1(
         off: list[list[float]] = []
         for wall in walls:
             h, law = resolved / wall.omega, wall.law()
-            both = [wall.run(h, collisions=given)[0][0] for given in (True, False)]
-            rows.append([wall.name, h, resolved, law[0], *both])
-            off.append([float(value / law[0] - 1) for value in both])
-        plain, points = np.array(off).T
+            both = [first(wall.run(h, collisions=given)[0]) for given in (True, False)]
+            rows.append([wall.name, h, resolved, first(law), *both])
+            off.append([value / first(law) - 1 for value in both])
+        plain, points = np.array([pair for pair in off if not np.isnan(pair).any()]).T
         errors[resolved] = (plain, points)
         said = " and ".join(
             f"{np.median(np.abs(each)):.2%} (median), {np.abs(each).max():.1%} (largest)" for each in (plain, points)
         )
         within = (np.abs(plain) < 0.01).mean()
         lines.append(
-            f"{len(walls)} walls of Table 1, omega h = {resolved:g}: plain {said} for contact points; "
+            f"{len(plain)} walls of Table 1, omega h = {resolved:g}: plain {said} for contact points; "
             f"{within:.0%} of the plain ones within 1 %"
         )
     return errors

@@ -8,7 +8,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.distinct import explicit, following
-from mjrock.distinct.search.encounters import Encounters
+from mjrock.distinct.search.contact_search import ContactSearch
 
 TABLE = box(-1.0, 1.0, 1.0, 1.5, fixed=True, name="table")
 STANDS = box(3.0, 3.2, 0.0, 0.2, name="stands")
@@ -137,7 +137,7 @@ def test_a_motion_that_is_not_finite_ends_the_run_by_name(monkeypatch):
 
 
 def test_a_contact_that_is_not_finite_ends_the_run_by_name(monkeypatch):
-    monkeypatch.setattr(Encounters, "_stable", lambda _, found, *rest: np.full(len(found.gap), np.nan))
+    monkeypatch.setattr(ContactSearch, "_stable", lambda _, found, *rest: np.full(len(found.gap), np.nan))
     with pytest.raises(RuntimeError, match=r"the contact of (table and falls|falls and table) breaks down by t = 0\.0"):
         mr.solve_explicit(mr.MasonryCase(FALLS, 0.2, settled=False))
 

@@ -97,7 +97,7 @@ def test_friction_falls_to_a_residual_with_the_bond(place, pressure):
 
 def test_blocks_that_meet_anew_have_the_residual_friction():
     masonry = joint(replace(MORTAR, residual_friction=0.5))
-    assert setup_of(mr.MasonryCase(masonry, 1.0, settled=False), None, None).encounters.law.of_pair[1] == [0.5]
+    assert setup_of(mr.MasonryCase(masonry, 1.0, settled=False), None, None).search.law.of_pair[1] == [0.5]
 
 
 def test_a_residual_friction_above_that_of_the_joint_is_refused():

@@ -9,7 +9,7 @@ import pytest
 import mjrock as mr
 from mjrock.distinct.reading import require_sound
 from mjrock.distinct.rows import rows
-from mjrock.distinct.search import encounters
+from mjrock.distinct.search import contact_search
 from mjrock.distinct.system import ENERGY
 
 SOFT = {"k_n": 2e5, "friction": 0.5, "xi": 0.0}
@@ -192,7 +192,7 @@ def test_friction_gives_nothing_where_shear_springs_gain_as_lines_are_handed_ove
 
     They lose some per cent of the gain in moving to their places.
     """
-    honest, gained = encounters.hand_over, []
+    honest, gained = contact_search.hand_over, []
 
     def stretched(new, *others):
         honest(new, *others)
@@ -201,7 +201,7 @@ def test_friction_gives_nothing_where_shear_springs_gain_as_lines_are_handed_ove
             new.rows["grip"] *= 1.05
             gained.append((1.05**2 - 1) * held)
 
-    monkeypatch.setattr(encounters, "hand_over", stretched)
+    monkeypatch.setattr(contact_search, "hand_over", stretched)
     masonry = cube_on_ground(in_space, **SOFT | {"k_n": 2e6}, k_s=2e5)
     velocity = [(2.0, 0.0, 0.0, 0.0, 0.0, 0.0) if in_space else (2.0, 0.0, 0.0)]
     run = mr.solve_explicit(mr.MasonryCase(masonry, 0.2, velocity=velocity), timestep=5e-4, ledger=True)
@@ -214,11 +214,11 @@ def test_friction_gives_nothing_where_shear_springs_gain_as_lines_are_handed_ove
 @pytest.mark.parametrize(("share", "fails"), [(0.99, False), (1.01, True)])
 def test_what_wedged_springs_hold_counts_as_energy_that_there_was(share, fails):
     """A thousandth of it may appear, as of what moves: an arch that is wedged holds far more than moves in it."""
-    looks = rows(ENERGY, 3, elastic=[3e6, 4e6, 3.9e6], kinetic=[0.0, 0.0, share * 4e3])
+    checks = rows(ENERGY, 3, elastic=[3e6, 4e6, 3.9e6], kinetic=[0.0, 0.0, share * 4e3])
     run = SimpleNamespace(
         energy=np.zeros(1),
-        looked=np.arange(3.0),
-        samples=SimpleNamespace(looks=looks),
+        checked=np.arange(3.0),
+        samples=SimpleNamespace(checks=checks),
         above_rest=lambda energy: energy["kinetic"],
         scene=SimpleNamespace(rest_energies=np.zeros(3)),
         rounding=0.0,

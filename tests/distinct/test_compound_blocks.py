@@ -7,7 +7,7 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.search import encounters
+from mjrock.distinct.search import contact_search
 
 
 def in_space(block):
@@ -63,9 +63,9 @@ def drawn_at(masonry):
     """Where the finder of a masonry finds its blocks as they are drawn, in the order of the places."""
     from mjrock.distinct.setup import setup_of
 
-    met = setup_of(mr.MasonryCase(masonry, 0.1, settled=False), None, None).encounters
+    met = setup_of(mr.MasonryCase(masonry, 0.1, settled=False), None, None).search
     every = np.ones(met.count, dtype=bool)
-    found = met.finder.found(met.reach.start, np.full(met.count, 1e-3), every, np.zeros(0, dtype=np.int64))
+    found = met.finder.found(met.limits.start, np.full(met.count, 1e-3), every, np.zeros(0, dtype=np.int64))
     columns = np.column_stack([found.place, found.normal, found.gap, found.share, found.area])
     return columns[np.lexsort(np.round(columns, 9).T[::-1])]
 
@@ -92,7 +92,7 @@ def test_places_are_those_of_a_block_that_is_not_cut(turn, points, cuts):
 def test_a_joint_of_an_l_that_is_handed_over_keeps_force_moment_and_energy(turn, points, monkeypatch):
     """It slides, and its parts press more at one end. Its joint has no line at the cut of its bottom."""
     unit, seen = mr.Compound([box(0, 0.2, 0, 0.8), box(0.2, 0.9, 0, 0.2)], name="L"), []
-    hand_over = encounters.hand_over
+    hand_over = contact_search.hand_over
 
     def watched(new, found, gone, *rest):
         hand_over(new, found, gone, *rest)
@@ -100,7 +100,7 @@ def test_a_joint_of_an_l_that_is_handed_over_keeps_force_moment_and_energy(turn,
             force = lines.rows["k"] * lines.depth
             seen.append((force.sum(), force @ lines.at[:, 0], 0.5 * force @ lines.depth))
 
-    monkeypatch.setattr(encounters, "hand_over", watched)
+    monkeypatch.setattr(contact_search, "hand_over", watched)
     masonry = mr.Masonry([turn(GROUND), turn(unit)], k_n=1e7, k_s=5e6, friction=0.1, xi=0.05, points=points)
     velocity = np.zeros((1, 6 if masonry.in_space else 3))
     velocity[0, 0] = 1.0
@@ -125,7 +125,7 @@ def test_overlap_counts_every_part():
 
     u = mr.Compound([box(0, 1, 0, 2), box(2, 3, 0, 2), box(0, 3, 2, 3)], name="U")
     masonry = mr.Masonry([GROUND, u, box(4, 5, 0, 1, name="beside")], k_n=1e8)
-    encounters = setup_of(mr.MasonryCase(masonry, 0.1, settled=False), None, None).encounters
+    encounters = setup_of(mr.MasonryCase(masonry, 0.1, settled=False), None, None).search
     finder = encounters.finder
     assert finder.volumes[1] == pytest.approx(7 * 2 * finder._half)
     assert [list(finder.parts_of(i)) for i in range(3)] == [[0], [1, 2, 3], [4]]

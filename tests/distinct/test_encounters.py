@@ -10,7 +10,7 @@ from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.search.encounters import Encounters, in_shear
+from mjrock.distinct.search.contact_search import ContactSearch, in_shear
 from mjrock.distinct.setup import setup_of
 
 TABLE = box(-1, 0, 0, 1, name="table")
@@ -168,13 +168,13 @@ def test_a_soft_place_that_presses_stays_soft(monkeypatch):
 
     def stable(self, found, *others):
         if pressed:
-            kept.append(self.met.share[self.met.pair == pressed[0]].max(initial=0.0))
+            kept.append(self.state.share[self.state.pair == pressed[0]].max(initial=0.0))
         pressing = found.gap < 0
         if pressing.any() and not pressed:
             pressed.append(int(self._numbers(found)[pressing][0]))
         return np.full(len(found.gap), 1.0 if pressed else 0.1)
 
-    monkeypatch.setattr(Encounters, "_stable", stable)
+    monkeypatch.setattr(ContactSearch, "_stable", stable)
     masonry = mr.Masonry([GROUND, box(-3, 3, 0, 0.5), box(-0.1, 0.1, 0.501, 0.6)], k_n=1e8, friction=0.1, xi=0.1)
     mr.solve_explicit(mr.MasonryCase(masonry, 0.3, velocity=[(0, 0, 0), (1.0, 0, 0)], settled=False))
     assert kept[:5] == [0.1] * 5  # until it bounces off
@@ -188,7 +188,7 @@ def test_a_block_with_a_mass_beside_its_centroid_is_searched_where_it_turns_to()
     rest, angle = setup.scene.bodies.rest[0], 0.5
     assert rest[1] > 0.25
     setup.system.bodies["angle"] = angle
-    posed = setup.encounters.finder.posed(setup.encounters.motion(setup.system).poses)
+    posed = setup.search.finder.posed(setup.search.motion(setup.system).poses)
     cos, sin = math.cos(angle), math.sin(angle)
     expected = rest + (masonry.blocks[1].corners - rest) @ np.array([(cos, -sin), (sin, cos)])
     np.testing.assert_allclose(posed.corners[posed.corner[1] :][:4, ::2], expected, atol=1e-12)

@@ -46,9 +46,9 @@ def flying(d, lines=0):
     return whole._replace(ground=ground(d), supports=no_supports(d))
 
 
-def room(whole, count, ledger=True, looks=2, groups=3):
+def room(whole, count, ledger=True, checks=2, groups=3):
     account = Books.empty(whole, groups)
-    return account, Samples.room(count, whole, account, ledger=ledger, looks=looks)
+    return account, Samples.room(count, whole, account, ledger=ledger, checks=checks)
 
 
 def clock(d, stop, **more):
@@ -81,8 +81,8 @@ def test_bodies_in_flight_have_the_motion_of_weight_and_ground(d):
     which = [0, 2] if d == 2 else [0, 1, 2]
     place, velocity = whole.bodies["place"].copy(), VELOCITY[:, which]
     spins = whole.bodies["spin"].copy()
-    account, samples = room(whole, count, looks=5)
-    ended = loop.make_steps(whole, account, samples, clock(d, count, last=count - 1, look=2), whole.axes)
+    account, samples = room(whole, count, checks=5)
+    ended = loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1, check=2))
     assert ended == (count, count, False)
     up = np.eye(d)[-1]
     before = velocity
@@ -103,7 +103,7 @@ def test_bodies_in_flight_have_the_motion_of_weight_and_ground(d):
     np.testing.assert_allclose(samples.velocity[:count, :, d:], np.tile(own, (count, 1, 1)), rtol=1e-10)
     np.testing.assert_allclose(total(samples, count), total(samples, 1)[0], rtol=1e-12)
     for name in samples.energy.dtype.names:
-        np.testing.assert_array_equal(samples.looks[name], samples.energy[name][:count:2])
+        np.testing.assert_array_equal(samples.checks[name], samples.energy[name][:count:2])
 
 
 @BOTH
@@ -111,7 +111,7 @@ def test_a_run_goes_on_from_a_step_before(d):
     """Its velocities are half that step before the pose, and the ground has moved the bodies since."""
     whole, before, pushed = flying(d), 0.004, (0.3, -0.7, 0.5)[:d]
     velocity, (account, samples) = whole.bodies["velocity"].copy(), room(whole, 1)
-    loop.make_steps(whole, account, samples, clock(d, 1, before=before, pushed=pushed), whole.axes)
+    loop.advance.py_func(whole, account, samples, clock(d, 1, before=before, pushed=pushed))
     changed = -moved(d, 0.5 * H) - 0.5 * before * np.array(pushed) - G * 0.5 * (before + H) * np.eye(d)[-1]
     np.testing.assert_allclose(whole.bodies["velocity"], velocity + changed, rtol=1e-12)
     np.testing.assert_allclose(samples.velocity[0, :, :d], velocity + 0.5 * changed, rtol=1e-12)
@@ -119,15 +119,15 @@ def test_a_run_goes_on_from_a_step_before(d):
 
 @BOTH
 def test_a_run_in_two_parts_is_that_in_one(d):
-    """Samples of every third step and of the last, looks of every second one and of the last."""
+    """Samples of every third step and of the last, checks of every second one and of the last."""
     runs, numbers = [], []
     for parts in ([8], [4, 8], [1, 2, 3, 5, 8]):
         whole = flying(d)
-        account, samples = room(whole, 4, looks=6)
+        account, samples = room(whole, 4, checks=6)
         step = row = 0
         for stop in parts:
-            options = {"step": step, "row": row, "every": 3, "look": 2, "last": 7}
-            step, row, ended = loop.make_steps(whole, account, samples, clock(d, stop, **options), whole.axes)
+            options = {"step": step, "row": row, "every": 3, "check": 2, "last": 7}
+            step, row, ended = loop.advance.py_func(whole, account, samples, clock(d, stop, **options))
             assert not ended
             numbers.append((step, row))
         runs.append(samples)
@@ -135,27 +135,27 @@ def test_a_run_in_two_parts_is_that_in_one(d):
     for run in runs[1:]:
         np.testing.assert_array_equal(run.pose[:4], runs[0].pose[:4])
         np.testing.assert_array_equal(run.energy[:4], runs[0].energy[:4])
-        np.testing.assert_array_equal(run.looks, runs[0].looks)
+        np.testing.assert_array_equal(run.checks, runs[0].checks)
     whole = flying(d)
     account, all_samples = room(whole, 8)
-    loop.make_steps(whole, account, all_samples, clock(d, 8, last=7), whole.axes)
+    loop.advance.py_func(whole, account, all_samples, clock(d, 8, last=7))
     np.testing.assert_array_equal(runs[0].pose[:4], all_samples.pose[[0, 3, 6, 7]])
     np.testing.assert_array_equal(runs[0].energy[:4], all_samples.energy[[0, 3, 6, 7]])
-    np.testing.assert_array_equal(runs[0].looks["kinetic"][:5], all_samples.energy["kinetic"][[0, 2, 4, 6, 7]])
+    np.testing.assert_array_equal(runs[0].checks["kinetic"][:5], all_samples.energy["kinetic"][[0, 2, 4, 6, 7]])
 
 
 @BOTH
-def test_a_look_leaves_the_samples_as_they_are(d):
+def test_a_check_leaves_the_samples_as_they_are(d):
     """That of the fifth step, after the sample of the fourth one."""
     runs = []
-    for options in ({"every": 3, "look": 2}, {"every": 3}):
+    for options in ({"every": 3, "check": 2}, {"every": 3}):
         whole = flying(d)
-        account, samples = room(whole, 2, looks=3)
-        loop.make_steps(whole, account, samples, clock(d, 6, **options), whole.axes)
+        account, samples = room(whole, 2, checks=3)
+        loop.advance.py_func(whole, account, samples, clock(d, 6, **options))
         runs.append(samples)
     for one, other in zip(runs[0][:3], runs[1][:3], strict=True):
         np.testing.assert_array_equal(one[:2], other[:2])
-    assert (runs[0].looks["kinetic"] != 0).all()
+    assert (runs[0].checks["kinetic"] != 0).all()
 
 
 @BOTH
@@ -163,7 +163,7 @@ def test_a_run_ends_where_a_body_is_astray(d):
     whole = flying(d)
     whole.bodies["velocity"][1, -1] = 1e8
     account, samples = room(whole, 5)
-    assert loop.make_steps(whole, account, samples, clock(d, 5, last=4), whole.axes) == (1, 2, True)
+    assert loop.advance.py_func(whole, account, samples, clock(d, 5, last=4)) == (1, 2, True)
 
 
 @pytest.mark.parametrize(("lost", "astray"), [(0.99e6, False), (1e6, True), (-1.1e6, True), (math.nan, True)])
@@ -189,7 +189,7 @@ def test_a_motion_is_slowed_down_as_it_is_asked_to(d, drag, local):
     whole = flying(d)._replace(ground=Ground.of(None))
     velocity = whole.bodies["velocity"].copy()
     account, samples = room(whole, 4)
-    loop.make_steps(whole, account, samples, clock(d, 4, drag=drag, local=local), whole.axes)
+    loop.advance.py_func(whole, account, samples, clock(d, 4, drag=drag, local=local))
     for n in range(4):
         kick = H if n else 0.5 * H
         weight = -G * (1 + local * np.sign(velocity[:, -1]))
@@ -242,7 +242,7 @@ def test_the_energy_of_bodies_that_strike_and_slide_is_that_of_the_accounts(d, f
     """Bodies fall on a support that moves and rub on it; or one on the other one. What the touches leave is small."""
     (whole, count), names = (striking(d, face=face, **law), 16), ("kinetic", "elastic", "friction")
     account, samples = room(whole, count)
-    loop.make_steps(whole, account, samples, clock(d, count, last=count - 1), whole.axes)
+    loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1))
     ledger, (kinetic, elastic, friction) = total(samples, count), (samples.energy[name][:count].max() for name in names)
     np.testing.assert_allclose(ledger, ledger[0], rtol=0, atol=1e-8 * kinetic)
     assert elastic > 0.1
@@ -258,11 +258,11 @@ def test_what_friction_takes_is_kept_where_there_is_a_ledger_or_a_support(d, led
     whole.lines["support"], whole.lines["group"] = -1, 0
     whole = whole._replace(supports=no_supports(d))
     account, samples = room(whole, 9, ledger=ledger, groups=1)
-    loop.make_steps(whole, account, samples, clock(d, 9, last=8), whole.axes)
+    loop.advance.py_func(whole, account, samples, clock(d, 9, last=8))
     assert (samples.energy["friction"][8] > 0.1) == ledger
     other = striking(d)
     account, samples = room(other, 9, ledger=False)
-    loop.make_steps(other, account, samples, clock(d, 9, last=8), other.axes)
+    loop.advance.py_func(other, account, samples, clock(d, 9, last=8))
     assert samples.energy["friction"][8] > 0.1
 
 
@@ -282,7 +282,7 @@ def test_links_act_and_are_booked_at_the_time_of_the_pose(d):
     whole = whole._replace(links=numbered((Actuators(drive, drives),)))
     whole.bodies["place"] = 0.0
     account, samples = room(whole, count)
-    loop.make_steps(whole, account, samples, clock(d, count, last=count - 1), whole.axes)
+    loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1))
     pose = samples.pose[:count, 0, 0]
     pulled = samples.pulled[:count, 0]
     target = np.interp(H * np.arange(count), [0.0, 0.1, 0.3], history[:, 0])
@@ -307,7 +307,7 @@ def test_a_tie_breaks_when_a_body_has_fallen_so_far(d):
     if d == 3:
         whole.bodies["momentum"][1] = 0.0
     account, samples = room(whole, count)
-    loop.make_steps(whole, account, samples, clock(d, count, last=count - 1), whole.axes)
+    loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1))
     fallen = -samples.pose[:count, 1, d - 1]
     broken = np.interp(1.0 / 300.0 + 0.05, fallen, H * np.arange(count))
     np.testing.assert_allclose(tie[0].broken, broken, atol=1e-4)

@@ -9,8 +9,8 @@ from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.search.encounters import Encounters
-from mjrock.distinct.search.looking import PASSED
+from mjrock.distinct.search.constants import VALID_APPROACH
+from mjrock.distinct.search.contact_search import ContactSearch
 
 SPEEDS = np.linspace(0.4, 4.0, 20)
 
@@ -44,14 +44,14 @@ def thrown_both(speed):
 @pytest.mark.parametrize("number", among(range(20), 3))
 def test_a_block_thrown_off_a_table_moves_as_its_prism_in_space(number, monkeypatch):
     """Where both are looked at in every step. What is left is rounding, which grows while an edge chatters."""
-    begun = Encounters.begun
+    begun = ContactSearch.begun
 
     def begun_to_look(self, supports):
         often = copy(self)
-        often.reach = self.reach._replace(look=1e-3)
+        often.limits = self.limits._replace(interval=1e-3)
         return begun(often, supports)
 
-    monkeypatch.setattr(Encounters, "begun", begun_to_look)
+    monkeypatch.setattr(ContactSearch, "begun", begun_to_look)
     assert thrown_both(SPEEDS[number])[-1].max() < 1e-4
 
 
@@ -65,7 +65,7 @@ def test_a_block_and_its_prism_part_by_the_way_that_places_serve_for(number):
     impulse = np.maximum(velocity[:, 1] - velocity[over, 1] + mr.GRAVITY * (t - t[over]), 0.0)
     impulse[:over] = 0.0
     half, inertia = 0.5 * np.hypot(0.5, 0.3), (0.5**2 + 0.3**2) / 12
-    turned = np.cumsum(2 * PASSED * half * impulse / inertia) * 2e-3 + 1e-4
+    turned = np.cumsum(2 * VALID_APPROACH * half * impulse / inertia) * 2e-3 + 1e-4
     assert (apart[:, 2] < turned).all()
     assert (apart[:, :2] < half * turned[:, None]).all()
 

@@ -9,7 +9,7 @@ from masonry_blocks import box
 from wheels import RADIUS, rolling, slope_of, wheel_on
 
 import mjrock as mr
-from mjrock.distinct.search import encounters
+from mjrock.distinct.search import contact_search
 
 SIDES = range(5, 25)
 BEHIND = (0.5, 5.0, 50.0)
@@ -96,5 +96,5 @@ def test_a_joint_ends_before_the_next_side_of_a_polygon_lands(sides):
         masonry = mr.Masonry([ground, blocks[1]], points=2)
         width = sum(joint.width for joint in masonry.joints)
         standing = mr.MasonryCase(masonry, 1.0).standing
-        np.testing.assert_allclose(encounters._rolled(standing), 1 - math.cos(math.pi / sides), rtol=1e-9)
+        np.testing.assert_allclose(contact_search._rolled(standing), 1 - math.cos(math.pi / sides), rtol=1e-9)
         assert width == pytest.approx(2 * RADIUS * math.sin(math.pi / sides))

@@ -44,6 +44,22 @@ def test_bodies_are_where_the_answer_has_them(column):
             np.testing.assert_allclose(body.xquat, place[3:], atol=1e-12)
 
 
+def test_a_plain_model_replays_an_answer_and_goes_on_when_blocks_have_fallen(column):
+    """Its free joints are where bodies are, and nothing stops what lies on its side."""
+    path, answer = column[0].with_name("plain.xml"), column[2]
+    path.write_text(mr.mjcf_of(answer.case, None, 1e-3, collisions=True))
+    replay = Replay(load(path), read_motion(load(path), column[1]))
+    replay.advance(answer.t[60] + 1e-9)
+    rest = answer.case.masonry.centroids[1:]
+    np.testing.assert_allclose(replay.data.xpos[1:], rest + answer.pose[60, :, :3], atol=1e-9)
+    np.testing.assert_allclose(replay.data.xquat[1:], answer.pose[60, :, 3:], atol=1e-9)
+    replay.advance(1.0)
+    replay.data.qvel[-3:] = (0.0, 5.0, 0.0)
+    replay.advance(0.01)
+    assert replay.state == "simulation"
+    assert not replay.is_broken
+
+
 def test_simulation_goes_on_from_the_end_with_its_velocity(column):
     model = load(column[0])
     replay, answer = Replay(model, read_motion(model, column[1])), column[2]

@@ -135,7 +135,7 @@ def test_the_stamp_of_a_module_is_that_of_what_it_imports(tmp_path):
     assert edited("engine/pace.py") == {"engine/loop.py"}
     assert "engine/loop.py" in edited("geometry/frames.py")  # which it reaches by others
     assert edited("compiled.py") == {"engine/loop.py", "theory/arcs.py", "distinct/loop.py"}
-    assert edited("distinct/search/encounters.py") <= {"distinct/loop.py"}
+    assert edited("distinct/search/contact_search.py") <= {"distinct/loop.py"}
 
 
 @pytest.mark.slow

@@ -178,7 +178,7 @@ CANNOT_BE = (
     (lambda: plotting.tornado(plotting.single(lambda ax: ax).axes[0], 2), "found = 2 of type int is not a Sens"),
     (lambda: plotting.tornado(2, ax=2), "ax = 2 of type int is not a Axes"),
     (lambda: plotting.save(3, "x.png"), "figure = 3 of type int is not a Figure"),
-    (lambda: plotting.save(plotting.single(lambda ax: ax), "0.5"), r"path = '0.5' ends in none of .*\.png"),
+    (lambda: plotting.save(plotting.single(lambda ax: ax), "0.5"), r"path = '0.5' does not end in .*\.png"),
     (lambda: plotting.thrust(answer(), ax=1), "ax = 1 of type int is not a Axes"),
     (lambda: plotting.animate(COLUMN, "a.gif"), "response = .* is not a Response"),
     (lambda: plotting.blocks(COLUMN, ax=1), "ax = 1 of type int is not a Axes"),

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import mujoco
 import pytest
 
 import mjrock as mr
@@ -58,6 +59,7 @@ WRITES = {
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
     "collapse": {"collapse.csv", "collapse.txt"},
     "plain_models": {f"plain_models.{ending}" for ending in ("png", "csv", "txt")},
+    "in_the_viewer": {"viewer.png"},
     "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
     "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
@@ -233,8 +235,17 @@ LONG = {
     "collapse",
     "plain_models",
     "second_opinion",
+    "in_the_viewer",
 }
 """Scripts that take a while even with --quick."""
+
+
+def require_pictures_of_mujoco():
+    """Skip where MuJoCo cannot draw without a display."""
+    try:
+        mujoco.Renderer(mujoco.MjModel.from_xml_string("<mujoco/>"), 8, 8).close()
+    except Exception as error:
+        pytest.skip(f"MuJoCo does not draw here: {error}")
 
 
 @pytest.mark.parametrize(
@@ -243,6 +254,8 @@ LONG = {
 def test_quick(name, tmp_path, capsys):
     if name in ("opened_in_vtk", "drawn_in_space"):
         pytest.importorskip("pyvista", reason="the extra docs is not installed")
+    if name == "in_the_viewer":
+        require_pictures_of_mujoco()
     main_of(name)(["--quick", "--out", str(tmp_path / "deep" / "er")])
     written = {p.name for p in (tmp_path / "deep" / "er").iterdir() if p.suffix != ".lock"}
     assert written == WRITES[name]

@@ -94,7 +94,7 @@ def test_mp4_without_ffmpeg(tmp_path, monkeypatch):
         ({"dpi": 1}, "dpi = 1 is outside"),
         ({"title": 3}, "title = 3 of type int"),
         ({"speed": 0.001, "fps": 120}, "32501 frames; the valid range is 1 to 20000; raise speed"),
-        ({"path": "rock.avi"}, "path = 'rock.avi' ends in none of .gif, .mp4, .html"),
+        ({"path": "rock.avi"}, "path = 'rock.avi' does not end in .gif, .mp4 or .html"),
         ({"response": 3}, "response = 3 of type int is not a Response"),
     ],
 )

@@ -171,7 +171,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
     for p in range(len(lines)):
         line = lines[p]
         if line.k == 0 and line.margin == math.inf:
-            continue  # a law of its joint holds it, or it is handed over, see `encounters`
+            continue  # a law of its joint holds it, or it is handed over, see `contact_search`
         meet = meeting(system, line)
         if 0 <= meet.gap < TURNED_OVER:
             line.widest = max(line.widest, 0.0 if meet.past else meet.gap)

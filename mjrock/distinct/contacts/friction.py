@@ -121,13 +121,13 @@ def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
 
 
 @inlined
-def yielding(body: Row, way: Vector) -> float:
+def inverse_mass_along(body: Row, way: Vector) -> float:
     """Velocity that a unit impulse along a unit vector gives to the centroid of a body along it [1/kg].
 
     It is not quite zero of a body that a guide holds, so that it can be divided by.
     """
-    light: float = dot(way, times(read(body.inverse_mass), way))
-    return light if light * body.mass > HELD else HELD / body.mass
+    inverse_mass: float = dot(way, times(read(body.inverse_mass), way))
+    return inverse_mass if inverse_mass * body.mass > HELD else HELD / body.mass
 
 
 @inlined
@@ -142,13 +142,13 @@ def list_way(
     put(row.way, way)
     put(row.lever, lever)
     put(row.spin, spin)
-    compliance = yielding(body, way) + dot(lever, spin)
+    compliance = inverse_mass_along(body, way) + dot(lever, spin)
     if on_face:
         face, lever = system.bodies[line.face], moment(face_arm, way)
         spin = spin_from_many(face, lever)
         put(row.lever_on_face, lever)
         put(row.spin_of_face, spin)
-        compliance += yielding(face, way) + dot(lever, spin)
+        compliance += inverse_mass_along(face, way) + dot(lever, spin)
     row.compliance = compliance
 
 
@@ -231,32 +231,32 @@ def strike(system: System, first: int, impulses: Vector) -> None:
 
 
 @inlined
-def impulses_of(system: System, first: int, axes: tuple[int, ...]) -> Vector:
+def impulses_of(system: System, first: int, like: Vector) -> Vector:
     """The impulses along the ways of a line [N s]."""
-    if len(axes) == 2:
+    if len(like) == 2:
         return (system.ways[first].impulse,)
     return system.ways[first].impulse, system.ways[first + 1].impulse
 
 
 @inlined
-def begin(system: System, line: Row, first: int, held: float, kick: float, axes: Vector) -> None:
+def begin(system: System, line: Row, first: int, held: float, kick: float, like: Vector) -> None:
     """Let the ways of a line start with the friction of the last step, as far as the face holds it now [N]."""
     limit: float = kick * held
     grip = scaled(kick, read(line.grip))
     if line.face >= 0:
         grip = in_world(system.bodies[line.face], grip)
-    if len(axes) == 2:
+    if len(like) == 2:
         impulses = shortened(grip, limit)
     else:
         a, b = system.ways[first], system.ways[first + 1]
         impulses = shortened((dot(read(a.way), grip), dot(read(b.way), grip)), limit)
-    for i in range(len(axes) - 1):
+    for i in range(len(like) - 1):
         row = system.ways[first + i]
         row.impulse, row.limit = impulses[i], limit
 
 
 @inlined
-def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
+def stopping(system: System, first: int, like: Vector) -> Vector:
     """The impulses along its ways that stop the slip of a line in the middle of the step as far as its face can [N s].
 
     Its slip at the pose is then the drift before the forces act, and less the drift after them: a line that sticks
@@ -264,7 +264,7 @@ def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
     """
     a = system.ways[first]
     slip, limit = slip_along(system, a) + a.drift, a.limit
-    if len(axes) == 2:
+    if len(like) == 2:
         return shortened((a.impulse - slip * a.stiffness,), limit)
     b = system.ways[first + 1]
     other = slip_along(system, b) + b.drift
@@ -280,46 +280,47 @@ def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
 
 
 @inlined
-def stop(system: System, first: int, axes: tuple[int, ...]) -> float:
+def stop(system: System, first: int, like: Vector) -> float:
     """Stop the slip of one line as far as its face can. Returns by how much its impulses have changed [N s]."""
-    impulses = stopping(system, first, axes)
-    change = minus(impulses, impulses_of(system, first, axes))
+    impulses = stopping(system, first, like)
+    change = minus(impulses, impulses_of(system, first, like))
     strike(system, first, change)
     system.ways[first].impulse = impulses[0]
-    if len(axes) == 2:
+    if len(like) == 2:
         return abs(change[0])
     system.ways[first + 1].impulse = impulses[1]
     return max(abs(change[0]), abs(change[1]))
 
 
 @inlined
-def stick(system: System, active: Integers, count: int, kick: float, axes: tuple[int, ...]) -> None:
+def stick(system: System, active: Integers, count: int, kick: float) -> None:
     """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s].
 
     Lines that follow each other share their bodies, so that each would wait for the one before it: a sweep takes every
     third line, then the next ones.
     """
-    each, largest = len(axes) - 1, 0.0
+    like = read(system.bodies[0].place)
+    each, largest = len(like) - 1, 0.0
     for i in range(count):
         largest = max(largest, system.ways[each * i].limit)
-        strike(system, each * i, impulses_of(system, each * i, axes))
+        strike(system, each * i, impulses_of(system, each * i, like))
     for sweep in range(SWEEPS):
         changed = 0.0
         for start in range(STRIDE):
             for turn in range(start, count, STRIDE):
                 i = turn if sweep % 2 else count - 1 - turn
-                changed = max(changed, stop(system, each * i, axes))
+                changed = max(changed, stop(system, each * i, like))
         if changed <= SETTLED * largest:
             break
     for i in range(count):
-        keep_rigid(system, system.lines[active[i]], each * i, kick, axes)
+        keep_rigid(system, system.lines[active[i]], each * i, kick, like)
 
 
 @inlined
-def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[int, ...]) -> None:
+def keep_rigid(system: System, line: Row, first: int, kick: float, like: Vector) -> None:
     """Keep the friction of a line that sticks rigidly for the next step [N], and what it turns the bodies by."""
-    impulses = impulses_of(system, first, axes)
-    if len(axes) == 2:
+    impulses = impulses_of(system, first, like)
+    if len(like) == 2:
         line.grip[0] = impulses[0] / kick
         return
     a, b = system.ways[first], system.ways[first + 1]
@@ -334,11 +335,11 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[i
 
 
 @inlined
-def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]) -> tuple[float, float]:
+def book_rubbing(system: System, books: Books, count: int) -> tuple[float, float]:
     """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
     the supports put in through it. Returns the halves of both before the pose [J]."""
     totals, rubbed, put_in = books.totals[0], 0.0, 0.0
-    for i in range((len(axes) - 1) * count):
+    for i in range((len(read(system.bodies[0].place)) - 1) * count):
         row = system.ways[i]
         totals.friction -= 0.5 * row.impulse * (row.slip + slip_along(system, row))
         work = row.impulse * carried(row, system.supports, read(row.way))

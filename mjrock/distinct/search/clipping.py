@@ -16,6 +16,7 @@ from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
 from ...quantities import Array
 from ..rows import Row, Rows, integers, numbers, vectors
+from .constants import ON_EDGE, ONE_PLACE, PARALLEL, UPRIGHT
 from .solids import Solids, triple
 
 PLACE = np.dtype(
@@ -23,13 +24,6 @@ PLACE = np.dtype(
 )
 """A place: block of the face, other block, where, normal out of the face, gap [m], share, area of the part [m2], and
 number of the pair of sides, see `sides_between`."""
-OUTSIDE = 1e-9
-"""Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
-SAME = 1e-6
-"""Distance of two places that are one, over the length of an edge [-]."""
-PARALLEL, UPRIGHT = 1e-4, 0.3
-"""Sine of the angle of two edges, and cosine of that between their common normal and that of the face, below which they
-do not meet as edges [-]."""
 
 
 @inlined
@@ -114,7 +108,7 @@ def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
         length = length_of(way)
         extent = max(extent, length)
         way = scaled(1 / length, way)
-        count = cut(polygon, count, way, dot(way, a), OUTSIDE * extent, further)
+        count = cut(polygon, count, way, dot(way, a), ON_EDGE * extent, further)
     return count
 
 
@@ -124,7 +118,7 @@ def parted(polygon: Array, count: int) -> int:
     left = 0
     for i in range(count):
         at, last = triple(polygon, i), triple(polygon, left - 1 if left else count - 1)
-        if length_of(minus(at, last)) > OUTSIDE * (length_of(at) + length_of(last)):
+        if length_of(minus(at, last)) > ON_EDGE * (length_of(at) + length_of(last)):
             put(polygon[left], at)
             left += 1
     return left
@@ -178,7 +172,7 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
     for i in range(solids.first[over], solids.first[over + 1]):
         corner = corner_of(solids, i)
         along = minus(next_corner(solids, over, i), corner)
-        if length_of(minus(at, corner)) < SAME * length_of(along):
+        if length_of(minus(at, corner)) < ONE_PLACE * length_of(along):
             gap = dot(normal, minus(at, corner_of(solids, solids.first[face])))
             write_place(place, blocks, at, normal, gap)
             return
@@ -190,7 +184,7 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
         corner = corner_of(solids, i)
         own, off = minus(next_corner(solids, face, i), corner), minus(at, corner)
         off = minus(off, scaled(dot(off, normal), normal))
-        if length_of(off) < SAME * length_of(own):
+        if length_of(off) < ONE_PLACE * length_of(own):
             normal = normal_of(solids, over)
             gap = dot(normal, minus(corner, corner_of(solids, solids.first[over])))
             write_place(place, (blocks[1], blocks[0]), corner, normal, gap)
@@ -228,7 +222,7 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count:
     area = area_of(room, corners)
     for i in range(corners):
         share = turn_at(room, corners, i)
-        if share > SAME:
+        if share > ONE_PLACE:
             if count < len(table):
                 meet(solids, faces, blocks, triple(room, i), table[count])
                 table[count].share, table[count].area = share, area

@@ -22,36 +22,22 @@ from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ..rows import Rows, rows
 from .clipping import PLACE, clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
+from .constants import (
+    AS_LARGE,
+    CANDIDATE_FACES,
+    EDGES_MEET,
+    FACES_MEET,
+    LARGER_FACE,
+    NOT_PARALLEL,
+    ON_ENDS,
+    SECOND_FACE,
+    SHALLOWER,
+    SHARE_OF_EDGES,
+)
 from .grid import lay_out
 from .pair_law import pair_number
 from .solids import Poses, Solids, parts_of, sides_of, triple, with_whole_sides
 
-EDGES = 0.8
-"""Overlap along the normal of two edges, over that along the best one of a face, below which the edges meet [-]."""
-ACROSS = 1e-3
-"""Sine of the angle of two edges below which there is no direction across both [-]."""
-FLUSH = -0.7
-"""Cosine of the angle between the normals of two faces up to which they meet as faces [-]."""
-SOUGHT = 0.06
-"""How much deeper than along the best face two blocks may overlap along one that comes into question, over the outline
-of a face [-]: about a third of the width of a unit in space."""
-LESS = 0.7
-"""Overlap at the places of a face that comes into question, over that of the best face, below which it is taken [-].
-Faces of two blocks that are nearly flush differ by the cosine of their angle, see `FLUSH`, and the best one stays."""
-LEAD = 1e-6
-"""By how much the other block may be less outside of a face, over how much longer its outline is than that of another
-face, for it to be taken [-]. The corners of the smaller one then lie over it."""
-HAIR = 1e-9
-"""How much farther, over its outline, a block must be outside of the face of the second block of a pair for this one to
-be taken [-]. So rounding does not decide between two that are equal."""
-ALIKE = 1e-6
-"""Relative difference up to which blocks are as large, and difference of heights over the smallest size up to which
-they are as high [-]."""
-ON_ENDS = 0.01
-"""Distance up to which a place outside of a block counts as inside, over the overlap there [-]. That of two prisms
-whose ends lie in one plane is on these ends, and rounding does not decide."""
-OF_EDGES = 0.25
-"""Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
 NONE = np.zeros(0, dtype=np.int64)
 """Numbers of no pairs."""
 
@@ -82,14 +68,14 @@ class Found(NamedTuple):
 
 
 class Near(NamedTuple):
-    """Which pairs are looked at.
+    """Which pairs are searched.
 
     Args:
         low, high: least and largest coordinates of each solid, what it reaches included [m], shape (solids, 3).
         order: the solids by their low ends along an axis, shape (solids,).
         axis: its number.
         reach: of each solid [m], shape (solids,).
-        watched, fixed: shape (solids,). One of two solids is watched, and one is free.
+        searched, fixed: shape (solids,). One of two solids is searched, and one is free.
         rank: of the block of each solid, shape (solids,). Of two with equal faces, or whose edges cross, the first has
             the normal.
         skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
@@ -102,7 +88,7 @@ class Near(NamedTuple):
     order: Integers
     axis: int
     reach: Array
-    watched: Flags
+    searched: Flags
     fixed: Flags
     rank: Integers
     skipped: Integers
@@ -143,22 +129,22 @@ class Finder:
         fresh._table, fresh._room = self._table.copy(), np.empty_like(self._room)
         return fresh
 
-    def found(self, poses: Poses, reach: Array, watched: Flags, skipped: Integers) -> Found:
-        """Where pairs of blocks of which one is watched are nearer than the sum of what they reach.
+    def found(self, poses: Poses, reach: Array, searched: Flags, skipped: Integers) -> Found:
+        """Where pairs of blocks of which one is searched are nearer than the sum of what they reach.
 
         Args:
             poses: of all blocks.
             reach: of each block [m], shape (blocks,).
-            watched: shape (blocks,).
+            searched: shape (blocks,).
             skipped: numbers of pairs of solids that are left out, increasing, see `between`.
         """
-        solids, reach, watched = self.posed(poses), reach[self.owner], watched[self.owner]
+        solids, reach, searched = self.posed(poses), reach[self.owner], searched[self.owner]
         low, high = (ends.reduceat(solids.corners, solids.corner[:-1]) for ends in (np.minimum, np.maximum))
         low, high = low - reach[:, None], high + reach[:, None]
         axis = int(np.ptp(low, axis=0).argmax())
         order, cells = np.argsort(low[:, axis]), self.points - 1
         pairs = skipped, self.jointed, np.column_stack([cells, np.ones_like(cells) if self.flat else cells])
-        near = Near(low, high, order, axis, reach, watched, self._fixed, self._rank[self.owner], *pairs)
+        near = Near(low, high, order, axis, reach, searched, self._fixed, self._rank[self.owner], *pairs)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = rows(PLACE, 2 * count)
         table, of_parts = self._table[:count], self.number.max() > 1
@@ -242,7 +228,7 @@ def steps_of(values: Array) -> Integers:
     """Values in steps: those that are alike have the same number, shape of the values."""
     order = np.argsort(values, kind="stable")
     steps = np.empty(len(values), dtype=np.int64)
-    steps[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > ALIKE)
+    steps[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > AS_LARGE)
     return steps
 
 
@@ -274,7 +260,7 @@ def find(solids: Solids, near: Near, table: Rows, room: Array) -> int:
             b = near.order[later]
             if near.low[b, near.axis] > near.high[a, near.axis]:
                 break
-            if not (near.watched[a] or near.watched[b]) or (near.fixed[a] and near.fixed[b]):
+            if not (near.searched[a] or near.searched[b]) or (near.fixed[a] and near.fixed[b]):
                 continue
             if solids.owner[a] == solids.owner[b]:
                 continue
@@ -317,16 +303,16 @@ def find_pair(
         return count
     if count + len(room) > len(table):
         return count + len(room)
-    least = best - SOUGHT * min(solids.extent[face], solids.extent[other_face])
+    least = best - CANDIDATE_FACES * min(solids.extent[face], solids.extent[other_face])
     longer = solids.extent[other_face] - solids.extent[face]
-    if other_apart + LEAD * longer - HAIR * solids.extent[face] > apart:
+    if other_apart + LARGER_FACE * longer - SECOND_FACE * solids.extent[face] > apart:
         face, blocks = other_face, (b, a)
     if best < 0:
         face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
         over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
-        if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FLUSH:
+        if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FACES_MEET:
             way, across = across_edges(solids, a, b)
-            if across > EDGES * gap:
+            if across > EDGES_MEET * gap:
                 return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
     whole = with_whole_sides(solids)
     if cells[0] > 1:
@@ -339,7 +325,9 @@ def find_pair(
 @inlined
 def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Rows, count: int) -> int:
     """Write a corner of a face that another block is near and does not lie over, as two that come together at their
-    corners: a place without a share, so that it is known when to look again. Returns how many places there are then."""
+    corners: a place without a share, so that it is known when to search again.
+
+    Returns how many places there are then."""
     corner = solids.first[face]
     for i in range(corner, solids.first[face + 1]):
         if corner_of(solids, i)[1] > corner_of(solids, corner)[1]:  # at the end of the prisms that is kept
@@ -371,7 +359,7 @@ def shallowest(
         most, middle = table[first].gap, read(table[first].at)
     slack = ON_ENDS * max(-most, 0.0)
     common = there and lies_in(solids, blocks[0], middle, slack) and lies_in(solids, blocks[1], middle, slack)
-    best, of_best, taken = face, blocks, LESS * most
+    best, of_best, taken = face, blocks, SHALLOWER * most
     for turn in range(2):
         block, other = blocks if turn == 0 else (blocks[1], blocks[0])
         for one in range(solids.face[block], solids.face[block + 1]):
@@ -453,7 +441,7 @@ def across_edges(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
         for j in range(solids.way[b], solids.way[b + 1]):
             normal = spun(triple(solids.ways, i), triple(solids.ways, j))
             size = length_of(normal)
-            if size < ACROSS:
+            if size < NOT_PARALLEL:
                 continue
             for sign in (1.0, -1.0):
                 way = scaled(sign / size, normal)
@@ -484,5 +472,5 @@ def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: f
         other, way = edge_towards(solids, blocks[1], scaled(-1.0, normal))
         share = dot(spun(minus(start, other), along), normal) / dot(spun(way, along), normal)
         write_place(table[count], blocks, plus(other, scaled(share, way)), normal, apart)
-        table[count].share, table[count].area = OF_EDGES, 0.0
+        table[count].share, table[count].area = SHARE_OF_EDGES, 0.0
     return count + 1

@@ -17,7 +17,6 @@ from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun
 from ...quantities import Array
 from ..rows import Row, Rows
 from .clipping import (
-    SAME,
     area_of,
     corner_of,
     distance_from,
@@ -32,6 +31,7 @@ from .clipping import (
     turn_at,
     write_place,
 )
+from .constants import ONE_PLACE
 from .solids import Solids, triple
 
 Quad = tuple[Vector, Vector, Vector, Vector]
@@ -52,7 +52,7 @@ def straightened(polygon: Array, count: int, room: Array) -> int:
     """Leave out the corners of a polygon where it goes straight on. Returns how many are left."""
     left = 0
     for i in range(count):
-        if turn_at(polygon, count, i) > SAME:
+        if turn_at(polygon, count, i) > ONE_PLACE:
             put(room[left], triple(polygon, i))
             left += 1
     for i in range(left):
@@ -173,7 +173,7 @@ def is_at_outline(solids: Solids, face: int, at: Vector) -> bool:
         corner = corner_of(solids, i)
         along = minus(next_corner(solids, face, i), corner)
         longest, nearest = max(longest, length_of(along)), min(nearest, distance_from(at, corner, along))
-    return nearest < SAME * longest
+    return nearest < ONE_PLACE * longest
 
 
 @inlined

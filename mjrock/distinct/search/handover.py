@@ -1,7 +1,7 @@
 """Handover: lines at places that were found, which take the place of those of their pair that are gone.
 
-The new lines of a pair start with no more force and energy than those before them had, so that a find puts no energy
-in, and each takes over the friction of those to which it is the nearest one.
+The new lines of a pair start with no more force and energy than those before them had, so that a search puts no
+energy in, and each takes over the friction of those to which it is the nearest one.
 """
 
 from __future__ import annotations
@@ -28,21 +28,9 @@ from ...problem.masonry.laws.joint_law import depth_of_energy, depth_of_force, n
 from ...quantities import Array, Integers
 from ..contacts.friction import shortened
 from ..rows import POINT, Row, Rows
+from .constants import AS_NEAR, FIRST_OPENING, REGAINED, SAME_NORMAL, SAME_PLACE
 from .finder import Found
 from .solids import Poses, changed
-
-BESIDE = 0.2
-"""Distance along the face of a place from a line of its pair within which it is the same, over the size of the smaller
-block [-]. Along the normal it may be as far as the blocks overlap."""
-ALIKE = 0.7
-"""Cosine of the angle between the normals of two places that are the same [-]."""
-REGAINED = 1.25
-"""Largest factor by which a find raises the force of a place [-]."""
-HAIR = 1e-9
-"""Opening at which a place begins that nothing presses at, over its overlap [-]. So it is not rounding that decides
-whether it has touched."""
-AS_NEAR = 1 + 1e-6
-"""Square of the distance of a place over that of the nearest one up to which it is as near [-]."""
 
 
 class Blocks(NamedTuple):
@@ -186,13 +174,13 @@ def pressed_at(line: Row, i: int, found: Found, gone: Lines, ends: tuple[int, in
     overlap: float = max(-found.gap[i], 0.0)
     like = read(line.normal)
     face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, like), vector(found.normal, i, like)
-    bound, best, least = (BESIDE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
+    bound, best, least = (SAME_PLACE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
     for j in range(ends[0], ends[1] if overlap > 0 else ends[0]):
         square = square_between(gone, j, at)
         if square < least:
             there, sense = place_of(gone.rows[j], face + other, blocks), 1.0 if other > face else -1.0
             deep = dot(normal, minus(there.at, at))
-            if square - deep * deep < bound and sense * there.sense * dot(normal, there.normal) > ALIKE:
+            if square - deep * deep < bound and sense * there.sense * dot(normal, there.normal) > SAME_NORMAL:
                 best, least = j, square
     pressed: float = max(overlap - gone.slack[best], 0.0) if best >= 0 else 0.0
     return pressed
@@ -201,7 +189,7 @@ def pressed_at(line: Row, i: int, found: Found, gone: Lines, ends: tuple[int, in
 @inlined
 def press(new: Lines, places: tuple[int, int], found: Found, gone: Lines, ends: tuple[int, int]) -> None:
     """Let the places of a pair press as much in all as the lines that are gone, and hold no more energy. A pair that
-    has lost force at a find gets it back at others, or blocks would sink into each other from find to find."""
+    has lost force in a search gets it back in others, or blocks would sink into each other from search to search."""
     force = energy = had = held = 0.0
     for j in range(ends[0], ends[1]):
         had += normal_force(gone.rows[j], -gone.depth[j], 0.0)
@@ -294,7 +282,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
     """Write the lines of places, and let them take over what the lines of their pair had that are gone.
 
     What presses nothing of the overlap of a place is written too. It is the overlap of a place that no line was near,
-    as long as it has it. So what a look has missed, or what touched at rest without a joint, puts no energy in. The
+    as long as it has it. So what a search has missed, or what touched at rest without a joint, puts no energy in. The
     places of a pair press as much in all as the lines before them where they can, and hold no more energy. Each line
     that is gone gives all that it has along its face to the nearest new ones, so that the forces of a pair stay.
 
@@ -315,7 +303,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
         press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
             overlap = max(-found.gap[i], 0.0)
-            new.slack[i] = overlap - new.depth[i] if new.depth[i] > 0 else (1 + HAIR) * overlap
+            new.slack[i] = overlap - new.depth[i] if new.depth[i] > 0 else (1 + FIRST_OPENING) * overlap
             write_line(new.rows[i], i, new.slack[i], found, blocks)
             put(new.at[i], place_of(new.rows[i], both, blocks).at)
         for j in range(ends[0], ends[1]):

@@ -13,26 +13,18 @@ from ...quantities import Array
 from ..setup import Setup
 from ..system import System
 from ..turning import set_rotations
-from .encounters import STABLE, Encounters
+from .constants import DEEPEST_PAIRS, FLUSH, MOST_SAMPLES, OF_STABLE_STEP, OVERLAP_WARNED_OF
+from .contact_search import ContactSearch
 from .pair_law import pair_number
 from .softening import unsoftened
 from .solids import Poses, Solids
-
-LOOKS = 200
-"""Most samples that are looked at."""
-DEEPEST = 16
-"""Pairs whose overlap is measured: those whose mean depth over their size is largest."""
-ROUNDING = 1e-12
-"""Distance within which faces of two blocks lie in one plane [m]."""
-DOUBTED = 0.01
-"""Share of a block from which on its overlap is warned of [-]."""
 
 
 def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float) -> float:
     """The largest share of a block that lies inside another at samples of a run [-], at most 200 of them.
 
-    All pairs are looked at, whether their joint is intact or not. Where no block has come near another one that it has
-    no intact joint with, nothing is looked at, and the answer is zero.
+    All pairs are searched, whether their joint is intact or not. Where no block has come near another one that it has
+    no intact joint with, nothing is searched, and the answer is zero.
 
     Args:
         setup: of the run.
@@ -44,23 +36,25 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
     Warns:
         UserWarning: of 1 % more than at the start, with the names of the two blocks, when, and what keeps them apart.
     """
-    encounters = setup.encounters
-    if encounters is None or not encounters.met.seen.watched.any():
+    search = setup.search
+    if search is None or not search.state.validity.searched.any():
         return 0.0
-    chosen = np.unique(np.linspace(0, len(t) - 1, min(LOOKS, len(t))).round().astype(int))
-    poses = {i: _posed(encounters, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
-    every, deepest = np.ones(encounters.count, dtype=bool), set[tuple[float, int, int, int]]()
+    chosen = np.unique(np.linspace(0, len(t) - 1, min(MOST_SAMPLES, len(t))).round().astype(int))
+    poses = {i: _posed(search, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
+    every, deepest = np.ones(search.count, dtype=bool), set[tuple[float, int, int, int]]()
     for i, there in poses.items():
-        found = encounters.finder.found(there, np.zeros(encounters.count), every, np.zeros(0, dtype=np.int64))
-        pairs, of = np.unique(pair_number(found.face, found.other, encounters.count), return_inverse=True)
-        blocks = np.array(np.divmod(pairs, encounters.count))
+        found = search.finder.found(there, np.zeros(search.count), every, np.zeros(0, dtype=np.int64))
+        pairs, of = np.unique(pair_number(found.face, found.other, search.count), return_inverse=True)
+        blocks = np.array(np.divmod(pairs, search.count))
         deep = np.bincount(of, weights=found.share * np.maximum(-found.gap, 0.0))
-        depth = deep / encounters.sizes[blocks].min(axis=0)
-        here = {(float(depth[j]), i, *map(int, blocks[:, j])) for j in np.argsort(-depth)[:DEEPEST] if depth[j] > 0}
-        deepest = set(heapq.nlargest(DEEPEST, deepest | here)) | {each for each in deepest | here if each[1] == 0}
+        depth = deep / search.sizes[blocks].min(axis=0)
+        here = {
+            (float(depth[j]), i, *map(int, blocks[:, j])) for j in np.argsort(-depth)[:DEEPEST_PAIRS] if depth[j] > 0
+        }
+        deepest = set(heapq.nlargest(DEEPEST_PAIRS, deepest | here)) | {each for each in deepest | here if each[1] == 0}
     worst, at_start, said = 0.0, 0.0, ""
     for _, i, a, b in deepest:
-        finder = encounters.finder
+        finder = search.finder
         solids, (ours, theirs) = finder.posed(poses[i]), (finder.parts_of(a), finder.parts_of(b))
         common = sum(common_volume(solids, one, other) for one in ours for other in theirs)
         share = common / float(finder.volumes[[a, b]].min())
@@ -68,10 +62,10 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
         if share > worst:
             names = case.blocks
             worst, said = share, f"{names[a]} and {names[b]} lie inside each other by {share:.1%} of the smaller one"
-            left = float(encounters.met.softest[[a, b]].max())
-            shorter = STABLE * unsoftened(left, h / STABLE, encounters.law.slowest)
+            left = float(search.state.least_share[[a, b]].max())
+            shorter = OF_STABLE_STEP * unsoftened(left, h / OF_STABLE_STEP, search.law.slowest)
             said += f" at {t[i]:.4g} s: {what_keeps_apart(share, left, shorter)}"
-    if worst > DOUBTED + at_start:
+    if worst > OVERLAP_WARNED_OF + at_start:
         warnings.warn(said, stacklevel=3)
     return worst
 
@@ -81,7 +75,7 @@ def what_keeps_apart(share: float, left: float, shorter: float) -> str:
 
     It falls at least as the root of the stiffness, of which the step has left a part, and a shorter one [s] leaves all.
     """
-    stiffer = left * (share / DOUBTED) ** 2
+    stiffer = left * (share / OVERLAP_WARNED_OF) ** 2
     joints = f"joints {stiffer:.2g} times as stiff"
     if left == 1:
         return f"{joints} keep blocks apart"
@@ -89,13 +83,13 @@ def what_keeps_apart(share: float, left: float, shorter: float) -> str:
     return f"{said} and {joints} keep blocks apart" if stiffer > 1 else f"{said} keeps blocks apart"
 
 
-def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: AnyCase) -> Poses:
+def _posed(search: ContactSearch, system: System, pose: Array, t: float, case: AnyCase) -> Poses:
     """Where all blocks are at a sample."""
     bodies, d = system.bodies.copy(), len(system.axes)
     bodies["place"] = pose[:, :d]
     set_rotations(bodies, pose)
     moved = np.concatenate([np.empty((0, d)), *(support.at(np.array([t])) for support in case.supports)])
-    return encounters.motion(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved))).poses
+    return search.motion(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved))).poses
 
 
 def common_volume(solids: Solids, a: int, b: int) -> float:
@@ -107,7 +101,7 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
             normal, polygon = solids.normals[face], face_corners(solids, face)
             for wall in range(solids.face[other], solids.face[other + 1]):
                 beyond = (polygon - face_corners(solids, wall)[0]) @ solids.normals[wall]
-                flush = np.abs(beyond).max(initial=0.0) < ROUNDING and normal @ solids.normals[wall] > 0
+                flush = np.abs(beyond).max(initial=0.0) < FLUSH and normal @ solids.normals[wall] > 0
                 # a face that two blocks share counts once
                 polygon = polygon[:0] if flush and block == b else polygon if flush else cut_off(polygon, beyond)
             if len(polygon):

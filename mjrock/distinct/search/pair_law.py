@@ -33,17 +33,10 @@ from ...scene.scene import Scene
 from ..limit import longest_step
 from ..rows import Rows, chosen, joined, rows
 from ..system import System
+from .constants import AS_STIFF, LEAST_CONTACT, SIDES_THAT_BEAR, WHOLE_CONTACT
 
 SHARED = ("k", "c", "k_s", "c_s")
 """What the places of a pair share."""
-WHOLE = 0.1
-"""Part of the area of a joint over which two faces that had none have all that a pair has [-]."""
-LEAST = 0.25
-"""Part of what a loose block has over its largest face, or a pair over its joint, that a smaller area has too [-]."""
-SIDES = 2.0
-"""On how many others a block lies at once."""
-ROUNDED = 1e-9
-"""Relative difference up to which what two blocks have is the same [-]."""
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -123,7 +116,7 @@ class PairLaw(NamedTuple):
         there = np.searchsorted(self.jointed, pair[had])
         shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
         over = area / shared[:, -1]
-        part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE, 1.0))
+        part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
         return {**dict(zip(SHARED, share * shared[:, :-1].T, strict=True)), "friction": friction}
 
@@ -133,7 +126,7 @@ class PairLaw(NamedTuple):
         both, fixed = self.of_block[0][ends], self.fixed[ends]
         over = both[::-1, :, -1] / both[..., -1]
         both = both * np.where(fixed, over, 1.0)[..., None]
-        less, more = both[0] < (1 - ROUNDED) * both[1], (1 - ROUNDED) * both[0] > both[1]
+        less, more = both[0] < (1 - AS_STIFF) * both[1], (1 - AS_STIFF) * both[0] > both[1]
         unlike = (less | more).argmax(axis=1)  # of equal stiffness the one with less of the next column
         first = ~np.take_along_axis(more, unlike[:, None], axis=1)[:, 0]
         second = fixed[0] | (~fixed[1] & ~first)
@@ -146,7 +139,7 @@ class PairLaw(NamedTuple):
 def part_of_face(over: Array) -> Array:
     """Part of what a loose block has over its largest face, or a pair over its joint, that it has over another area,
     from this area over that of the face or the joint."""
-    return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
+    return np.asarray(np.maximum(over, np.minimum(over / WHOLE_CONTACT, LEAST_CONTACT)))
 
 
 def side_area(side: Side) -> float:
@@ -208,6 +201,6 @@ def _springs(solid: Solid, shared: Array) -> list[tuple[Array, Array, Array]]:
     springs = []
     for side in solid.sides:
         over = np.array([side_area(side) / shared[-1]])
-        part = SIDES * float(part_of_face(over)[0]) / len(side.corners)
+        part = SIDES_THAT_BEAR * float(part_of_face(over)[0]) / len(side.corners)
         springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
     return springs

@@ -31,12 +31,7 @@ from ...problem.masonry.laws.joint_law import Law, largest_stiffness
 from ...quantities import Array, Integers
 from ..rows import Row, Rows
 from ..turning import spin_from_many
-
-MOST = 4.0
-"""Highest eigenvalue of the stiffness over the masses that leaves the step stable, times the square of the step [-]."""
-SQUARED = 4
-"""How often a matrix is squared before its trace is taken. The trace of the 16th power of a matrix of six rows bounds
-the highest eigenvalue by 1.12 times what it is."""
+from .constants import SQUARINGS, STABLE
 
 
 class Sides(NamedTuple):
@@ -123,7 +118,7 @@ def stiffen(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room)
     for side in range(2):
         for p in range(len(along)):
             body = sides.bodies[side, p]
-            if body < 0 or room.loads[body] <= MOST:
+            if body < 0 or room.loads[body] <= STABLE:
                 continue
             normal = vector(sides.normals, p, read(bodies[body].inverse_mass))
             for way in range(len(normal)):
@@ -178,12 +173,12 @@ def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room) 
     add_up(sides, room)
     stiffen(sides, along, across, bodies, room)
     for b in range(len(bodies)):
-        if room.loads[b] > MOST:
+        if room.loads[b] > STABLE:
             over_masses(bodies[b], room.stiffness[b], room.powers[0])
             trace = 0.0
-            for i in range(SQUARED):
+            for i in range(SQUARINGS):
                 trace = squared(room.powers[i % 2], room.powers[1 - i % 2])
-            room.share[b] = MOST / max(trace ** (0.5**SQUARED), MOST)
+            room.share[b] = STABLE / max(trace ** (0.5**SQUARINGS), STABLE)
 
 
 def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float) -> Array:

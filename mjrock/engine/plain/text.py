@@ -17,7 +17,7 @@ from ...geometry.frames import PLANE
 from ...quantities import GRAVITY
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
-from ..mjcf import SPARSE_FROM, Keyframe, forced, linked
+from ..mjcf import SPARSE_FROM, Keyframe, camera_of, forced, linked
 from ..shapes import BALL, HINGE, in_space, inertia_of_body, sites, tints
 from ..tags import section, tag
 from .pairs import POINTS, PairRows, Pairs
@@ -83,7 +83,7 @@ def plain_text(
     corners = np.concatenate(
         [rest + outline for rest, outline in zip(scene.bodies.rest, scene.bodies.outlines, strict=True)]
     )
-    low, high = np.array(in_space(corners.min(axis=0))), np.array(in_space(corners.max(axis=0)))
+    low, high = corners.min(axis=0), corners.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
     laws, mixes = _laws(pairs, rows), _meets_others(pieces, pairs)
     head = HEAD.format(
@@ -102,18 +102,17 @@ def plain_text(
     key = {"qpos": keyframe.pose, "qvel": keyframe.velocity}
     if len(keyframe.plastic):
         key["plastic"] = keyframe.plastic
-    place = middle + half * np.array((0.4, -6.0, 0.6))
     memory = [element("size", memory=f"{int(8 + MEMORY_OF_PIECE * len(pieces))}M")] if mixes else []
     shapes = [element("mesh", name=piece.name, vertex=piece.shape.corners) for piece in pieces if piece.has_mesh]
     body = [
         *memory,
-        element("statistic", center=middle, extent=2 * half),
+        element("statistic", center=in_space(middle), extent=2 * half),
         '<visual><global azimuth="110" elevation="-12" offwidth="1280" offheight="960"/></visual>',
         *section("default", (f"  {line}" for line in _defaults(scene, pairs, rows, laws, mixes=mixes))),
         *section("asset", (f"  {line}" for line in [LOOKS, *shapes])),
         "<worldbody>",
         '  <light name="sun" directional="true" dir="-0.4 0.5 -0.8"/>',
-        "  " + element("camera", name="front", pos=place, xyaxes=(1, 0, 0, 0, 0.1, 1), fovy="28"),
+        "  " + element("camera", name="front", **camera_of(scene, middle, half), fovy="28"),
         *(f"  {line}" for line in _world(scene, pieces, moved)),
         "</worldbody>",
         *section("contact", (f"  {line}" for line in [*_pairs(pieces, pairs, laws), *_apart(moved)])),

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from ...quantities import GRAVITY, Within, keep_declared, require_kind, shown
-from ..analysis import Analysis
+from ..analysis import Analysis, subject_of
 from ..campaign.task import Row
-from ..subject import subject_of
 
 GROWTH = 1.25
 """Ratio of neighbouring scales while a bracket is searched [-]. A wall may stand again above a scale that overturns it:

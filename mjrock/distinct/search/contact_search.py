@@ -1,13 +1,14 @@
-"""Encounters: blocks that have left their joints meet others wherever they are.
+"""Contact search: where blocks that have left their joints meet others, and the contact lines that they get there.
 
 A joint of the drawing serves while it is intact. Once all of it has opened by a share of its width, or a part of it has
-slid by so much, it is handed over for good, with its friction, to contacts that are found where the blocks are. Blocks
-that have no common joint are looked at once one of them has moved nearly as far as the other was away at rest. A find
-gives each pair its places, with the law of `pair_law`. Where the step asks for softer ones, they stay soft as long as
-they press: from find to find stiff and soft in turn, blocks would sink into each other. Until the next find each place
-moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked,
-along a face what they hold more: what they hold less friction takes. What their change of force does over the half of
-a step before the pose is booked too.
+slid by so much, it is handed over for good, with its friction, to contacts that are found where the blocks are. The
+contacts of blocks that have no common joint are searched once one of them has moved nearly as far as the other was away
+at rest. A search gives each pair its places, with the law of `pair_law`. Where the step asks for softer contacts, they
+stay soft as long as they press: if they were stiff and soft in turn, blocks would sink into each other. Until the next
+search each place moves with its body, and its normal with the other.
+
+The decrease of the energy of springs along normals in a search is booked, and their increase along faces; what they
+lose along faces friction takes. What their change of force does over the half of a step before the pose is booked too.
 """
 
 from __future__ import annotations
@@ -25,76 +26,69 @@ from ...scene.scene import Scene
 from ..rows import chosen, joined, rows, unsound
 from ..supports import surges
 from ..system import Books, System
+from .constants import (
+    LEFT_JOINT,
+    NEAR,
+    OF_STABLE_STEP,
+    ONE_PLANE,
+    REACH,
+    ROLLED,
+    TOWARDS_OTHERS,
+    VALID_APPROACH,
+    VALID_WAY,
+)
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
-from .looking import (
-    NEAR,
-    PASSED,
-    SURE,
-    Motion,
-    Reach,
-    Seen,
-    Wear,
-    fallen,
-    held,
-    longest_time,
-    take_motion,
-    wait,
-    watch,
-    wears,
-)
 from .pair_law import SHARED, PairLaw, least_among, longest_step_of_loose, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
-
-STAYED = 2e-4
-"""Way over its size that a block may make while a find of it stays valid [-]. What is within `NEAR` is found."""
-STABLE = 0.5
-"""Longest step over the longest one with which the places of a block alone are stable [-]. Intact joints, and places of
-blocks that have not moved, act on it besides."""
-LEFT = 0.05
-"""Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
-ROLLED = 0.5
-"""Turn of a joint about its end, over the angle to the nearest side beside it, beyond which it is handed over too [-].
-So a polygon of many sides rolls on to the next one."""
-FLUSH = 0.9999
-"""Cosine of the angle of two sides of a block from which on they are one plane [-]."""
-TOWARDS = 0.4
-"""Way of a block over its distance from the nearest one without a common joint, from which on it is looked at [-]."""
+from .validity import (
+    JointState,
+    Limits,
+    Motion,
+    Validity,
+    energy_and_power,
+    fall_within,
+    longest_interval,
+    mark_outdated,
+    set_validity,
+    take_motion,
+    update_joints,
+)
 
 
 @dataclass
-class Met:
-    """What a look knows of those before it.
+class SearchState:
+    """What an update of the search knows of those before it.
 
     Args:
-        seen: of the blocks.
-        handed: whether the joints of each pair that has some are handed over, shape (p,).
-        pair: number of the pair of each line of an encounter, shape (lines,).
+        validity: of the blocks.
+        handed_over: whether the joints of each pair that has some are handed over, shape (p,).
+        pair: number of the pair of each line that a search has found, shape (lines,).
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
         share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
-        found: moves of both blocks when each line was found, shape (lines,).
-        softest: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
-        since: time from the last look to the next [s].
+        found: how often both blocks had been searched when each line was found, shape (lines,).
+        least_share: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
+        since: time from the last update to the next [s].
     """
 
-    seen: Seen
-    handed: Flags
+    validity: Validity
+    handed_over: Flags
     pair: Integers
     slack: Array
     share: Array
     found: Integers
-    softest: Array
+    least_share: Array
     since: float
 
 
-class Encounters:
-    """The blocks of masonry, and the lines where they meet beyond their joints.
+class ContactSearch:
+    """The blocks of a scene, and the lines where they meet beyond their joints.
 
     Args:
         scene: what stands.
-        system: its bodies where they stand, and the lines of its joints. The account of the encounters comes after
-            those of the joints.
+        system: its bodies where they stand, and the lines of its joints. The account of the lines that are found
+            comes after those of the joints.
 
     `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
     """
@@ -115,18 +109,18 @@ class Encounters:
         below, above = np.array([(each.below, each.above) for each in joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
-        np.minimum.at(left, of, LEFT * np.array([joint.width for joint in joints]))
+        np.minimum.at(left, of, LEFT_JOINT * np.array([joint.width for joint in joints]))
         np.minimum.at(rolled, of, _rolled(scene.standing))
         self.jointed, points = _jointed(scene, self.finder, of)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
         self.finder.points = np.maximum.reduceat(points, first)
         self.kind, start = system.lines.dtype, self.motion(system).poses
-        look = longest_time(self.sizes[self.blocks.free])
-        self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
-        self.wear = Wear.unworn(of[joint], left, rolled)
-        self.met = self._nothing_met()
+        interval = longest_interval(self.sizes[self.blocks.free])
+        self.limits = Limits(start, self._limits(start), VALID_WAY * self.sizes, interval)
+        self.joints = JointState.intact(of[joint], left, rolled)
+        self.state = self._no_contacts()
 
-    def begun(self, supports: tuple[str, ...]) -> Encounters:
+    def begun(self, supports: tuple[str, ...]) -> ContactSearch:
         """The same at the start of a run, with room of its own to write into.
 
         Args:
@@ -134,24 +128,25 @@ class Encounters:
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        fresh.finder, wear = self.finder.apart(), self.wear
-        fresh.wear, fresh.met = Wear.unworn(wear.pairs, wear.left, wear.rolled), self._nothing_met()
+        joints, fresh.finder, fresh.state = self.joints, self.finder.apart(), self._no_contacts()
+        fresh.joints = JointState.intact(joints.pairs, joints.slip_limit, joints.tilt_limit)
         return fresh
 
-    def _nothing_met(self) -> Met:
+    def _no_contacts(self) -> SearchState:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        seen, zeros = Seen.nothing(self.reach.start, self.reach.look), np.zeros(0)
-        return Met(seen, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
+        validity, zeros = Validity.nothing(self.limits.start, self.limits.interval), np.zeros(0)
+        return SearchState(validity, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
 
     def _limits(self, start: Poses) -> Array:
-        """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
-        a pair may. One that is not found is farther than the sum of both sizes."""
+        """How far each block may move from where it stands before its contacts are searched [m], shape (blocks,). Both
+        blocks of a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
         found = self.finder.found(start, self.sizes, every, jointed)
         apart = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
-        limits = TOWARDS * self.sizes
+        limits = TOWARDS_OTHERS * self.sizes
         for block in (found.face, found.other):
-            np.minimum.at(limits, block, np.where(apart, TOWARDS * found.gap, PASSED * self.sizes[block]))
+            way = np.where(apart, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
+            np.minimum.at(limits, block, way)
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
 
     def _numbers(self, found: Found) -> Integers:
@@ -165,28 +160,28 @@ class Encounters:
         take_motion(system, self.blocks, motion)
         return motion
 
-    def look_on(self, system: System, books: Books, t: float, h: float) -> tuple[System, Books, int]:
-        """The system at a time [s] with the lines of the encounters that may happen until the next look, its books with
+    def update(self, system: System, books: Books, t: float, h: float) -> tuple[System, Books, int]:
+        """The system at a time [s] with the lines of all contacts that may touch until the next update, its books with
         room for them, and the steps until then. With steps of h [s] they are stable."""
-        met, seen = self.met, self.met.seen
-        worn, left = self._worn(system)
+        state, validity = self.state, self.state.validity
+        left_joints, left = self._left_joints(system)
         motion = self.motion(system)
-        self._add_surges(motion, system, t, t + h + self.reach.look)
-        if watch(motion, self.sizes, self.reach, seen, left, met.since):
-            met.handed = met.handed | worn
-            stays = self._moves_of(met.pair) == met.found
-            intact = self.jointed[1][~met.handed[self.jointed[0]]]
-            reach = SURE * (seen.ahead + fallen(self.reach.look) + NEAR * self.sizes)
-            found = self.finder.found(motion.poses, reach, seen.stale, intact)
-            soon = np.empty(len(found.gap), dtype=bool)
-            wait(found, motion, self.sizes, seen, soon, self.reach.look)
-            soon &= found.share > 0
-            of_gone = np.append(worn[self.wear.pairs], ~stays)
-            if soon.any() or of_gone.any():
-                system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
+        self._add_surges(motion, system, t, t + h + self.limits.interval)
+        if mark_outdated(motion, self.sizes, self.limits, validity, left, state.since):
+            state.handed_over = state.handed_over | left_joints
+            kept = self._searches_of(state.pair) == state.found
+            intact = self.jointed[1][~state.handed_over[self.jointed[0]]]
+            reach = REACH * (validity.ahead + fall_within(self.limits.interval) + NEAR * self.sizes)
+            found = self.finder.found(motion.poses, reach, validity.outdated, intact)
+            may_touch = np.empty(len(found.gap), dtype=bool)
+            set_validity(found, motion, self.sizes, validity, may_touch, self.limits.interval)
+            may_touch &= found.share > 0
+            of_gone = np.append(left_joints[self.joints.pairs], ~kept)
+            if may_touch.any() or of_gone.any():
+                system = self._with_new_lines(system, books, motion.poses, found.only(may_touch), of_gone, h)
                 books = books.with_room(len(system.lines))
-        steps = max(1, int(seen.due[seen.watched].min(initial=self.reach.look) / h))
-        met.since = steps * h
+        steps = max(1, int(validity.valid_for[validity.searched].min(initial=self.limits.interval) / h))
+        state.since = steps * h
         return system, books, steps
 
     def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
@@ -197,41 +192,43 @@ class Encounters:
             bodies, changes = table.surges(t, until)
             np.add.at(motion.about, self.blocks.free[bodies], changes)
 
-    def _worn(self, system: System) -> tuple[Flags, Flags]:
-        """Which pairs of blocks have left their joints since the last look, shape (p,), and which blocks have left one,
-        shape (blocks,)."""
-        met, wear = self.met, self.wear
-        worn, left = np.zeros(len(met.handed), dtype=bool), np.zeros(self.count, dtype=bool)
-        if wears(system, wear):
-            worn = wear.leave() & ~met.handed
+    def _left_joints(self, system: System) -> tuple[Flags, Flags]:
+        """Which pairs of blocks have left their joints since the last update, shape (p,), and which blocks have left
+        one, shape (blocks,)."""
+        state, joints = self.state, self.joints
+        left_joints, left = np.zeros(len(state.handed_over), dtype=bool), np.zeros(self.count, dtype=bool)
+        if update_joints(system, joints):
+            left_joints = joints.leave() & ~state.handed_over
             for law in system.laws:
-                worn[wear.pairs[: len(law.rows)][law.holding()]] = False
-            left[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
-        return worn, left
+                left_joints[joints.pairs[: len(law.rows)][law.holding()]] = False
+            left[np.concatenate(np.divmod(self.law.jointed[left_joints], self.count))] = True
+        return left_joints, left
 
-    def _renewed(self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float) -> System:
-        """The system with these places. Pairs that have not moved keep their lines.
+    def _with_new_lines(
+        self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float
+    ) -> System:
+        """The system with contact lines at these places. Pairs that have not moved keep their lines.
 
         Args:
             system, books: the system, and the account of what the springs of vanished lines have lost.
             poses: of all blocks.
             found: places that may touch.
-            of_gone: lines of joints that are handed over, and of encounters whose blocks have moved, shape (lines,).
+            of_gone: lines of joints that are handed over, and found ones whose blocks have moved, shape (lines,).
             h: length of a step [s].
         """
-        met, count = self.met, len(self.wear.pairs)
+        state, count = self.state, len(self.joints.pairs)
         lines, sheared = np.asarray(system.lines), in_shear(system)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
-        worn, stays = of_gone[:count], ~of_gone[count:]
+        left_joints, kept = of_gone[:count], ~of_gone[count:]
         for law in system.laws:
-            law.release(joints[: len(law.rows)], worn[: len(law.rows)])
-        pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
+            law.release(joints[: len(law.rows)], left_joints[: len(law.rows)])
+        pair, which = np.append(self.law.jointed[self.joints.pairs], state.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
-        slack, size = np.append(np.zeros(count), met.slack), len(number)
+        slack, size = np.append(np.zeros(count), state.slack), len(number)
         gone = Lines.unwritten(chosen(lines, which), slack[which])
         new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
-        before, gave = held(system, which, gone.depth)
-        share = np.append(np.ones(count), met.share)[which]
+        before, gave = energy_and_power(system, which, gone.depth)
+        share = np.append(np.ones(count), state.share)[which]
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])
         law = self.law.of_places(number, found.share, found.area, self.count)
@@ -243,35 +240,35 @@ class Encounters:
         for place in unsound(np.asarray(new.rows))[:1]:
             one, other = (self.names[int(block[place])] for block in (found.face, found.other))
             raise ArithmeticError(f"the contact of {one} and {other}")
-        if worn.any():
+        if left_joints.any():
             for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
-                joints[name][worn] = 0.0
-            joints["margin"][worn] = np.inf  # no step looks at such a line again
-        met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
-        met.share = np.append(met.share[stays], share)
-        met.found = np.append(met.found[stays], self._moves_of(number))
+                joints[name][left_joints] = 0.0
+            joints["margin"][left_joints] = np.inf  # no step takes such a line again
+        state.pair, state.slack = np.append(state.pair[kept], number), np.append(state.slack[kept], new.slack)
+        state.share = np.append(state.share[kept], share)
+        state.found = np.append(state.found[kept], self._searches_of(number))
         pressing = found.gap < 0
         for block in (found.face[pressing], found.other[pressing]):
-            np.minimum.at(met.softest, block, share[pressing])
-        lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
+            np.minimum.at(state.least_share, block, share[pressing])
+        lines = joined(joints, chosen(others, kept), np.asarray(new.rows))
         system = system._replace(lines=lines).with_ways()
         given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
         books.totals[0].friction -= given
-        after, gives = held(system, np.arange(len(lines) - size, len(lines)), new.depth)
-        late = 0.5 * h * (gives - gave) if met.since > 0 else 0.0  # forces change half a step before the pose
+        after, gives = energy_and_power(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        late = 0.5 * h * (gives - gave) if state.since > 0 else 0.0  # forces change half a step before the pose
         books.totals[0].encounter_ends += before + given - after - late
         return system
 
-    def _moves_of(self, pair: Integers) -> Integers:
-        """Moves of both blocks of pairs."""
-        return np.asarray(self.met.seen.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
+    def _searches_of(self, pair: Integers) -> Integers:
+        """How often both blocks of pairs have been searched."""
+        return np.asarray(self.state.validity.searches[np.array(np.divmod(pair, self.count))].sum(axis=0))
 
     def _stable(self, found: Found, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
         """Share of their law that leaves places stable in a step of h [s], shape (n,)."""
         blocks = np.array([found.face, found.other])
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
-        return shares_within(sides, law, system.bodies, h / STABLE)
+        return shares_within(sides, law, system.bodies, h / OF_STABLE_STEP)
 
 
 def in_shear(system: System) -> float:
@@ -291,7 +288,7 @@ def _rolled(standing: Standing) -> Array:
         cosine = -1.0
         for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
             beside = normals[block] @ normals[block][side]
-            cosine = max(cosine, float(beside[beside < FLUSH].max(initial=-1.0)))
+            cosine = max(cosine, float(beside[beside < ONE_PLANE].max(initial=-1.0)))
         rolled[i] = 1 - math.cos(ROLLED * math.acos(cosine))
     return rolled
 

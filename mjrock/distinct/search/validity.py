@@ -1,0 +1,294 @@
+"""Validity: for how long the contacts that a search has found are valid, and which joints blocks have left."""
+
+from __future__ import annotations
+
+import math
+from copy import deepcopy
+from typing import NamedTuple
+
+import numpy as np
+
+from ...compiled import compiled_at_once, inlined
+from ...geometry.vectors import dot, put, read, vector
+from ...problem.masonry.laws.joint_law import normal_force, stored
+from ...quantities import GRAVITY, Array, Flags, Integers
+from ..contacts.contact import meeting, over_face, relative
+from ..system import System
+from ..turning import in_world, rotation_change, take_inverse_inertia, take_turn
+from .constants import LONGEST_INTERVAL, NEAR, REACH, SEARCHED_TOGETHER, SHORTEST_INTERVAL, VALID_APPROACH
+from .finder import Found
+from .handover import Blocks
+from .solids import Poses
+
+AXES = np.eye(3)
+"""Unit vectors."""
+
+
+class Motion(NamedTuple):
+    """Where all blocks are, and how fast.
+
+    Args:
+        poses: where they are.
+        velocity: of their centroids [m/s], shape (blocks, d).
+        about: the largest velocity of a corner about the centroid of its block, and by how much that of a block that is
+            driven changes until the next update, see `surges` [m/s], shape (blocks,).
+    """
+
+    poses: Poses
+    velocity: Array
+    about: Array
+
+
+class Validity(NamedTuple):
+    """For how long the contacts of each block are valid, which an update of the search brings up to date.
+
+    Args:
+        searched: whether the contacts of each block are searched at all, shape (blocks,).
+        motion: where each was, and how fast, when its contacts were last searched.
+        searches: how often that was done, shape (blocks,).
+        valid_for: time for which its contacts are valid from the last update on [s], shape (blocks,).
+        ahead: how far each may go within the longest time between two updates [m], shape (blocks,).
+        outdated: whether its contacts were valid no longer at the last update, shape (blocks,).
+    """
+
+    searched: Flags
+    motion: Motion
+    searches: Integers
+    valid_for: Array
+    ahead: Array
+    outdated: Flags
+
+    @classmethod
+    def nothing(cls, start: Poses, interval: float) -> Validity:
+        """Of blocks that stand where they start, with the longest time between two updates [s]."""
+        count, still = len(start.moved), deepcopy(start)
+        flags, speeds = np.zeros((2, count), dtype=bool), np.zeros((2, count))
+        motion = Motion(still, np.zeros_like(still.moved), speeds[0])
+        return cls(flags[0], motion, np.zeros(count, dtype=np.int64), np.full(count, interval), speeds[1], flags[1])
+
+
+class Limits(NamedTuple):
+    """How far blocks may go without a search.
+
+    Args:
+        start: where they stood.
+        first_search: how far each may be from there before its contacts are searched [m], shape (blocks,).
+        displacement: by how much each may move while its contacts stay valid [m], shape (blocks,).
+        interval: longest time between two updates [s].
+    """
+
+    start: Poses
+    first_search: Array
+    displacement: Array
+    interval: float
+
+
+class JointState(NamedTuple):
+    """How far joints have slipped, opened and tilted.
+
+    Args:
+        pairs: number of the pair of blocks of each line of a joint, shape (m,).
+        slip, gap: largest way along the joints of each pair, and least opening [m], shape (pairs,).
+        tilt: 1 less the cosine of the angle of its faces [-], shape (pairs,).
+        slip_limit: slip or gap from which on a pair has left its joints [m], shape (pairs,).
+        tilt_limit: tilt from which on it has left them [-], shape (pairs,).
+    """
+
+    pairs: Integers
+    slip: Array
+    gap: Array
+    tilt: Array
+    slip_limit: Array
+    tilt_limit: Array
+
+    @classmethod
+    def intact(cls, pairs: Integers, slip_limit: Array, tilt_limit: Array) -> JointState:
+        """Of joints that are as drawn."""
+        slip, gap, tilt = np.zeros((3, len(slip_limit)))
+        return cls(pairs, slip, gap, tilt, slip_limit, tilt_limit)
+
+    def leave(self) -> Flags:
+        """Which pairs have left their joints, shape (pairs,)."""
+        return np.asarray((np.maximum(self.slip, self.gap) > self.slip_limit) | (self.tilt > self.tilt_limit))
+
+
+@compiled_at_once
+def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
+    """Write where the blocks are that move, and how fast, and take the inertia of the bodies there."""
+    poses, supports = motion.poses, system.supports
+    for b in range(len(blocks.free)):
+        body, block = system.bodies[b], blocks.free[b]
+        take_turn(body)
+        take_inverse_inertia(body)
+        place, spin = read(body.place), read(body.spin)
+        for i in range(len(place)):
+            put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, place)))
+        put(poses.moved[block], place)
+        put(motion.velocity[block], read(body.velocity))
+        motion.about[block] = math.sqrt(dot(spin, spin)) * blocks.sizes[block]
+    for block in range(len(blocks.support)):
+        if blocks.support[block] >= 0:
+            put(poses.moved[block], vector(supports.moved, blocks.support[block], system.axes))
+            put(motion.velocity[block], vector(supports.moving, blocks.support[block], system.axes))
+
+
+@inlined
+def displacement_of(poses: Poses, other: Poses, block: int, size: float) -> float:
+    """Largest displacement of a corner of a block from where it is in other poses [m]."""
+    way = turned = 0.0
+    for i in range(poses.moved.shape[1]):
+        way += (poses.moved[block, i] - other.moved[block, i]) ** 2
+        for j in range(poses.moved.shape[1]):
+            turned += (poses.change[block, i, j] - other.change[block, i, j]) ** 2
+    return math.sqrt(way) + math.sqrt(turned) * size
+
+
+@inlined
+def speed_of(motion: Motion, block: int) -> float:
+    """The largest speed of a corner of a block [m/s]."""
+    square = 0.0
+    for i in range(motion.velocity.shape[1]):
+        square += motion.velocity[block, i] ** 2
+    speed: float = math.sqrt(square) + motion.about[block]
+    return speed
+
+
+@inlined
+def record(kept: Motion, motion: Motion, block: int) -> None:
+    """Keep where a block is, and how fast."""
+    for i in range(motion.velocity.shape[1]):
+        kept.poses.moved[block, i], kept.velocity[block, i] = motion.poses.moved[block, i], motion.velocity[block, i]
+        for j in range(motion.velocity.shape[1]):
+            kept.poses.change[block, i, j] = motion.poses.change[block, i, j]
+    kept.about[block] = motion.about[block]
+
+
+def longest_interval(sizes: Array) -> float:
+    """The longest time between two updates of the search of blocks of some sizes [s]: that of the smallest one."""
+    return LONGEST_INTERVAL * math.sqrt(float(sizes.min()) / GRAVITY)
+
+
+@inlined
+def fall_within(interval: float) -> float:
+    """What a block falls by in the longest time between two updates [m]."""
+    return 0.5 * GRAVITY * interval**2
+
+
+@compiled_at_once
+def mark_outdated(motion: Motion, sizes: Array, limits: Limits, validity: Validity, left: Flags, since: float) -> bool:
+    """Bring up to date which blocks are searched, and mark those whose contacts are valid no longer.
+
+    These are blocks that are searched for the first time or have left a joint, those that have moved and whose contacts
+    have been valid for their time, and those that have become too fast for the contacts that were kept.
+
+    Args:
+        motion, sizes: of the blocks.
+        limits: how far they may go without a search.
+        validity: of their contacts.
+        left: blocks that have left a joint, shape (blocks,).
+        since: time since the last update [s].
+
+    Returns:
+        Whether the contacts of a block are outdated.
+    """
+    some, interval = False, limits.interval
+    for block in range(len(sizes)):
+        speed, size, searched, valid_for = speed_of(motion, block), sizes[block], validity.searched[block], interval
+        if searched:
+            valid_for = max(validity.valid_for[block] - since, 0.0)
+        validity.ahead[block] = interval * speed
+        way = displacement_of(motion.poses, limits.start, block, size) + validity.ahead[block]
+        validity.searched[block] = searched or left[block] or way > limits.first_search[block]
+        outdated = left[block] or validity.searched[block] != searched
+        if searched and not outdated:
+            moved = displacement_of(motion.poses, validity.motion.poses, block, size) > limits.displacement[block]
+            kept = REACH * (speed_of(validity.motion, block) * valid_for + fall_within(interval) + NEAR * size)
+            outdated = (moved and valid_for < SEARCHED_TOGETHER * interval) or speed * valid_for > kept
+        validity.valid_for[block] = valid_for if valid_for >= SEARCHED_TOGETHER * interval else interval
+        if outdated:
+            validity.searches[block] += 1
+            record(validity.motion, motion, block)
+        validity.outdated[block] = outdated
+        some = some or outdated
+    return some
+
+
+@inlined
+def approach_speed(motion: Motion, one: int, other: int) -> float:
+    """The largest speed at which two blocks may come together [m/s]."""
+    square = 0.0
+    for j in range(motion.velocity.shape[1]):
+        square += (motion.velocity[one, j] - motion.velocity[other, j]) ** 2
+    speed: float = math.sqrt(square) + motion.about[one] + motion.about[other]
+    return speed
+
+
+@compiled_at_once
+def set_validity(
+    found: Found, motion: Motion, sizes: Array, validity: Validity, may_touch: Flags, interval: float
+) -> None:
+    """Write for how long the contacts that a search has found are valid.
+
+    Those of a pair are valid until either block is searched again: the faster one, if it was searched now.
+
+    Args:
+        found: the places.
+        motion, sizes: of the blocks.
+        validity: which blocks were searched.
+        may_touch: room for whether each place may touch by then, shape (n,).
+        interval: longest time between two updates [s].
+    """
+    valid_for, outdated = validity.valid_for, validity.outdated
+    for block in range(len(valid_for)):
+        if outdated[block]:
+            valid_for[block] = interval
+    for turn in range(2):
+        for i in range(len(found.gap)):
+            one, other = found.face[i], found.other[i]
+            speed, size = approach_speed(motion, one, other), min(sizes[one], sizes[other])
+            if turn == 0:
+                valid = max(VALID_APPROACH * size, 0.5 * found.gap[i]) / max(speed, 1e-9)
+                first = outdated[one] and (not outdated[other] or speed_of(motion, one) >= speed_of(motion, other))
+                block = one if first else other
+                valid_for[block] = min(valid_for[block], max(valid, SHORTEST_INTERVAL * interval))
+            else:
+                until = min(valid_for[one], valid_for[other])
+                may_touch[i] = found.gap[i] < REACH * (speed * until + 2 * fall_within(interval) + NEAR * size)
+
+
+@compiled_at_once
+def update_joints(system: System, joints: JointState) -> bool:
+    """Bring slip, gap and tilt of joints up to date. Returns whether a pair has left its joints."""
+    pairs, slip, gap, tilt = joints.pairs, joints.slip, joints.gap, joints.tilt
+    for pair in range(len(slip)):
+        slip[pair], gap[pair], tilt[pair] = 0.0, math.inf, 0.0
+    for b in range(len(system.bodies)):
+        take_turn(system.bodies[b])
+    for p in range(len(pairs)):
+        line = system.lines[p]
+        across, normal, _, _ = over_face(system, line)
+        own, apart = in_world(system.bodies[line.body], read(line.normal)), dot(normal, across)
+        slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
+        gap[pairs[p]] = min(gap[pairs[p]], apart)
+        tilt[pairs[p]] = max(tilt[pairs[p]], 1 - dot(own, normal))
+        line.widest = max(line.widest, apart)
+    left = False
+    for pair in range(len(slip)):
+        left = left or max(slip[pair], gap[pair]) > joints.slip_limit[pair] or tilt[pair] > joints.tilt_limit[pair]
+    return left
+
+
+@compiled_at_once
+def energy_and_power(system: System, which: Integers, depth: Array) -> tuple[float, float]:
+    """Energy in the springs along the normal of some of the lines [J] and the power at which they give it away [W], and
+    write how deep each presses [m]."""
+    energy = power = 0.0
+    for i in range(len(which)):
+        line = system.lines[which[i]]
+        meet = meeting(system, line)
+        depth[i] = max(-meet.gap, 0.0)
+        energy += stored(line, meet.gap)
+        if meet.gap < 0:
+            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
+            power += normal_force(line, meet.gap, 0.0) * rate
+    return energy, power

@@ -1,0 +1,48 @@
+"""A facade that falls as MuJoCo's viewer shows it: a plain model, stepped and drawn by MuJoCo.
+
+The facade of `scripts/studies/second_opinion.py` under a sine out of its plane. The picture has the colours, shadows
+and the camera of the model text, without a display. Writes viewer.png.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+os.environ.setdefault("MUJOCO_GL", "egl")
+
+import mujoco
+import numpy as np
+from matplotlib import image
+
+import mjrock as mr
+from scripts.shared import cli
+from scripts.studies.second_opinion import facade
+
+SIZE = (960, 640)
+AT = 1.2
+"""When it is drawn [s]."""
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Step it and draw it."""
+    args = cli.parser(__doc__, "in_the_viewer").parse_args(argv)
+    out, case = cli.folder(args.out), facade()
+    answer = mr.simulate(case, timestep=1e-3, collisions=True, output_step=0.01)
+    model = mujoco.MjModel.from_xml_string(mr.mjcf_of(case, None, 1e-3, collisions=True))
+    data, k = mujoco.MjData(model), int(np.searchsorted(answer.t, 0.1 if args.quick else AT))
+    places = answer.pose[k].copy()
+    places[:, :3] += case.rests
+    data.qpos[:] = places.ravel()
+    mujoco.mj_forward(model, data)
+    with mujoco.Renderer(model, SIZE[1], SIZE[0]) as renderer:
+        renderer.update_scene(data, "front")
+        picture = renderer.render()
+    path = out / "viewer.png"
+    image.imsave(path, picture)
+    print(f"{len(answer.fallen)} of {len(case.bodies)} blocks fall; {path} is drawn at {answer.t[k]:.2f} s")
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))
