@@ -32,7 +32,8 @@ GONE = 0.1
 
 
 def masonry_scene(case: MasonryCase) -> Scene:
-    """The scene of a case: the masonry under its weight, or as drawn, which cases of it with the same effects share.
+    """The scene of a case, the masonry under its weight or as drawn: `scene_of` for masonry alone. All cases of it with
+    the same effects share it.
 
     Bodies have the names of the blocks that are not fixed, in order. The groups of contacts are the joints, by name.
 

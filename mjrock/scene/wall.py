@@ -53,7 +53,9 @@ def base_friction(wall: Block, contacts: Contacts, side_stop: bool, method: Meth
 
 
 def wall_scene(case: Case, contacts: Contacts, method: Method = METHOD) -> Scene:
-    """The scene of a case on its contacts, which all cases of one wall with the same effects share.
+    """The scene of a case on its contacts: `scene_of` for walls alone.
+
+    All cases of one wall with the same effects share it.
 
     The body is `wall`. The groups of contacts are `base`, from the inner to the outer edge, and `side`, from the bottom
     to the top. The ties are `tie_0`, `tie_1` and so on in the order of the case, the forces `load_0` and `thrust_0`.
