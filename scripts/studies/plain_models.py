@@ -132,7 +132,10 @@ def table_2(lines: list[str], rows: list[list[object]], specimens: Sequence[pape
             (plain, _), (points, _) = (wall.run(h, collisions=given) for given in (True, False))
             sides = "one-sided" if one_sided else "two-sided"
             three = first(law), first(plain), first(points)
-            lines.append(f"  {specimen.name}, {sides}: " + " ".join(f"{value:.4f}" for value in three))
+            lines.append(
+                f"  {specimen.name}, {sides}: "
+                + " ".join("-" if math.isnan(value) else f"{value:.4f}" for value in three)
+            )
             rows.append([f"{specimen.name}, {sides}", h, 0.1, *three])
 
 

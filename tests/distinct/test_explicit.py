@@ -154,7 +154,9 @@ def test_a_support_that_settles_takes_what_stands_on_it_along():
     run = solve(CUBE, 1.2, supports={"ground": (t, 0.01 * smooth, -0.02 * smooth)}, ledger=True)
     np.testing.assert_allclose(run.pose[-1, 0] - run.pose[0, 0], [0.01, -0.02, 0.0], atol=2e-5)
     assert np.abs(run.energy_residual).max() < 1e-3 * np.abs(run.ledger.ground).max()
-    with pytest.raises(ValueError, match="supports = ground: blocks that are fixed do not move in MuJoCo"):
+    with pytest.raises(
+        ValueError, match="supports = ground: fixed blocks do not move in MuJoCo but with collisions=True"
+    ):
         mr.simulate(run.case)
 
 
