@@ -120,6 +120,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/opened_in_vtk.py --out docs/figures
 	$(BIN)/python scripts/studies/drawn_in_space.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
+	$(BIN)/python scripts/measure/plain_throughput.py --out docs/figures
 	$(BIN)/python scripts/measure/step_cost.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py
 

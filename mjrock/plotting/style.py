@@ -20,6 +20,7 @@ Look = dict[str, Any]
 """Options of what matplotlib draws, such as its colour."""
 STYLES: dict[str, Look] = {
     "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
+    "plain MuJoCo": {"label": "plain MuJoCo", "color": "#b5402a", "linestyle": "-.", "linewidth": 1.4, "zorder": 2.5},
     "MuJoCo": {"label": "MuJoCo", "color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
     "compliant": {"label": "contact law, SciPy", "color": "#12406b", "linestyle": ":", "linewidth": 1.5, "zorder": 3},
     "explicit": {"label": "explicit steps", "color": "#3f8f5b", "linestyle": "--", "linewidth": 1.6, "zorder": 2.5},

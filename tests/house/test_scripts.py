@@ -60,6 +60,7 @@ WRITES = {
     "collapse": {"collapse.csv", "collapse.txt"},
     "plain_models": {f"plain_models.{ending}" for ending in ("png", "csv", "txt")},
     "in_the_viewer": {"viewer.png"},
+    "plain_throughput": {"plain_throughput.txt"},
     "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
     "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
@@ -236,6 +237,7 @@ LONG = {
     "plain_models",
     "second_opinion",
     "in_the_viewer",
+    "plain_throughput",
 }
 """Scripts that take a while even with --quick."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
@@ -218,7 +219,7 @@ def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
     course = problem.course(scene)
     if wanted.state is not None:
         course = course.continued(*wanted.state)
-    h = plain_timestep(scene, case.duration) if wanted.timestep is None else wanted.timestep
+    h = plain_timestep(scene, spacing) if wanted.timestep is None else wanted.timestep
     h = require_within("timestep", h, 1e-9, min(1.0, case.duration), "s")
     require_size("the steps of this run", case.duration / h, "take a longer timestep")
     require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
@@ -238,10 +239,10 @@ def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
     return response
 
 
-def plain_timestep(scene: Scene, duration: float) -> float:
-    """The step that a plain model takes where none is asked for [s]."""
+def plain_timestep(scene: Scene, spacing: float) -> float:
+    """The step that a plain model takes where none is asked for, a whole share of the spacing of the samples [s]."""
     resolved = RESOLVED if len(scene.bodies.names) == 1 else RESOLVED_OF_MANY
-    return min(resolved / scene.highest_frequency, duration)
+    return spacing / math.ceil(spacing * scene.highest_frequency / resolved)
 
 
 def require_plain(case: AnyCase) -> None:
