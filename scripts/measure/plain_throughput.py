@@ -1,7 +1,8 @@
 """How many steps a second plain models take: one after the other, and many starts at once by `mujoco.rollout`.
 
-The wall of Figure 3 at 0.2 ms and a facade of 29 blocks at 1 ms, from starts that differ by a small speed. Prints steps a second of one core after the other, of rollout on one and on all
-cores, and whether their last states are the same to the bit. MJX and MuJoCo Warp are tried where they are installed.
+The wall of Figure 3 at 0.2 ms and a facade of 29 blocks at 1 ms, from starts that differ by a small speed. Prints steps
+a second of one core after the other, of rollout on one and on all cores, and whether their last states are the same to
+the bit. MJX and MuJoCo Warp are asked for the wall where they are installed.
 """
 
 from __future__ import annotations
