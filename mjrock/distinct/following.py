@@ -19,6 +19,7 @@ from .memory import Memory, remember
 from .rows import ENDLESS, unsound
 from .search.contact_search import ContactSearch
 from .setup import Setup
+from .supports import move_supports
 from .system import Books, Samples, System
 
 CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
@@ -152,11 +153,17 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
 
 
 def searched(search: ContactSearch, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
-    """An update of the search, see `ContactSearch.update`. What is not finite there ends the run."""
+    """An update of the search, see `ContactSearch.update`. What is not finite there ends the run.
+
+    Supports are where they are at the pose. The step that follows moves them there."""
+    t, supports = clock.step * clock.h, system.supports
+    there = supports._replace(moved=supports.moved.copy(), moving=supports.moving.copy())
+    move_supports(there, t, clock.h if clock.step > 0 else clock.before)
     try:
-        return search.update(system, books, clock.step * clock.h, clock.h)
+        system, books, steps = search.update(system._replace(supports=there), books, t, clock.h)
     except ArithmeticError as error:
-        raise breakdown(str(error), clock.step * clock.h) from None
+        raise breakdown(str(error), t) from None
+    return system._replace(supports=supports), books, steps
 
 
 def breakdown(what: str, t: float) -> RuntimeError:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any, NamedTuple
+from unittest.mock import patch
 
 import numpy as np
 
 import mjrock as mr
 from mjrock.distinct.setup import setup_of_masonry
 from mjrock.geometry.poses import rotations
+from mjrock.problem.masonry.blocks.joints_in_space import SpaceJoint
+from mjrock.problem.masonry.standing import MasonryStanding
+from mjrock.problem.wall.standing import Solid
 
 from .quantities import QUANTITIES, Quantity, Scene, changed
 
@@ -148,6 +155,40 @@ def solve(scene: Scene, **options: Any) -> mr.Response:
         return mr.solve_analytical(case, mr.Restitution.from_geometry(case.wall, case.stop_top), **options)
     call = mr.simulate if scene["solver"] == "MuJoCo" else mr.solve_explicit
     return call(case, contacts, scene["timestep"], **options)
+
+
+@contextmanager
+def measured_in_the_plane(scene: Scene) -> Iterator[None]:
+    """Prisms of a scene of the plane have the sizes of its blocks and the widths of its joints. The search goes by
+    these when it looks for contacts and hands joints over."""
+    flat, solids = masonry_of(scene), vars(MasonryStanding)["solids"].func
+    sizes = {name: block.size for name, block in zip(flat.names, flat.blocks, strict=True)}
+    widths = {(joint.below, joint.above, *np.round(joint.middle, 9)): joint.width for joint in flat.joints}
+
+    def measured(standing: MasonryStanding) -> tuple[Solid, ...]:
+        return tuple(replace(solid, size=sizes[solid.name]) for solid in solids(standing))
+
+    def width(joint: SpaceJoint) -> float:
+        return widths[joint.below, joint.above, *np.round(joint.middle[::2], 9)]
+
+    with (
+        patch.object(MasonryStanding, "solids", property(measured)),
+        patch.object(SpaceJoint, "width", property(width)),
+    ):
+        yield
+
+
+def pushed_beside(scene: Scene) -> bool:
+    """Whether a thrust of the plane acts at a place that is not on its block, as in the opening of an L."""
+    blocks = {unit["name"]: block_of(unit) for unit in scene["units"]}
+    for device in scene["devices"]:
+        if device["kind"] == "thrust":
+            block = blocks[device["block"]]
+            at = np.array([block.centroid[0], device["at"][1]])
+            outside = [max((at - side.corners[0]) @ side.normal for side in part.sides) for part in block.parts]
+            if min(outside) > 0:
+                return True
+    return False
 
 
 def default_step(scene: Scene) -> float:

@@ -9,6 +9,7 @@ search each place moves with its body, and its normal with the other.
 
 The decrease of the energy of springs along normals in a search is booked, and their increase along faces; what they
 lose along faces friction takes. What their change of force does over the half of a step before the pose is booked too.
+The step before had other normals, so that what its forces did in its half before the pose is booked along those.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ from .validity import (
     fall_within,
     longest_interval,
     mark_outdated,
+    power_of_last,
     set_validity,
     take_motion,
     update_joints,
@@ -228,6 +230,7 @@ class ContactSearch:
         gone = Lines.unwritten(chosen(lines, which), slack[which])
         new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
         before, gave = energy_and_power(system, which, gone.depth)
+        last = power_of_last(system, which)
         share = np.append(np.ones(count), state.share)[which]
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])
@@ -254,9 +257,14 @@ class ContactSearch:
         system = system._replace(lines=lines).with_ways()
         given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
         books.totals[0].friction -= given
-        after, gives = energy_and_power(system, np.arange(len(lines) - size, len(lines)), new.depth)
-        late = 0.5 * h * (gives - gave) if state.since > 0 else 0.0  # forces change half a step before the pose
+        of_new, half = np.arange(len(lines) - size, len(lines)), 0.5 * h if state.since > 0 else 0.0
+        after, gives = energy_and_power(system, of_new, new.depth)
+        late = half * (gives - gave)  # forces change half a step before the pose
         books.totals[0].encounter_ends += before + given - after - late
+        new_last = power_of_last(system, of_new)
+        books.totals[0].ground += half * (last.carried - new_last.carried)
+        books.totals[0].friction += half * (last.rubbed - new_last.rubbed)
+        books.dashpots[self.group] += half * (last.damped - new_last.damped)
         return system
 
     def _searches_of(self, pair: Integers) -> Integers:

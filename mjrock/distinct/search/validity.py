@@ -9,10 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled_at_once, inlined
-from ...geometry.vectors import dot, put, read, vector
+from ...geometry.vectors import dot, plus, put, read, scaled, vector
 from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...quantities import GRAVITY, Array, Flags, Integers
-from ..contacts.contact import meeting, over_face, relative
+from ..contacts.contact import meeting, over_face, relative, where_friction_rubs
+from ..contacts.friction import along_face, as_vector, carried
 from ..system import System
 from ..turning import in_world, rotation_change, take_inverse_inertia, take_turn
 from .constants import LONGEST_INTERVAL, NEAR, REACH, SEARCHED_TOGETHER, SHORTEST_INTERVAL, VALID_APPROACH
@@ -81,6 +82,20 @@ class Limits(NamedTuple):
     first_search: Array
     displacement: Array
     interval: float
+
+
+class LastPower(NamedTuple):
+    """Power of the forces that lines had in the last step, which the next step books for its half before the pose [W].
+
+    Args:
+        carried: with which they move supports.
+        rubbed: that friction takes.
+        damped: that the dashpots along normals take.
+    """
+
+    carried: float
+    rubbed: float
+    damped: float
 
 
 class JointState(NamedTuple):
@@ -292,3 +307,17 @@ def energy_and_power(system: System, which: Integers, depth: Array) -> tuple[flo
             rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
             power += normal_force(line, meet.gap, 0.0) * rate
     return energy, power
+
+
+@compiled_at_once
+def power_of_last(system: System, which: Integers) -> LastPower:
+    """The power of the forces that some of the lines had in the last step, along the normals that they have now."""
+    moved = rubbed = damped = 0.0
+    for i in range(len(which)):
+        line = system.lines[which[i]]
+        meet = where_friction_rubs(meeting(system, line))
+        velocity, drag = relative(system.bodies, line, system.supports, meet), read(line.dragged)
+        moved += carried(line, system.supports, plus(scaled(line.push, meet.normal), as_vector(meet.normal, drag)))
+        rubbed -= dot(drag, along_face(meet.normal, velocity))
+        damped -= line.pressed * dot(meet.normal, velocity)
+    return LastPower(moved, rubbed, damped)
