@@ -226,9 +226,9 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
             if pose is not None:
                 elastic = by_pair(engine, met, 0.5 * met.k * np.minimum(met.gap, 0.0) ** 2)
                 forces = (np.empty(0), np.empty(0)) if joints is None else joints.gathered(engine, met)
-                pulled = -engine.scene.links.damped.c * data.ten_velocity[engine.dampers]
+                pulled = engine.scene.links.damped.c * data.ten_velocity[engine.dampers]
                 velocity = mean[engine.driven :].reshape(-1, nv).copy()
-                samples.append(Sample(t, pose, velocity, elastic, total.plus(done, 0.5), deepest, *forces, -pulled))
+                samples.append(Sample(t, pose, velocity, elastic, total.plus(done, 0.5), deepest, *forces, pulled))
                 deepest = None
             total = total.plus(done)
             if n % LOOK == 0 or n == steps:

@@ -125,10 +125,9 @@ def plain_text(
 
 def _meets_others(pieces: list[Piece], pairs: Pairs) -> bool:
     """Whether two pieces may meet that are no neighbours at rest."""
-    bodies = np.array([piece.body for piece in pieces if piece.meets])
-    low, high = np.triu_indices(len(bodies), 1)
-    may = int((bodies[low] != bodies[high]).sum())
-    return may > len(pairs.pieces)
+    of_body = np.array([*Counter(piece.body for piece in pieces if piece.meets).values()])
+    may = (of_body.sum() ** 2 - (of_body**2).sum()) // 2  # pairs of pieces of two bodies
+    return bool(may > len(pairs.pieces))
 
 
 def _laws(pairs: Pairs, rows: PairRows) -> list[dict[str, object]]:
@@ -149,8 +148,9 @@ def _laws(pairs: Pairs, rows: PairRows) -> list[dict[str, object]]:
 def _class_of(pairs: Pairs, laws: list[dict[str, object]]) -> dict[int, str]:
     """The class of each pair that has its law in common with another one, by the number of the pair."""
     texts = [str(law) for law in laws]
-    shared = [text for text, count in Counter(texts).items() if count > 1]
-    return {i: f"joint_{shared.index(text)}" for i, text in enumerate(texts) if text in shared}
+    shared = (text for text, count in Counter(texts).items() if count > 1)
+    number = {text: i for i, text in enumerate(shared)}
+    return {i: f"joint_{number[text]}" for i, text in enumerate(texts) if text in number}
 
 
 def _defaults(
