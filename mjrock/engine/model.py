@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Flags
+from ..result.ledger import StepError
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .memory import EngineArrays
@@ -136,6 +137,13 @@ def released(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: 
     for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
         mujoco.mj_forward(model, data)
         data.qvel[:] = velocity - 0.5 * model.opt.timestep * data.qacc
+
+
+def require_well(data: mujoco.MjData, t: float) -> None:
+    """Raise a StepError if the engine has warned or the state is not finite, at a time [s]."""
+    warned = [mujoco.mjtWarning(i).name for i in np.flatnonzero(data.warning.number)]
+    if warned or not (np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()):
+        raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
 
 
 def require_room(model: mujoco.MjModel, data: mujoco.MjData) -> None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import mujoco
 import numpy as np
 from tqdm import tqdm
 
@@ -20,11 +19,10 @@ from ..geometry.kinematics import Places, meeting
 from ..geometry.vectors import dot
 from ..method import METHOD, Method
 from ..quantities import Array
-from ..result.ledger import StepError
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .loop import fitted_loop, fixed_loop, release, settle_ties
-from .model import Engine
+from .model import Engine, require_well
 from .pace import Pace
 from .progress import Progress, StepClock
 from .record import Record, StepKinds, Steps
@@ -112,9 +110,7 @@ def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple
             n, t, ended = advance(engine.room)
             chunks.append(engine.room.first(n))
             bar.update(min(t, duration) - bar.n)
-            warned = [mujoco.mjtWarning(i).name for i in np.flatnonzero(engine.data.warning.number)]
-            if warned or not (np.isfinite(engine.memory.pose).all() and np.isfinite(engine.memory.velocity).all()):
-                raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
+            require_well(engine.data, t)
     return Record.joined(chunks)
 
 

@@ -18,10 +18,10 @@ from tqdm import tqdm
 from ...geometry.frames import PLANE
 from ...problem.masonry.histories import Support
 from ...quantities import GRAVITY, Array, Integers
-from ...result.ledger import StepError
 from ...scene.course import Course
 from ...scene.ground import mean_acceleration
 from ...scene.scene import Scene
+from ..model import require_well
 from .overlap import Overlap
 from .pairs import Pairs
 from .pieces import Piece
@@ -235,13 +235,6 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
                 require_well(data, t)
                 bar.update(n - bar.n)
     return samples
-
-
-def require_well(data: mujoco.MjData, t: float) -> None:
-    """Raise a StepError if the engine has warned or the state is not finite, at a time [s]."""
-    warned = [mujoco.mjtWarning(i).name for i in np.flatnonzero(data.warning.number)]
-    if warned or not (np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()):
-        raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
 
 
 def by_pair(engine: PlainEngine, met: Met, values: Array) -> Array:
