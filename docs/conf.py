@@ -127,7 +127,7 @@ def compile_loops() -> None:
 
 
 def write_live_view() -> None:
-    """Write the page that export.md shows: an arch whose support moves away, to be turned and played."""
+    """Write the page that results.md shows: an arch whose support moves away, to be turned and played."""
     arch = mjrock.Masonry.arch(radius=1.0, thickness=0.25, voussoirs=11, ground=True)
     t = [0.0, 1.0]
     spread = {"right_abutment": (t, [0.0, 0.5], [0.0, 0.0])}

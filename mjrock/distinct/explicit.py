@@ -48,7 +48,7 @@ def solve_explicit(
     normal, and along each face a spring of stiffness k_s with a Coulomb slider, or rigid friction where k_s is None
     (Cundall and Strack, Geotechnique 29, 1979, 47-65). It shares no kinematics and no time integration with MuJoCo.
 
-    Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, see docs/space.md.
+    Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, see docs/masonry.md.
     Blocks that leave their joints meet others wherever they are, in the plane and in space.
 
     Args:

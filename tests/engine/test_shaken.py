@@ -80,7 +80,7 @@ def test_a_wall_that_falls_from_where_it_hardly_moved_takes_no_more_steps_for_mo
 def test_peaks_under_records(sides):
     """Against a hundredth of the accuracy: 0.5 % in the median and 7 % in nine of ten two-sided, 1 % one-sided.
 
-    Two-sided rocking multiplies an error on its way, see docs/law_and_step.md.
+    Two-sided rocking multiplies an error on its way, see docs/solvers.md.
     """
     side_stop = records_accuracy.SIDES[sides]
     most = 0.01 if side_stop else 0.07

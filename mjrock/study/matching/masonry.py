@@ -1,6 +1,6 @@
 """Damping matched to a stack: rocking as one, it loses at an impact what rocking theory says.
 
-`docs/impacts.md` says why it loses more on the damping that a law gives each joint.
+`docs/theory.md` says why it loses more on the damping that a law gives each joint.
 """
 
 from __future__ import annotations
