@@ -215,10 +215,10 @@ EQUIVALENT = {
     },
     "reading.py: early = t[-1] <= case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to "
     "the duration": "no sample is half a step before the end to the last bit",
-    "turning.py: PASSES = 6": "more passes take time only",
-    "turning.py: SLOW, PASSES_OF_SLOW = 1e-3, 4": "more passes take time only",
-    "turning.py: SLOW, PASSES_OF_SLOW = 0.002, 2": "what two passes leave is within the error of the step there, too",
-    "turning.py: SMALL = 0.0002": "the first term of the series that is left out is below rounding there, too",
+    "turning.py: SPIN_PASSES = 6": "more passes take time only",
+    "turning.py: SLOW_TURN, PASSES_OF_SLOW = 1e-3, 4": "more passes take time only",
+    "turning.py: SLOW_TURN, PASSES_OF_SLOW = 0.002, 2": "what two passes leave is within the error of the step there, too",
+    "turning.py: SERIES_ANGLE = 0.0002": "the first term of the series that is left out is below rounding there, too",
     **{
         f"turning.py: {line}": "the term is below rounding there"
         for line in (
@@ -258,19 +258,19 @@ EQUIVALENT = {
             "HELD = Search(20000.0, 100, limited=False)",
         )
     },
-    "rest.py: FLAT = 2e-12": "what is put down to rounding is far below what lets bodies fall",
+    "rest.py: NEGLIGIBLE_STIFFNESS = 2e-12": "what is put down to rounding is far below what lets bodies fall",
     "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
     "handover.py: sense = old.sense / new.sense": "a sense is 1 or -1",
     "handover.py: of_force, of_energy = (min(REGAINED, had / force), held / energy) if force > 0 else (1, 0.0)": (
         "where no place presses, none has an overlap that a share is taken of"
     ),
     "constants.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
-    "contact.py: PASSES = 6": "more passes take time only",
+    "contact.py: TOUCH_PASSES = 6": "more passes take time only",
     "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
         "at a gap of zero nothing presses"
     ),
-    "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
-    "contact.py: TURNED_OVER = 4 * OPEN": "it is a number that no gap is",
+    "contact.py: GAP_OF_OPEN = 2.0": "at no gap above zero is anything left of a line",
+    "contact.py: TURNED_OVER = 4 * GAP_OF_OPEN": "it is a number that no gap is",
     "clipping.py: best, largest = -2, -math.inf": "every block has a face",
     "clipping.py: normal, edge, from_edge = normal_of(solids, face), -2, math.inf": "every face has an edge",
     "clipping.py: crossed, from_crossed = -2, math.inf": "every face has an edge",
@@ -331,7 +331,7 @@ EQUIVALENT = {
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
     "friction.py: STRIDE = 6": "another order of the lines ends at the same impulses",
-    "friction.py: HELD = 2e-09": "any small number serves to divide by",
+    "friction.py: COMPLIANCE_OF_GUIDED = 2e-09": "any small number serves to divide by",
     "touches.py: if line.push <= 0:": "a line that does not push has nothing that is still to act",
     "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
         "a line that met its face a step ago was closed for the step, in both ways"

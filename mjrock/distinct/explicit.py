@@ -26,7 +26,7 @@ from .search.overlap import checked_overlap
 from .setup import carried_on, setup_of, slowed
 from .system import Books, Samples
 
-SHORT = 0.02
+COMPILING_RUN = 0.02
 """Duration of the run by which another process compiles the loops [s]."""
 
 
@@ -48,7 +48,7 @@ def solve_explicit(
     normal, and along each face a spring of stiffness k_s with a Coulomb slider, or rigid friction where k_s is None
     (Cundall and Strack, Geotechnique 29, 1979, 47-65). It shares no kinematics and no time integration with MuJoCo.
 
-    Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, see docs/masonry.md.
+    Masonry in space is stepped likewise, with an angular momentum and a quaternion for each block (docs/masonry.md).
     Blocks that leave their joints meet others wherever they are, in the plane and in space.
 
     Args:
@@ -139,4 +139,4 @@ def solve_explicit(
 
 def solve_shortly(case: AnyCase, contacts: Contacts | None) -> None:
     """The first steps of a case, which call all loops."""
-    solve_explicit(replace(case, duration=min(case.duration, SHORT)), contacts)
+    solve_explicit(replace(case, duration=min(case.duration, COMPILING_RUN)), contacts)

@@ -16,7 +16,7 @@ from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
 from .loop import Clock, advance
 from .memory import Memory, remember
-from .rows import ENDLESS, unsound
+from .rows import MAY_BE_INFINITE, unsound
 from .search.contact_search import ContactSearch
 from .setup import Setup
 from .supports import move_supports
@@ -27,14 +27,14 @@ CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
 LEAD = 0.5
 """By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
 In long steps what is foreseen is worse than that velocity, see `Setup.foresees`."""
-FIRST = 100_000
+FIRST_CALL = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
 HEARD = 0.3
-"""Time that later calls take, after which the progress bar moves and Ctrl-C is heard [s]."""
-WORTH_SAYING = 10.0
-"""Time that steps may take before that is spoken of [s]."""
-DAMPED = 10.0
-"""How many times shorter dashpots make a step than springs alone before that is spoken of [-]."""
+"""Time that later calls take [s]. The progress bar moves and Ctrl-C acts between them."""
+SECONDS_WORTH_SAYING = 10.0
+"""Time of the steps of a run from which on there is a warning [s]."""
+DASHPOTS_WORTH_SAYING = 10.0
+"""Step that springs alone would allow over that with dashpots, from which on the warning names the dashpots [-]."""
 
 
 class Stepping(NamedTuple):
@@ -129,7 +129,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     require_sound_rows(system)
     if memory is not None:
         clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
-    at_once, ended, memory = max(1, FIRST // max(1, len(system.lines))), False, None
+    at_once, ended, memory = max(1, FIRST_CALL // max(1, len(system.lines))), False, None
     with tqdm(total=stepping.end, desc="explicit", unit="s", delay=3, disable=None, leave=False) as bar:
         while clock.step < stop and not ended:
             if clock.step == stepping.last:
@@ -173,7 +173,7 @@ def breakdown(what: str, t: float) -> RuntimeError:
 
 def require_sound_rows(system: System) -> None:
     """Raise a RuntimeError that names the rows of a system in which a number is not finite."""
-    tables = [(name, getattr(system, name), ENDLESS) for name in ("bodies", "lines", "edges", "ways")]
+    tables = [(name, getattr(system, name), MAY_BE_INFINITE) for name in ("bodies", "lines", "edges", "ways")]
     tables += [(type(table).__name__, table.rows, table.endless) for table in (*system.laws, *system.links)]
     for name, table, endless in tables:
         if len(wrong := unsound(table, endless)):
@@ -187,12 +187,12 @@ def warn_if_long(setup: Setup, stepping: Stepping) -> None:
     lines, laws = setup.system.lines, [law.rows for law in setup.system.laws]
     sprung = bool(np.isfinite(lines["k_s"]).any())
     seconds = stepping_seconds(stepping.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
-    if seconds < WORTH_SAYING:
+    if seconds < SECONDS_WORTH_SAYING:
         return
     said = f"{stepping.last:.2g} steps of {stepping.h:.2g} s on {len(lines)} contact lines"
     slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, *laws))
     shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
-    if shorter > DAMPED:
+    if shorter > DASHPOTS_WORTH_SAYING:
         said += (
             f". The dashpots, c/k = {slowest:.2g} s, make each step {shorter:.2g} times shorter than the springs need: "
             "lower xi, or raise the frequency that it refers to"

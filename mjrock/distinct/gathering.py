@@ -38,7 +38,7 @@ def add_moment(load: Array, factor: float, place: Vector, force: Vector) -> None
 
 @inlined
 def keep_burden(system: System, samples: Samples, row: int) -> None:
-    """Keep what weight, ground motion and links do to the blocks of actuators, before any contact acts on them."""
+    """Keep the forces of weight, ground motion and links on the blocks of actuators, before contacts act on them."""
     guided = samples.guided[row]
     for i in range(len(guided)):
         if system.guided[i] < 0:

@@ -7,9 +7,9 @@ one mode. Contacts that are found later are softened for the step that a run has
 
 A flat impact is that of two blocks that meet on a whole joint: of a reduced mass m on the springs K and dashpots C of
 the joint, of the circular frequency w = (K / m)^1/2 and the damping ratio r = C / (2 m w). Dashpots take the velocity
-half a step before the pose. To first order that acts like a mass less by C h / 2, so that ln |e|, -pi r, falls by
-pi/2 r^2 w h. Where this is too much, they look ahead, see `touches.foreseen`, and the step is so short that they brake
-little within it.
+half a step before the pose. To first order that acts like a mass less by C h / 2, so that ln |e|, -pi r, falls by pi/2
+r^2 w h. Where this is too much, the rate is extrapolated, see `touches.foreseen`, and the step is so short that
+dashpots brake little within it.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ from .turning import (
     write_turn,
 )
 
-GONE = 1e6
+BROKEN_DOWN = 1e6
 """Displacement beyond which a run has broken down [m]."""
 
 
@@ -194,7 +194,7 @@ def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float) -> No
     Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]. The
     kinetic energy is that which the steps conserve: half the product of velocity and momentum before and after the
     pose, at a start after it and as far before it. It is less than that of the mean velocity, and below zero where a
-    stiff contact turns a motion round."""
+    stiff contact reverses a motion."""
     kinetic, potential, share = 0.0, 0.0, 0.5 if before > 0 else 0.0
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
@@ -222,7 +222,7 @@ def is_astray(bodies: Rows, ends: float) -> bool:
     for b in range(len(bodies)):
         body = bodies[b]
         for i in range(len(body.place)):
-            if not abs(body.place[i]) < GONE:
+            if not abs(body.place[i]) < BROKEN_DOWN:
                 return True
         if not turns_within(body, ends):
             return True

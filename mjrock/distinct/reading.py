@@ -29,10 +29,10 @@ from .rows import Row, Rows
 from .setup import Setup
 from .system import ENERGY, Books, Samples
 
-OPEN = 0.01
+RESIDUAL_WARNED_OF = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
 and over the energy there was [-]."""
-ROUNDING = 1e-12
+POSITION_ROUNDING = 1e-12
 """Rounding of a position in many steps, over its size [-]."""
 
 
@@ -84,7 +84,7 @@ class Run:
         """Energy that the rounding of positions makes [J]: of the weights over the largest displacement and lever."""
         linear = self.samples.pose[..., : 3 if self.in_space else 2]
         size = np.abs(linear).max() + np.abs(self.scene.places.at).max()
-        return ROUNDING * GRAVITY * float(self.scene.bodies.mass.sum() * size)
+        return POSITION_ROUNDING * GRAVITY * float(self.scene.bodies.mass.sum() * size)
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
@@ -118,9 +118,9 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         warn_if_open(
             unpaid,
             response.ledger.largest,
-            OPEN,
+            RESIDUAL_WARNED_OF,
             "its largest part",
-            lambda share: f"the step is long for this motion, {advice(stats, 2 * share, OPEN)}",
+            lambda share: f"the step is long for this motion, {advice(stats, 2 * share, RESIDUAL_WARNED_OF)}",
         )
     return response
 
@@ -183,7 +183,7 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
         require_no_gain(run.checked, there - work + left, scale)
     except StepError as gain:
         raise RuntimeError(f"{gain} by t = {gain.t:.4g} s; {advice(stats, 4 * gain.share, ENERGY_GAIN)}") from None
-    if -left.min() > OPEN * scale:
+    if -left.min() > RESIDUAL_WARNED_OF * scale:
         warnings.warn(
             f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "
             "a block that slides over the end of a face is met all at once, at any step",

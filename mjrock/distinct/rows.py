@@ -18,11 +18,11 @@ from ..quantities import Array, Flags, Integers
 Rows = NDArray[np.void]
 Row = Any
 """One of the rows; its numbers are attributes."""
-POINT = -2
+POINT_ON_FIXED_BLOCK = -2
 """Number of the face of a line where the point is on a fixed block and the face on the body."""
 Fields = list[Any]
 """Names of numbers, and of vectors with how many numbers they have."""
-TAKEN = ("tension", "slip", "crushing", "joint_ends", "encounter_ends")
+TAKEN_BY_LAWS = ("tension", "slip", "crushing", "joint_ends", "encounter_ends")
 """What laws of joints have taken in tension, slip and crushing, and lines of joints and of encounters at the ends of
 faces."""
 
@@ -36,8 +36,8 @@ class Kinds(NamedTuple):
         edge: an edge of a face, of which one in the plane has two.
         way: a direction along its face of a line that sticks rigidly. A line has d - 1 of them.
         total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
-            the work of ground and supports, and `TAKEN`; and `push`, the acceleration of the ground in the last step
-            [m/s2].
+            the work of ground and supports, and `TAKEN_BY_LAWS`; `push` is the acceleration of the ground in the last
+            step [m/s2].
     """
 
     body: np.dtype[np.void]
@@ -56,7 +56,7 @@ def kinds(d: int) -> Kinds:
         _line(d, s),
         _edge(d),
         _way(d, s),
-        [*numbers("friction", "ground", *TAKEN), *vectors(d, "push")],
+        [*numbers("friction", "ground", *TAKEN_BY_LAWS), *vectors(d, "push")],
     )
     return Kinds(*(np.dtype(kind) for kind in fields))
 
@@ -161,11 +161,11 @@ def chosen(table: Rows, which: Integers | Flags) -> Rows:
     return as_bytes(table)[which].reshape(-1).view(table.dtype).view(np.recarray)
 
 
-ENDLESS = ("k_s", "margin")
+MAY_BE_INFINITE = ("k_s", "margin")
 """Numbers that may be infinite: of a line that sticks rigidly, and of a face without an end."""
 
 
-def unsound(table: Rows, endless: tuple[str, ...] = ENDLESS) -> Integers:
+def unsound(table: Rows, endless: tuple[str, ...] = MAY_BE_INFINITE) -> Integers:
     """Numbers of the rows with a number that is not finite, or is none where it may be infinite."""
     finite, infinite = _words(table.dtype, endless)
     words = as_bytes(table).view(float)

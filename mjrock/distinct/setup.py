@@ -16,7 +16,7 @@ from ..quantities import ON_ITS_FACE, require_within
 from ..result.problem import problem_of
 from ..result.response import State
 from ..scene.course import Course
-from ..scene.explicit_step import SHARE
+from ..scene.explicit_step import STEP_TAKEN
 from ..scene.masonry import masonry_course, masonry_scene
 from ..scene.scene import Scene
 from .assembly import copied, guide, moved_by, started, system_of, take_grips
@@ -26,7 +26,7 @@ from .memory import Memory, memory_of, recalled
 from .search.contact_search import ContactSearch
 from .system import System
 
-SHORT = 0.25
+LOOK_AHEAD_BELOW = 0.25
 """Step over the longest stable one up to which dashpots look ahead, however strong they are [-]."""
 SHARE_OF_A_WALL = 0.05
 """Step that is taken for a wall, over the longest stable one [-]. The first three |e| of a wall against a stop are then
@@ -46,7 +46,7 @@ class Setup:
         spacing: largest spacing of the samples [s].
         ends: rotation at which the run ends [rad].
         search: where blocks that fall meet others, or None where that is not followed.
-        impacts: flat impacts at the joints of masonry. A wall has none: its steps are below `SHORT`.
+        impacts: flat impacts at the joints of masonry. A wall has none: its steps are below `LOOK_AHEAD_BELOW`.
         of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
         blocks: the fixed blocks that move, in the order of the supports.
         names: of the links of each kind.
@@ -76,7 +76,7 @@ class Setup:
         Half a step ahead of the velocity, a dashpot is stable in half of the step that it is stable in otherwise.
         """
         wanted = self.impacts is not None and self.impacts.look_ahead(h)
-        return h <= SHORT * self.limit or (wanted and h <= 0.5 * self.limit)
+        return h <= LOOK_AHEAD_BELOW * self.limit or (wanted and h <= 0.5 * self.limit)
 
     @property
     def is_slowed(self) -> bool:
@@ -142,7 +142,7 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     guide(system, case)
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
-    step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
+    step = impacts.step(STEP_TAKEN * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
     share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
     of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
     search = drawn.begun(blocks)

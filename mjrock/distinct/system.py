@@ -9,14 +9,14 @@ import numpy as np
 from ..geometry.frames import PLANE, SPACE
 from ..quantities import Array, Integers
 from ..scene.ground import Ground
-from .rows import TAKEN, Rows, kinds, rows
+from .rows import TAKEN_BY_LAWS, Rows, kinds, rows
 from .supports import Supports
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
 
-HELD, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *TAKEN)
-ENERGY = np.dtype([(name, float) for name in (*HELD, *WORK)])
+HELD_ENERGIES, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *TAKEN_BY_LAWS)
+ENERGY = np.dtype([(name, float) for name in (*HELD_ENERGIES, *WORK)])
 """Energy at a sample or a check, and the work since the start [J]: what friction has taken, what ground and supports
 and what actuators have put in, and what `rows.TAKEN` says."""
 

@@ -4,7 +4,7 @@ In space a body keeps its angular momentum L in the axes of the world half a ste
 the pose. The angular velocity w in the middle of a step, in the axes of the body, solves w = I^-1 exp(-h w / 2) R^T L,
 with R the rotation before the step. The step is of second order and keeps |L| exactly.
 
-R - 1 keeps the digits of small rotations. `turn` holds it in space, and sin and 1 - cos of the angle in the plane.
+R - 1 keeps the precision of small rotations. `turn` holds it in space, and sin and 1 - cos of the angle in the plane.
 """
 
 from __future__ import annotations
@@ -20,14 +20,15 @@ from ..geometry.vectors import Vector, dot, increase, moment, plus, put, read, s
 from ..quantities import Array
 from .rows import Row, Rows
 
-PASSES = 3
+SPIN_PASSES = 3
 """Passes of the search for the angular velocity in the middle of a step. Each gains the order of h w."""
-SLOW, PASSES_OF_SLOW = 1e-3, 2
-"""Rotation in a step below which fewer passes are enough [rad]: they leave less than its third power."""
+SLOW_TURN, PASSES_OF_SLOW = 1e-3, 2
+"""Rotation in a step below which fewer passes are enough [rad], and how many: their error is below its third power."""
 EIGHTH = 1 - math.sqrt(0.5)
 """1 - cos of an eighth of a turn."""
-SMALL = 1e-4
-"""Angle below which sines and cosines are taken from their series [rad]. The first term left out is below rounding."""
+SERIES_ANGLE = 1e-4
+"""Angle below which sines and cosines are computed from their series [rad]. The first term that is left out is below
+rounding."""
 
 
 @inlined
@@ -44,7 +45,7 @@ def rotation_change(body: Row, a: Vector) -> Vector:
 
 
 def by_body(flat: Callable[..., Any], deep: Callable[..., Any]) -> Callable[..., Any]:
-    """A function of a body with one text for those of the plane, and one for those of space."""
+    """A function of a body with one implementation for the plane and one for space."""
     return by_type(lambda body: flat if "angle" in (getattr(body, "fields", None) or body.dtype.names) else deep)
 
 
@@ -59,12 +60,13 @@ def _far_in_space(body: Row) -> bool:
 
 
 may_face_away = by_body(_far_in_plane, _far_in_space)
-"""Whether a body has turned by more than an eighth of a turn. Two bodies that have not can not face away."""
+"""Whether a body has turned by more than an eighth of a turn. The faces of two bodies that have not still face each
+other."""
 
 
 @inlined
 def in_world(body: Row, a: Vector) -> Vector:
-    """R a: a vector of a body in the axes of the world. A spin of the plane is the same in both."""
+    """R a: a vector of a body in the axes of the world. The spin of a plane body is the same in both."""
     if len(a) == 1:
         return a
     return plus(a, rotation_change(body, a))
@@ -72,7 +74,7 @@ def in_world(body: Row, a: Vector) -> Vector:
 
 @inlined
 def in_body(body: Row, a: Vector) -> Vector:
-    """R^T a: a vector of the world in the axes of a body. A spin of the plane is the same in both."""
+    """R^T a: a vector of the world in the axes of a body. The spin of a plane body is the same in both."""
     if len(a) == 1:
         return a
     turn = body.turn
@@ -117,12 +119,12 @@ def _inverse_in_space(body: Row) -> None:
 
 
 take_inverse_inertia = by_body(_no_inverse, _inverse_in_space)
-"""Keep I^-1 in the axes of the world at the pose, where many moments are to turn a body of space."""
+"""Keep I^-1 of a body in space in the axes of the world at the pose, for many moments."""
 
 
 @inlined
 def spin_from_many(body: Row, a: Vector) -> Vector:
-    """The same as `spin_from_moment`, of one of many moments."""
+    """`spin_from_moment` for a body on which many moments act: its inverse inertia has been kept before."""
     if len(a) == 1:
         return apply_inverse_inertia(body, a)
     inverse = body.inverse_in_world
@@ -171,7 +173,7 @@ take_turn = by_body(_turn_in_plane, _turn_in_space)
 
 @inlined
 def kick_spin(body: Row, change: Vector) -> None:
-    """Let the impulse of a moment act on a body [N m s]."""
+    """Apply the impulse of a moment to a body [N m s]."""
     if len(change) == 1:
         increase(body.spin, apply_inverse_inertia(body, change))
     else:
@@ -181,20 +183,20 @@ def kick_spin(body: Row, change: Vector) -> None:
 
 @inlined
 def turn_momentum(body: Row, change: Vector) -> None:
-    """Change the angular momentum of a body, which only those of space keep [N m s]."""
+    """Change the angular momentum that a body in space keeps [N m s]; a plane body keeps none."""
     if len(change) == 3:
         increase(body.momentum, change)
 
 
 @inlined
 def kick_place(body: Row, impulse: Vector) -> None:
-    """Let an impulse act on the centroid of a body [N s]."""
+    """Apply an impulse to the centroid of a body [N s]."""
     increase(body.velocity, times(read(body.inverse_mass), impulse))
 
 
 @inlined
 def strike_body(body: Row, arm: Vector, impulse: Vector) -> None:
-    """Let an impulse act at an arm from the centroid of a body [N s]."""
+    """Apply an impulse at an arm from the centroid of a body [N s]."""
     lever = moment(arm, impulse)
     kick_place(body, impulse)
     turn_momentum(body, lever)
@@ -206,7 +208,7 @@ def rotated(by: Vector, a: Vector) -> Vector:
     """exp(by) a: a vector turned by a rotation vector [rad]."""
     square = dot(by, by)
     angle = math.sqrt(square)
-    if angle < SMALL:
+    if angle < SERIES_ANGLE:
         sine, versine = 1 - square / 6, 0.5 - square / 24
     else:
         half = math.sin(0.5 * angle)
@@ -220,7 +222,7 @@ def middle_spin(body: Row, momentum: Vector, h: float) -> Vector:
     """Angular velocity in the middle of a step of length h, in the axes of the body [rad/s], in space."""
     start = in_body(body, momentum)
     spin = apply_inverse_inertia(body, start)
-    for _ in range(PASSES_OF_SLOW if h * h * dot(spin, spin) < SLOW * SLOW else PASSES):
+    for _ in range(PASSES_OF_SLOW if h * h * dot(spin, spin) < SLOW_TURN * SLOW_TURN else SPIN_PASSES):
         spin = apply_inverse_inertia(body, rotated(scaled(-0.5 * h, spin), start))
     return spin
 
@@ -235,7 +237,7 @@ def _step_in_space(body: Row, h: float) -> None:
     spin = middle_spin(body, momentum_of(body), h)
     size = math.sqrt(dot(spin, spin))
     half = 0.5 * h * size
-    if half < SMALL:
+    if half < SERIES_ANGLE:
         c, share = 1 - 0.5 * half * half, 0.5 * h * (1 - half * half / 6)
     else:
         c, share = math.cos(half), math.sin(half) / size

@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 
 from ..geometry.frames import PLANE
-from ..scene.explicit_step import SHARE, stable_step, stepping_seconds
+from ..scene.explicit_step import STEP_TAKEN, stable_step, stepping_seconds
 from ..scene.scene import Scene
 
 FEW = 8
@@ -36,7 +36,7 @@ def explicit_seconds(scene: Scene) -> float:
     ratio = np.asarray(contacts.k_s) / contacts.k  # of the springs along the face and the normal
     sprung = np.isfinite(ratio)
     stiffness = float(np.max(ratio[sprung], initial=1.0)) * scene.highest_frequency**2
-    step = SHARE * stable_step(stiffness, stiffness * float((contacts.c / contacts.k).max()))
+    step = STEP_TAKEN * stable_step(stiffness, stiffness * float((contacts.c / contacts.k).max()))
     return stepping_seconds(1 / step, len(contacts.k), sprung=bool(sprung.any()), in_space=in_space)
 
 

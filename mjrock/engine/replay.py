@@ -20,7 +20,7 @@ from ..quantities import Array, require_within
 
 FRAME = 1 / 60
 """Time between two pictures [s]."""
-SPACE, BACKSPACE = 32, 259
+SPACE_KEY, BACKSPACE_KEY = 32, 259
 """Keys, as the viewer numbers them."""
 KEYFRAME = "release"
 ENDED = "The window was closed"
@@ -167,8 +167,8 @@ def show(replay: Replay, launch: Callable[..., Any], speed: float) -> None:
         while window.is_running():
             while pressed:
                 key = pressed.pop(0)
-                runs ^= key == SPACE
-                if key == BACKSPACE:
+                runs ^= key == SPACE_KEY
+                if key == BACKSPACE_KEY:
                     replay.restart()
             now = time.perf_counter()
             if runs:

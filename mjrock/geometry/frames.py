@@ -5,8 +5,9 @@ has x, y, z and a ball. Poses are displacements from rest in both: (x, z, theta)
 one after the other. Velocities have the rates of the displacements, and the spin: theta' in the plane, and in space the
 angular velocity in the axes of the body, which are those of the world at rest.
 
-A frame is a pose with its rotation taken once: the displacement of the centroid, and R - 1, with R the rotation. R - 1
-keeps the digits of small rotations. The functions of this module and of `poses` are the only ones that know the joints.
+A frame is a pose with its rotation computed once: the displacement of the centroid, and R - 1, with R the rotation. R -
+1 keeps the precision of small rotations. The functions of this module and of `poses` are the only ones that know the
+joints.
 """
 
 from __future__ import annotations

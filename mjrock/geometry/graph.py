@@ -1,4 +1,4 @@
-"""What hangs together. SciPy imports its graphs, which takes long, when they are named."""
+"""Connected components of graphs. SciPy's graphs are imported when they are first used, since that takes long."""
 
 from __future__ import annotations
 

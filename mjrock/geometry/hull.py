@@ -14,7 +14,7 @@ from ..quantities import Array
 
 Faces = tuple[tuple[int, ...], ...]
 """Numbers of the corners of each face, counterclockwise as seen from outside."""
-FLAT = 1e-5
+COPLANAR = 1e-5
 """Distance from the plane of a face up to which a vertex belongs to it, over the extent of the points [-]."""
 THINNEST = 1e-4
 """Smallest thickness of points that bound a body, over their extent [-]."""
@@ -172,7 +172,7 @@ def _coplanar(points: Array, facets: scipy.spatial.ConvexHull) -> list[list[int]
     for seed in np.argsort(-areas, kind="stable"):
         if left[seed]:
             normal, offset = facets.equations[seed, :3], facets.equations[seed, 3]
-            near = np.abs(points @ normal + offset) <= FLAT
+            near = np.abs(points @ normal + offset) <= COPLANAR
             same = left & near[facets.simplices].all(axis=1) & (facets.equations[:, :3] @ normal > 0)
             same[seed] = True
             left &= ~same

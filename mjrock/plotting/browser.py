@@ -19,7 +19,7 @@ from ..result.bodies import Moving, bodies_of, frames_at
 from ..result.response import Response
 from .arguments import kind, picture
 from .forces import CRACKED, NOTHING, Acting, edges_of
-from .perspective import GROUND
+from .perspective import GROUND_COLOUR
 from .section import FORCE
 from .solids import TINTS
 
@@ -122,7 +122,7 @@ class Page:
         for i, body in enumerate(self.all):
             group, colour = "blocks", TINTS[i % len(TINTS)]
             if body.fixed:
-                group, colour = ("supports", SUPPORT) if body.moves else ("ground", GROUND)
+                group, colour = ("supports", SUPPORT) if body.moves else ("ground", GROUND_COLOUR)
             mesh = self.k3d.mesh(
                 body.corners.astype(np.float32),
                 np.array(body.triangles, dtype=np.uint32),

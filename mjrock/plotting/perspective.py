@@ -21,7 +21,7 @@ from .section import Update, pulling
 from .solids import Solids
 from .style import figure_of
 
-GROUND = "#e6e6e2"
+GROUND_COLOUR = "#e6e6e2"
 LIGHT = np.array([0.62, -0.25, 0.74])
 """Where the light comes from."""
 DARKEST = 0.62
@@ -160,7 +160,7 @@ def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | 
             plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
             if len(plan) > 2:
                 patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
-                look = {"facecolors": GROUND, "edgecolors": "0.6", "zorder": 0.5, "clip_on": False}
+                look = {"facecolors": GROUND_COLOUR, "edgecolors": "0.6", "zorder": 0.5, "clip_on": False}
                 ax.add_collection3d(Poly3DCollection(patch, **look))
     return level
 

@@ -19,7 +19,7 @@ from ..result.ties import elongation_of
 from .bodies import Bodies
 from .style import Look
 
-STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
+STONE, GROUND_COLOUR, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
 """Colours of masonry, of what does not move, of ties, and of forces."""
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
@@ -40,7 +40,7 @@ def together(updates: Sequence[Update]) -> Update:
 
 def blocks(ax: Axes, bodies: Bodies) -> Update:
     """Draw the outlines of bodies true to scale."""
-    stays = [Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8) for outline in bodies.fixed]
+    stays = [Polygon(outline, facecolor=GROUND_COLOUR, edgecolor="0.4", linewidth=0.8) for outline in bodies.fixed]
     for number, patch in enumerate(stays):
         patch.set_animated(number in bodies.shifts)
         ax.add_patch(patch)
@@ -74,11 +74,13 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
     ax.set_xlim(left, right)
     ax.set_ylim(min(-0.07 * height, low[1]), max(high[1], height) + (1.7 * ARROW if forces else 0.05) * height)
-    ax.add_patch(Rectangle((left, -height), right - left, height, facecolor=GROUND, edgecolor="none", zorder=0.5))
+    ax.add_patch(
+        Rectangle((left, -height), right - left, height, facecolor=GROUND_COLOUR, edgecolor="none", zorder=0.5)
+    )
     ax.plot([left, right], [0, 0], color="0.15", linewidth=1.0, zorder=1)
     if case.stop_top is not None:
         stop = Rectangle((-wall.b - 0.09 * height, 0), 0.09 * height, case.stop_top)
-        stop.set(facecolor=GROUND, edgecolor="0.4", hatch="////", linewidth=0.8, zorder=1)
+        stop.set(facecolor=GROUND_COLOUR, edgecolor="0.4", hatch="////", linewidth=0.8, zorder=1)
         ax.add_patch(stop)
     toes = (1.0,) if case.one_sided else (1.0, -1.0)
     toe_x = [side * wall.half_base for side in toes]

@@ -17,7 +17,7 @@ from ..problem.wall.effect import Effect
 from ..quantities import require_flag, require_text
 from .arguments import anything, picture
 from .bodies import Bodies
-from .section import GROUND, STONE, blocks, surroundings
+from .section import GROUND_COLOUR, STONE, blocks, surroundings
 from .style import Look, figure_of, titled
 
 Note = tuple[tuple[float, float], str]
@@ -165,7 +165,9 @@ def _elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
     wall = case.block
     height, length = 2 * wall.h, wall.length
     side = 0.08 * length + 0.08 * height
-    ax.add_patch(Rectangle((-0.5 * length - side, -height), length + 2 * side, height, facecolor=GROUND, zorder=0.5))
+    ax.add_patch(
+        Rectangle((-0.5 * length - side, -height), length + 2 * side, height, facecolor=GROUND_COLOUR, zorder=0.5)
+    )
     levels = np.array([0.0, wall.front.eaves, height])
     half_length = 0.5 * wall.front.long(levels)
     front = np.column_stack([np.append(-half_length, half_length[::-1]), np.append(levels, levels[::-1])])

@@ -1,1 +1,1 @@
-"""What comes back: the response, its peaks and impacts, its energy ledger, and comparisons."""
+"""Results: the response, its peaks and impacts, its energy ledger, and comparisons."""

@@ -15,7 +15,7 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.wall.standing import JointFrames, in_space
 from ..quantities import Array, Integers, require_within
 
-SHORT = 1e-6
+SHORT_WAY = 1e-6
 """Half the time over which the velocity of a support is taken [s]."""
 
 
@@ -140,8 +140,8 @@ def bodies_of(case: AnyCase, t: Array, pose: Array, velocity: Array) -> list[Bod
         if body is not None:
             where, rate = pose[:, body], velocity[:, body]
         elif support is not None:
-            after, before = (in_space(support.at(t + step)) for step in (SHORT, -SHORT))
-            where[:, :3], rate[:, :3] = in_space(support.at(t)), (after - before) / (2 * SHORT)
+            after, before = (in_space(support.at(t + step)) for step in (SHORT_WAY, -SHORT_WAY))
+            where[:, :3], rate[:, :3] = in_space(support.at(t)), (after - before) / (2 * SHORT_WAY)
         moves = body is not None or support is not None
         bodies.append(Body(solid.name, solid.corners, solid.faces, solid.rest, where, rate, solid.fixed, moves))
     return bodies

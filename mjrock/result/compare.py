@@ -17,10 +17,10 @@ from .ending import Outcome
 from .response import Response
 from .rocking import Impact
 
-FAINT = 0.01
+COMPARED_FROM = 0.01
 """Energy before an impact under ground motion that is too small to be paired, over that which overturns the wall
 [-]."""
-TOGETHER = 0.25
+SAME_IMPACT = 0.25
 """How far apart in time two impacts may be that belong to each other, times p of the wall [-]."""
 
 
@@ -71,8 +71,8 @@ class Comparison:
         if not case.shaken:
             return None
         outer = case.restoring.outer
-        least = FAINT * float(outer.energy(max(outer.alpha, 0.0)))
-        return paired(self.reference.impacts, self.candidate.impacts, TOGETHER / case.wall.p, least)
+        least = COMPARED_FROM * float(outer.energy(max(outer.alpha, 0.0)))
+        return paired(self.reference.impacts, self.candidate.impacts, SAME_IMPACT / case.wall.p, least)
 
     def _values(self, left: Array | list[float], right: Array | list[float]) -> Array:
         return _columns(left, right) if self.pairs is None else taken_by(self.pairs, left, right)
@@ -170,7 +170,7 @@ class Comparison:
             lines.append(f"{i + 1:>6} |" + "|".join(cells))
         if self.pairs is not None:
             lines.append(
-                f"Impacts are paired by time; those of less than {FAINT:.0%} of the overturning energy are out."
+                f"Impacts are paired by time; those of less than {COMPARED_FROM:.0%} of the overturning energy are out."
             )
         if self.case.shaken:
             lines.append("Under ground motion the restitution is that of single impacts, and none of free rocking.")

@@ -18,7 +18,7 @@ from ..quantities import Array
 from .bodies import Body
 from .forces import Forces
 
-NOTHING = 1e-9
+NEGLIGIBLE_FORCE = 1e-9
 """Normal force of a joint that carries none, over the largest of all [-]."""
 SLIPS = 1 - 1e-6
 """Share of the friction from which a joint slides [-]."""
@@ -66,7 +66,7 @@ def _edge(
     normal, *along = below.turned(np.array([joint.normal, *joint.axes]))[0]
     place = (joint.outline - joint.middle) @ joint.axes.T
     pressed, slid = forces.normal[sample, number], forces.shear[sample, number]
-    presses = pressed > NOTHING * forces.normal.max()
+    presses = pressed > NEGLIGIBLE_FORCE * forces.normal.max()
     shares = at_corners(place, forces.eccentricity[sample, number]) if presses else np.full(len(place), 1 / len(place))
     parts = [shares * part + 0.0 for part in (pressed, *slid)]
     total = pressed * normal + slid @ along

@@ -1,4 +1,4 @@
-"""How runs end, in words too, and how long a solver took."""
+"""How runs end, with a sentence that says it, and the time that a solver took."""
 
 from __future__ import annotations
 
@@ -75,9 +75,9 @@ class Stopwatch:
         self._began = time.perf_counter(), time.thread_time()
 
     def took(self, wall: str = "wall_time", processor: str = "processor_time") -> dict[str, float]:
-        """The two times under their names in the `stats` of a response."""
+        """Both times, under their names in the `stats` of a response."""
         return {wall: time.perf_counter() - self._began[0], processor: time.thread_time() - self._began[1]}
 
     def stepping(self) -> dict[str, float]:
-        """The two times under the names for the steps alone."""
+        """Both times, under the names for the steps alone."""
         return self.took("stepping_time", "stepping_processor_time")

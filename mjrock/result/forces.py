@@ -99,7 +99,7 @@ class Forces:
 
 
 class Gathered(NamedTuple):
-    """What a solver has gathered at some poses.
+    """The forces that a solver has kept at some poses.
 
     Args:
         t: times [s], shape (n,).
@@ -125,7 +125,7 @@ class Gathered(NamedTuple):
 
 
 def forces_of(case: AnyCase, frames: JointFrames, gathered: Gathered) -> Forces:
-    """The forces of a run from what was gathered."""
+    """The forces of a run from those that were kept."""
     d = frames.middle.shape[1]
     middle, axes = Moving(case, gathered.t, gathered.pose).joints(frames)
     force, about = gathered.loads[..., :d], gathered.loads[..., d:]
@@ -166,7 +166,7 @@ def guides_of(case: AnyCase, gathered: Gathered) -> dict[str, Array]:
 
 
 def add_links(case: AnyCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
-    """Add what links do to the reactions of the blocks that they are anchored on, and to that of all anchors."""
+    """Add the forces of links to the reactions of the blocks that they are anchored on, and to that of all anchors."""
     moving, blocks = Moving(case, gathered.t, gathered.pose), case.blocks
     for name, pulled in gathered.pulled.items():
         if name not in case.links:

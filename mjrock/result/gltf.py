@@ -1,7 +1,7 @@
 """The motion of bodies as glTF 2.0 in one binary file, which Blender and viewers on the web open.
 
-The standard library writes it: a file is one JSON text and one buffer of numbers, and a library of its classes would
-still be given all of these numbers. In glTF y points upwards: x, y, z become x, z, -y.
+The standard library is enough: a file is one JSON text and one buffer of numbers, which another library would need too.
+In glTF y points upwards: x, y, z become x, z, -y.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .bodies import Body
 
 Json = dict[str, object]
 """An object in the text of the file."""
-FLOAT, WHOLE = 5126, 5125
+GLTF_FLOAT, GLTF_INTEGER = 5126, 5125
 """glTF's codes for numbers of 32 bits: floating point, and whole."""
 COLOURS = {"masonry": (0.77, 0.55, 0.40, 1.0), "fixed": (0.5, 0.5, 0.5, 1.0)}
 
@@ -34,7 +34,11 @@ class Numbers:
         packed = np.ascontiguousarray(values, dtype="<u4" if whole else "<f4")
         rows = packed.reshape(len(packed), -1)
         self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": packed.nbytes})
-        table = {"bufferView": len(self.views) - 1, "componentType": WHOLE if whole else FLOAT, "count": len(packed)}
+        table = {
+            "bufferView": len(self.views) - 1,
+            "componentType": GLTF_INTEGER if whole else GLTF_FLOAT,
+            "count": len(packed),
+        }
         ends = {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
         self.accessors.append(table | {"type": kind} | ends)
         self.data += packed.tobytes()

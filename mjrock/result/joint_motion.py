@@ -1,4 +1,4 @@
-"""What masonry does in a run: openings and slips of its joints, blocks that fall, and blocks that overhang."""
+"""The motion of masonry in a run: openings and slips of its joints, blocks that fall, and blocks that overhang."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from ..scene.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class JointMotion:
-    """What is read from the motion of masonry.
+    """Results of the motion of masonry.
 
     Args:
         opening: largest gap of each joint [m], shape (joints,). Fixed blocks are where supports have moved them.
@@ -108,7 +108,7 @@ def left_joints(masonry: Masonry, t: Array, off: Flags) -> dict[str, float]:
 
 
 def below_everything(masonry: Masonry, supports: tuple[Support, ...], t: Array, drop: Array) -> list[str]:
-    """Names of the blocks that lie below all fixed blocks in the end, as those that fall past the edge of the ground.
+    """Names of the blocks that lie below all fixed blocks at the end, having fallen past the edge of the ground.
 
     Args:
         masonry: the masonry.
@@ -155,13 +155,13 @@ AT_ONCE = 1_000_000
 
 
 class JointRecord(NamedTuple):
-    """What joints did in a run.
+    """The motion of joints in a run.
 
     Args:
         opening, sliding: the largest of each joint [m], shape (joints,).
         deepest: the deepest penetration [m].
         off: whether one block of each joint has slid off the other, shape (steps, joints).
-        parted: whether each joint holds nothing any more, of the same shape, see `joint_motion`.
+        parted: whether the faces of each joint have parted, of the same shape, see `joint_motion`.
     """
 
     opening: Array
@@ -190,7 +190,7 @@ def in_parts(pose: Array, shift: Array, joints: int, look: Callable[[Array, Arra
 
 
 def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> JointRecord:
-    """What the joints of masonry did, as seen from the supports that move.
+    """The motion of the joints of masonry, relative to the supports that move.
 
     The blocks of a joint have parted where one has slid by more than the width of the joint, or where their faces are
     apart by more than a tenth of this width at the nearest point.
@@ -337,11 +337,11 @@ def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames
                     slid[n, j, axis] = points.sign[i] * (along[axis] - points.at_rest[i, axis])
 
 
-LOOKS = 200
+OVERHANG_SAMPLES = 200
 """Most times at which overhangs are computed."""
-WORTH_SAYING = 1e-3
+OVERHANG_WORTH_SAYING = 1e-3
 """Overhang that is reported, over the size of the block [-]."""
-UPRIGHT = 1e-9
+VERTICAL_FACE = 1e-9
 """Vertical part of the normal of a joint up to which it carries no weight [-]."""
 
 
@@ -360,11 +360,11 @@ def past_support(
     """
     masonry, centroids, found = standing.masonry, standing.centroids, {}
     faces = [below.corners[:, :-1] for below, _ in standing.faces]
-    looks = np.unique(np.linspace(0, len(motion.off) - 1, LOOKS).astype(int))
+    looks = np.unique(np.linspace(0, len(motion.off) - 1, OVERHANG_SAMPLES).astype(int))
     for block, beds in _beds(masonry).items():
         weight = centroids[block, :-1]
         drawn = _beyond(weight, np.concatenate([faces[j] for j in beds]))
-        least = max(drawn, 0.0) + WORTH_SAYING * masonry.blocks[block].size
+        least = max(drawn, 0.0) + OVERHANG_WORTH_SAYING * masonry.blocks[block].size
         if drawn + motion.sliding[beds].max() < least:
             continue
         slid = slips(looks)[:, beds, :-1]
@@ -378,7 +378,7 @@ def past_support(
 
 
 def told_of_overhang(past: Mapping[str, float]) -> str:
-    """A sentence for a message that names the blocks that overhang, and how far; empty where none does."""
+    """A sentence that names the blocks that overhang, and how far; empty where none does."""
     far = [f"{name} by {past[name]:.3g} m" for name in sorted(past, key=past.__getitem__, reverse=True)]
     return (
         f" The weight passed the edge of what it stands on: {named(far)}. Faces have no end in MuJoCo, where such a "
@@ -396,7 +396,7 @@ def _beds(masonry: Masonry) -> dict[int, list[int]]:
         up = float(joint.normal[-1])
         if joint.is_bed and up > 0:
             beds.setdefault(joint.above, []).append(j)
-        elif not joint.is_bed and abs(up) > UPRIGHT:
+        elif not joint.is_bed and abs(up) > VERTICAL_FACE:
             inclined |= {joint.below, joint.above}
     return {block: on for block, on in beds.items() if block not in inclined}
 

@@ -1,4 +1,4 @@
-"""The energy ledger of a run: energy that is there, that was taken and put in, and the error of their balance."""
+"""The energy ledger of a run: energy that is stored, dissipated and put in, and the error of their balance."""
 
 from __future__ import annotations
 

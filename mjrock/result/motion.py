@@ -55,7 +55,7 @@ class SampledMotion:
         return self.velocity[:, :, 2]
 
 
-ROUNDING = 1e-12
+TIME_ROUNDING = 1e-12
 """Part of an interval that counts as rounding, over the number of intervals [-]."""
 
 
@@ -68,7 +68,7 @@ def required_spacing(output_step: float | None, duration: float, otherwise: floa
 
 def intervals(duration: float, spacing: float) -> int:
     """The fewest equal intervals of a duration that are not longer than a spacing, at least one."""
-    return max(1, math.ceil(duration / spacing * (1 - ROUNDING)))
+    return max(1, math.ceil(duration / spacing * (1 - TIME_ROUNDING)))
 
 
 def thinned(count: int, stride: int) -> Integers:

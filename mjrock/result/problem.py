@@ -20,7 +20,7 @@ from .ledger import Ledger
 from .motion import Motion, SampledMotion
 from .reading import BesidePoses, Reading, masonry_reading, wall_reading
 
-OPEN = 0.05
+RESIDUAL_OF_WALL = 0.05
 """Error of the balance of a wall above which there is a warning, over the energy of the release and of the
 ground motion [-]."""
 UNPAID = 0.01
@@ -82,7 +82,7 @@ class WallProblem:
     def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
         """Energy that has appeared while the wall could still come back."""
         unpaid = ledger.residual[self.case.returns_from(motion.theta[:, 0])].max(initial=0.0)
-        return Unpaid(float(unpaid), scale, "the energy there was", OPEN)
+        return Unpaid(float(unpaid), scale, "the energy there was", RESIDUAL_OF_WALL)
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ from .joint_motion import (
 from .motion import SampledMotion
 from .rocking import Rocking, rocking_history
 
-STILL = 0.2
+TIME_AT_REST = 0.2
 """Time without motion after which blocks that have left their joints lie still [s]."""
 
 
@@ -147,5 +147,5 @@ def _past_edges(
 
 def _lies_still(scene: Scene, t: Array, motion: SampledMotion) -> bool:
     """Whether nothing moves any more: for the last 0.2 s none did as `is_quiet` says."""
-    last = motion.velocity[t >= t[-1] - STILL]
-    return t[-1] > STILL and all(is_quiet(scene, 0.0, velocity) for velocity in last)
+    last = motion.velocity[t >= t[-1] - TIME_AT_REST]
+    return t[-1] > TIME_AT_REST and all(is_quiet(scene, 0.0, velocity) for velocity in last)

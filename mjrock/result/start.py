@@ -12,7 +12,7 @@ from ..quantities import require_array, require_within, shown
 from .response import End, State
 
 PARTS = ("pose", "velocity")
-UNIT = 1e-6
+UNIT_ROUNDING = 1e-6
 """Largest difference of the length of a quaternion from one [-]."""
 
 
@@ -40,8 +40,8 @@ def required_start(start: object, case: AnyCase) -> State:
         require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, 1e3)
     if freedom is SPACE:
         size = np.linalg.norm(pose[:, 3:], axis=1)
-        for length in size[np.abs(size - 1) > UNIT].tolist():
-            require_within("start, length of a quaternion", length, 1 - UNIT, 1 + UNIT)
+        for length in size[np.abs(size - 1) > UNIT_ROUNDING].tolist():
+            require_within("start, length of a quaternion", length, 1 - UNIT_ROUNDING, 1 + UNIT_ROUNDING)
     return pose, velocity
 
 

@@ -11,7 +11,7 @@ from ..files import quoted, write_text
 from ..quantities import Array, require_path
 from .bodies import Body
 
-POINT, POLYGON = 1, 7
+VTK_POINT, VTK_POLYGON = 1, 7
 """VTK's numbers of kinds of cells."""
 
 
@@ -42,7 +42,7 @@ def texts_of_bodies(bodies: Sequence[Body]) -> list[str]:
     rest = np.concatenate([body.rest + body.corners for body in bodies])
     rates = np.concatenate([body.rate(body.corners) for body in bodies], axis=1)
     return [
-        _grid(at, faces, POLYGON, {"displacement": at - rest, "velocity": rate}, cells)
+        _grid(at, faces, VTK_POLYGON, {"displacement": at - rest, "velocity": rate}, cells)
         for at, rate in zip(places, rates, strict=True)
     ]
 
@@ -51,7 +51,8 @@ def texts_of_joints(middles: Array, values: Mapping[str, Array]) -> list[str]:
     """Points in the middle of joints [m], shape (n, joints, 3), with values of the shapes (n, joints, ...)."""
     cells = [(i,) for i in range(middles.shape[1])]
     return [
-        _grid(at, cells, POINT, {name: value[i] for name, value in values.items()}, {}) for i, at in enumerate(middles)
+        _grid(at, cells, VTK_POINT, {name: value[i] for name, value in values.items()}, {})
+        for i, at in enumerate(middles)
     ]
 
 

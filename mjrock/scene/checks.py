@@ -15,7 +15,7 @@ GROUND = -1
 
 
 def said_of(part: Any) -> str:
-    """What a part is called in a scene."""
+    """The name of a part in a message."""
     names = {"Bodies": "bodies", "ContactPoints": "contacts", "Links": "links", "ConstantForces": "forces"}
     return names[type(part).__name__]
 

@@ -89,7 +89,7 @@ def damping_rate(dampers: Dampers, pose: Array, freedom: Freedom, principal: tup
 
 
 def taken_by_dampers(dampers: Dampers, freedom: Freedom, pose: Array, mean: Array, width: Array, force: Array) -> Array:
-    """What each damper takes in the window of each step [J], shape (steps, d).
+    """Energy that each damper dissipates in the window of each step [J], shape (steps, d).
 
     Args:
         dampers: the dampers.

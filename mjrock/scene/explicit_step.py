@@ -14,21 +14,21 @@ import warnings
 
 from ..quantities import Implausible
 
-SHARE = 0.4
+STEP_TAKEN = 0.4
 """Step that is taken for masonry, over the longest stable one [-]."""
-SPRUNG, RIGID = 50e-9, 110e-9
+SPRUNG_LINE, RIGID_LINE = 50e-9, 110e-9
 """Time of an explicit step a line, with shear springs and with rigid friction [s]
 (`scripts/studies/solvers_of_masonry.py`)."""
 SPRUNG_IN_SPACE, RIGID_IN_SPACE = 120e-9, 800e-9
-"""`SPRUNG` and `RIGID` for a point in space [s]. `scripts/studies/columns_in_space.py` finds 65e-9 to 280e-9 and 300e-9
-to 1600e-9, with how busy the machine is."""
+"""The same for a point in space [s]. `scripts/studies/columns_in_space.py` finds 65e-9 to 280e-9 and 300e-9 to 1600e-9,
+with how busy the machine is."""
 TINY = 1e-3
 """Step over the one that a scene needs below which it is doubted [-]."""
 
 
 def stepping_seconds(steps: float, lines: int, *, sprung: bool, in_space: bool) -> float:
     """Time that explicit steps of contact lines or points take [s], with shear springs or with rigid friction."""
-    of_springs, of_friction = (SPRUNG_IN_SPACE, RIGID_IN_SPACE) if in_space else (SPRUNG, RIGID)
+    of_springs, of_friction = (SPRUNG_IN_SPACE, RIGID_IN_SPACE) if in_space else (SPRUNG_LINE, RIGID_LINE)
     return steps * lines * (of_springs if sprung else of_friction)
 
 

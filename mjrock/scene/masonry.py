@@ -25,9 +25,9 @@ from .parts import Bodies, ContactPoints, JointSprings, Limits, attachments
 from .rest import UnsettledError
 from .scene import Scene
 
-STIFF = 1e-5
-"""By how much joints that count as stiff give at each line under the heaviest block [m]."""
-GONE = 0.1
+SETTLEMENT_OF_STIFF = 1e-5
+"""Deformation of joints that count as stiff, at each line under the heaviest block [m]."""
+SHARE_OF_FARTHEST = 0.1
 """Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
 
 
@@ -48,7 +48,7 @@ def masonry_scene(case: MasonryCase) -> Scene:
 
 
 def masonry_course(case: MasonryCase, scene: Scene) -> Course:
-    """What happens to the scene of a case: it starts at rest, with the velocities of the case."""
+    """The course of the scene of a case: it starts at rest, with the velocities of the case."""
     still = np.zeros((len(scene.bodies.names), scene.freedom.nv))
     velocity = still if case.velocity is None else np.asarray(case.velocity)
     motion, vertical = case.motion, case.vertical
@@ -61,7 +61,7 @@ def masonry_course(case: MasonryCase, scene: Scene) -> Course:
 def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None:
     """Find the masonry at rest under its weight, or raise ValueError with the names of the blocks that fall.
 
-    What only ties keep from falling is left to the search for equilibrium.
+    Blocks that only ties keep from falling are checked by the search for equilibrium alone.
     """
     scene = standing_masonry(masonry, effects)
     try:
@@ -97,7 +97,7 @@ def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
 
 
 def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> ValueError:
-    """What is said of masonry that stands as rigid blocks, but of which no pose of rest was found.
+    """The message for masonry that stands as rigid blocks, but for which no pose of rest was found.
 
     Args:
         masonry, effects: the masonry.
@@ -131,14 +131,16 @@ def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> Val
 
 
 def gone_in(masonry: Masonry, pose: Array) -> tuple[str, ...]:
-    """Names of the blocks that have gone at the end of a search for the pose of rest, shape (free, nq)."""
+    """Names of the blocks that have fallen at the end of a search for the pose of rest, of shape (free, nq)."""
     moved = np.linalg.norm(pose[:, : 3 if masonry.in_space else 2], axis=1)
-    return tuple(masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= GONE * moved.max())
+    return tuple(
+        masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= SHARE_OF_FARTHEST * moved.max()
+    )
 
 
 def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...]:
-    """Names of blocks of rigid masonry that stand only by wedging, though `falling` lets them; none of what comes to
-    rest.
+    """Names of blocks that stand as rigid blocks only by wedging, although `falling` does not name them; none where the
+    masonry comes to rest.
 
     Friction would hold them if their joints were pressed together, but from joints without load the weight does not
     press them enough, on joints of any stiffness.
@@ -156,7 +158,7 @@ def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...
 def stands_on_stiff_joints(scene: Scene) -> bool:
     """Whether masonry comes to rest on joints that give by no more than STIFF under its heaviest block."""
     k = scene.contacts.k
-    factor = max(1.0, float(scene.bodies.mass.max()) * GRAVITY / (STIFF * float(k.min())))
+    factor = max(1.0, float(scene.bodies.mass.max()) * GRAVITY / (SETTLEMENT_OF_STIFF * float(k.min())))
     try:
         _ = replace(scene, contacts=replace(scene.contacts, k=factor * k)).at_rest
     except UnsettledError:

@@ -14,7 +14,7 @@ from ..compiled import inlined
 from ..geometry.vectors import Vector, spun
 from ..quantities import Array
 
-DIAGONAL = 1e-12
+PRODUCT_ROUNDING = 1e-12
 """Product of inertia that is put down to rounding, over the sum of the moments [-]."""
 
 
@@ -30,7 +30,7 @@ def products_of(inertia: Array) -> Array:
     if inertia.ndim == 1:
         return np.empty((0, 3))
     products = np.column_stack([inertia[:, 0, 1], inertia[:, 0, 2], inertia[:, 1, 2]])
-    rounding = DIAGONAL * np.trace(inertia, axis1=1, axis2=2)
+    rounding = PRODUCT_ROUNDING * np.trace(inertia, axis1=1, axis2=2)
     return np.where(np.abs(products) > rounding[:, None], products, 0.0)
 
 
@@ -51,7 +51,7 @@ def principal(mass: Array, inertia: Array) -> tuple[csr_array, Array]:
 
 @inlined
 def coupling(products: Array, v: Array) -> float:
-    """What the products of inertia add to v^T M v, the sum of masses times squares [J]."""
+    """The part of v^T M v that the products of inertia add to the sum of masses times squares [J]."""
     total = 0.0
     for body in range(len(products)):
         x, y, z = v[6 * body + 3], v[6 * body + 4], v[6 * body + 5]

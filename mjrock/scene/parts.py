@@ -115,7 +115,7 @@ class ContactPoints:
         k_s: spring of each contact along its face [N/m], infinite where it sticks rigidly, shape (m,), or one number
             for all.
         area: what part of its joint each contact stands for [m2], shape (m,), or one number for all.
-        bonds: what mortar holds in each joint, None where a joint is dry; empty where all are.
+        bonds: the bond of each joint, None where a joint is dry; empty where all are.
     """
 
     body: Integers
@@ -241,7 +241,7 @@ class Links:
 
     @cached_property
     def bearing(self) -> Links:
-        """The links with a spring that may bear something at rest: those that only pull."""
+        """The links with a spring that may have a force at rest: those that only pull."""
         return self.of((self.k > 0) & (self.push == 0))
 
     @cached_property
@@ -273,7 +273,7 @@ class ConstantForces:
 
 
 class JointSprings(NamedTuple):
-    """What the joints are made of, per area, in the order of their names, shape (joints,) each.
+    """Properties of the joints per area, in the order of their names, shape (joints,) each.
 
     Args:
         k_n, k_s: stiffness along the normal and along the face [N/m3], k_s infinite where the joint sticks rigidly.

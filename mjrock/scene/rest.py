@@ -23,15 +23,15 @@ from ..quantities import GRAVITY, Array, Flags
 from .parts import ContactPoints
 from .potential import Potential
 
-EXACT = 1e-9
+FORCE_TOLERANCE = 1e-9
 """Force that may be missing at rest, over the weight of the heaviest body [-]."""
-ROUNDING = 16 * np.finfo(float).eps
+LENGTH_ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the length of a tie, over that length [-]."""
 LEANING = 1e-6
 """Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
-TURNED = 0.5
+ROTATION_OF_FALLEN = 0.5
 """Rotation beyond which a body no longer stands [rad]."""
-FLAT = 1e-12
+NEGLIGIBLE_STIFFNESS = 1e-12
 """Negative stiffness that is put down to rounding, over the largest [-]."""
 LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 1e-12, 1.0
 """Stiffness that is lent to every motion in the search, over the largest [-]: at the start, the least of it, and that
@@ -39,14 +39,14 @@ beyond which a search ends, since the bodies hardly move any more. Searches that
 SLIPPING, RAISED = 1e-2, 4.0
 """Least share of its shear stiffness that a contact that slips lends along its slip, and by how much it is raised each
 time that more force is missing than before [-]."""
-ROUNDED, RAISES, SMALLEST_PART = 1e-13, 1e-6, 1e-6
+ENERGY_ROUNDING, RAISES, SMALLEST_PART = 1e-13, 1e-6, 1e-6
 """Rounding of the energy, over the weight of a body times a metre [-]; by how much a step of Newton's method may raise
 the energy, over itself, as friction acts halfway between point and face where slip is that of the point [-]; and the
 smallest part of a step that is tried."""
 PUSHES, PUSH = 4, 1e-2
 """Most pushes off poses at which the bodies balance and do not stand, and the first motion of one, over the deepest
 penetration [-]."""
-ENDED = 0.5
+LITTLE_PROGRESS = 0.5
 """Force that is missing, over that of the pose before, above which a pose that is near enough ends the search [-].
 Faces that touch without force are then apart by less than the resolution of the coordinates."""
 
@@ -81,8 +81,9 @@ SEARCHES = (
 there in the last ones, as stiff ones slip more on the way."""
 
 
-HELD = Search(1e4, 100, limited=False)
-"""The search for what friction holds without a limit. With 1e6, rounding of the slip is more than may be missing."""
+SEARCH_WITHOUT_LIMIT = Search(1e4, 100, limited=False)
+"""The search in which friction holds without a limit. With 1e6 in place of 1e4, rounding of the slip makes a larger
+force than may be missing."""
 
 
 class UnsettledError(ValueError):
@@ -104,7 +105,7 @@ class Sliders(NamedTuple):
         stiffness: of the springs [N/m], shape (m,).
         limit: friction that each contact can have, negative for one that is open or smooth [N], shape (m,).
         place: how far each slider has moved [m], shape (m, ways): one way in the plane, two in space.
-        shares: what each spring feels of the slip of every point [-], shape (m, m).
+        shares: share of the slip of every point in the elongation of each spring [-], shape (m, m).
     """
 
     stiffness: Array
@@ -169,7 +170,9 @@ def settled(potential: Potential, contacts: ContactPoints) -> tuple[Array, Array
 
 def held(potential: Potential, contacts: ContactPoints) -> Array:
     """The pose of rest of bodies that friction holds without a limit, shape (n, nq), see `settled`."""
-    pose, _ = left_falling(potential, contacts, HELD, searched(potential, contacts, HELD, None))
+    pose, _ = left_falling(
+        potential, contacts, SEARCH_WITHOUT_LIMIT, searched(potential, contacts, SEARCH_WITHOUT_LIMIT, None)
+    )
     return pose.reshape(-1, potential.structure.places.freedom.nq)
 
 
@@ -210,7 +213,7 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
         grips = grips_at(potential, pose, sliders)
         missing = (potential.load(pose) + rates.T @ push + grips.held) / size
         left, slipped = float(np.abs(missing).sum()), grips.slider if search.accumulates else slipped
-        ends = left >= ENDED * last or tried == search.poses - 1
+        ends = left >= LITTLE_PROGRESS * last or tried == search.poses - 1
         if ends and np.abs(missing).max() < tolerance(potential):
             return pose, grips
         if left < last:
@@ -225,7 +228,7 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
         pose = lowering(potential, pose, motion, sliders)
         openings = potential.openings(pose)
         closed = potential.closed(openings)
-        if loose > MOST_LOOSE or not turned(pose, freedom).max() < TURNED:
+        if loose > MOST_LOOSE or not turned(pose, freedom).max() < ROTATION_OF_FALLEN:
             break
     raise UnsettledError(pose.reshape(-1, freedom.nq))
 
@@ -245,7 +248,7 @@ def sliders_at(contacts: ContactPoints, search: Search, push: Array, slipped: Ar
 def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
     """The pose after a motion, or after a part of it that does not raise the energy, see `energy_with`."""
     freedom, part, energy = potential.structure.places.freedom, 1.0, energy_with(sliders, potential, pose)
-    highest = energy + max(ROUNDED * heaviest(potential), RAISES * abs(energy))
+    highest = energy + max(ENERGY_ROUNDING * heaviest(potential), RAISES * abs(energy))
     while part > SMALLEST_PART and energy_with(sliders, potential, moved(pose, part * motion, freedom)) > highest:
         part *= 0.5
     return moved(pose, part * motion, freedom)
@@ -283,16 +286,16 @@ def shear_stiffness(grips: Grips, share: float) -> csr_array:
 
 
 def falling_way(potential: Potential, grips: Grips, pose: Array) -> Array | None:
-    """The motion that takes the most energy from a pose at rest while its friction holds, or None where it stands.
+    """The motion that lowers the energy most from a pose at rest while its friction holds, or None where it stands.
 
-    What touches without force resists nothing: a motion the other way opens it.
+    A contact that touches without force has no stiffness: a motion the other way opens it.
     """
     presses = (potential.pushes(pose) > tolerance(potential)) | potential.bonded
     bent = potential.curvature(pose)
     stiffness = potential.stiffness(pose, np.where(presses, potential.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
     lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(grips, 1.0) + bent), most)
-    return way if lowest < -FLAT * float(abs(stiffness).max()) else None
+    return way if lowest < -NEGLIGIBLE_STIFFNESS * float(abs(stiffness).max()) else None
 
 
 def let_go(potential: Potential, grips: Grips, pose: Array, way: Array) -> Array:
@@ -303,13 +306,13 @@ def let_go(potential: Potential, grips: Grips, pose: Array, way: Array) -> Array
     def energy(far: float) -> float:
         return potential.energy(moved(pose, far * way, freedom)) - far * held + 0.5 * far * far * stiffness
 
-    while energy(2 * far) < energy(far) and far * np.abs(way).max() < TURNED:
+    while energy(2 * far) < energy(far) and far * np.abs(way).max() < ROTATION_OF_FALLEN:
         far *= 2
     return moved(pose, far * way, freedom)
 
 
 def touching(potential: Potential, pose: Array) -> Flags:
-    """What is closed at the start of a search, shape (m + t,): all contacts, and the ties that are taut."""
+    """Springs that are closed at the start of a search, shape (m + t,): all contacts, and the ties that are taut."""
     contacts = np.arange(len(potential.springs)) < len(potential.structure.k)
     closed: Flags = contacts | (potential.openings(pose) < 0)
     return closed
@@ -324,7 +327,7 @@ def heaviest(potential: Potential) -> float:
 def tolerance(potential: Potential) -> float:
     """Force that may be missing at rest [N]."""
     ties = potential.structure.ties
-    return max(EXACT * heaviest(potential), ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+    return max(FORCE_TOLERANCE * heaviest(potential), LENGTH_ROUNDING * float((ties.k * ties.reach).max(initial=0)))
 
 
 def lowered(places: Places, springs: Array, forces: AppliedForces, masses: Array, pose: Array) -> Array:

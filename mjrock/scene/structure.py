@@ -1,4 +1,4 @@
-"""The structure of a scene: what has energy in it, and how much at the poses of a motion."""
+"""The structure of a scene: the parts that have energy, and this energy at the poses of a motion."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NO_PRODUCTS.setflags(write=False)
 
 
 class Structure(NamedTuple):
-    """What has energy in a scene, as arrays for compiled functions.
+    """The parts of a scene that have energy, as arrays for compiled functions.
 
     Args:
         places: the contacts.

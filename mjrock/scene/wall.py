@@ -71,7 +71,7 @@ def wall_scene(case: Case, contacts: Contacts, method: Method = METHOD) -> Scene
 
 
 def wall_course(case: Case, scene: Scene) -> Course:
-    """What happens to the scene of a case.
+    """The course of the scene of a case.
 
     The wall is released tilted about its toe, on a base that is compressed until it carries the weight. A wall set down
     on undeformed springs would fall by m g / k and bounce. It would lose in its base an energy of the order of what an
@@ -147,7 +147,7 @@ def standing_wall(
 
 
 def _springs(interfaces: Sequence[Interface]) -> JointSprings:
-    """What the base and the side stop are made of. Friction of a base that holds is infinite."""
+    """Properties of the base and the side stop. The friction of a base that holds is infinite."""
     without = np.inf, 0.0  # what None stands for, of the base and of the side
     given = [none if one.friction is None else one.friction for one, none in zip(interfaces, without, strict=False)]
     friction = np.array(given)
@@ -168,7 +168,7 @@ def require_carried(case: Case, contacts: Contacts) -> None:
 
 
 def _title(wall: Block, stop_top: float | None) -> str:
-    """What the scene is, in words."""
+    """The title of the scene."""
     against = "against a side stop" if stop_top is not None else "on both edges"
     if stop_top is not None and stop_top < 2 * wall.h:
         against += f" {stop_top:g} m high"

@@ -26,7 +26,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.scene.explicit_step import SHARE
+from mjrock.scene.explicit_step import STEP_TAKEN
 from scripts.shared import cli
 
 UNIT = (0.4, 0.2)
@@ -98,7 +98,7 @@ def measured(scene: str, blocks: int, line_steps: float) -> Point:
     masonry = built(scene, blocks)
     first = run(masonry, 1e-6).stats
     setting_up = time.thread_time() - begun - first["stepping_processor_time"]
-    h, lines = SHARE * first["stable_timestep"], len(masonry.lines.k)
+    h, lines = STEP_TAKEN * first["stable_timestep"], len(masonry.lines.k)
     stats = run(masonry, h * max(20, round(line_steps / lines))).stats
     return Point(scene, len(masonry.free), lines, h, setting_up, stats["stepping_processor_time"] / stats["steps"])
 

@@ -279,7 +279,7 @@ def test_a_bond_goes_at_nine_times_the_opening_that_softens_it(softened, goes):
         ({"k": 0.0}, False),
         ({"tension": 0.0}, False),
         ({"integrity": 1e-5}, False),
-        ({"integrity": bonds.GONE}, False),
+        ({"integrity": bonds.INTEGRITY_OF_LOST}, False),
     ],
 )
 def test_a_bond_holds_while_something_of_it_is_left(changed, holds):
@@ -352,7 +352,7 @@ def test_a_bond_of_a_newton_tears_too():
     whole, _ = bonded_line(2, -1, 0.003, tension=0.5)
     whole.laws[0].act(whole, books(whole), 0.0, H)
     assert 0 < whole.laws[0].rows["secant"][0] < K
-    assert whole.laws[0].holding()[0] == (whole.laws[0].rows["integrity"][0] > bonds.GONE)
+    assert whole.laws[0].holding()[0] == (whole.laws[0].rows["integrity"][0] > bonds.INTEGRITY_OF_LOST)
 
 
 def test_a_bond_without_strength_in_tension_leaves_the_normal_to_its_line():

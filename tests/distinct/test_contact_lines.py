@@ -8,14 +8,14 @@ from by_hand import about, books, energy, matrix, system, velocity_at
 
 from mjrock.distinct.contacts import contact, friction, touches
 from mjrock.distinct.contacts.contact import Meeting
-from mjrock.distinct.rows import POINT
+from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK
 
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
 ALONG = {2: np.array([0.8, -0.6]), 3: np.array([-0.8, 0.0, 0.6])}
 AT = {2: np.array([0.2, -0.5]), 3: np.array([0.2, 0.3, -0.5])}
 ORIGIN = {2: np.array([-0.1, 0.4]), 3: np.array([-0.1, -0.25, 0.4])}
 BOTH = pytest.mark.parametrize("d", [2, 3])
-FACES = pytest.mark.parametrize("face", [-1, 0, "support", POINT])
+FACES = pytest.mark.parametrize("face", [-1, 0, "support", POINT_ON_FIXED_BLOCK])
 H, KICK, K, C = 1e-3, 1.1e-3, 1e5, 40.0
 
 
@@ -23,12 +23,12 @@ def put_line(whole, face, gap, aside=0.0, number=0, **law):
     """Line of body 1 at a gap from a face of body 0, of fixed ground, or of a support. Returns its normal there."""
     line, d, body = whole.lines[number], len(whole.axes), whole.bodies[1]
     line.body, line.face = 1, -1 if face == "support" else face
-    line.support = 0 if face in ("support", POINT) else -1
+    line.support = 0 if face in ("support", POINT_ON_FIXED_BLOCK) else -1
     line.at, line.origin, line.normal = AT[d], ORIGIN[d], NORMAL[d]
     for name, value in law.items():
         line[name] = value
     turn, over = matrix(d, 1), np.zeros(d) if line.support < 0 else whole.supports.moved[0]
-    turned = {-1: np.eye(d), 0: matrix(d, 0), POINT: turn}[int(line.face)]
+    turned = {-1: np.eye(d), 0: matrix(d, 0), POINT_ON_FIXED_BLOCK: turn}[int(line.face)]
     if line.face == 0:
         over = whole.bodies[0].place + turned @ ORIGIN[d] - ORIGIN[d]
     across = gap * turned @ NORMAL[d] + aside * turned @ ALONG[d]
@@ -48,12 +48,15 @@ def test_a_line_is_where_its_bodies_have_it(d, face, gap):
     normal = put_line(whole, face, gap, 0.01)
     meet, bodies = met(whole), whole.bodies
     across = (
-        gap * normal + 0.01 * {-1: np.eye(d), 0: matrix(d, 0), POINT: matrix(d, 1)}[int(whole.lines[0].face)] @ ALONG[d]
+        gap * normal
+        + 0.01
+        * {-1: np.eye(d), 0: matrix(d, 0), POINT_ON_FIXED_BLOCK: matrix(d, 1)}[int(whole.lines[0].face)]
+        @ ALONG[d]
     )
     assert meet.gap == pytest.approx(gap, rel=1e-11)
     np.testing.assert_allclose(meet.normal, normal, rtol=1e-13)
     point = matrix(d, 1) @ AT[d]
-    np.testing.assert_allclose(meet.arm, point - across if face == POINT else point, rtol=1e-12)
+    np.testing.assert_allclose(meet.arm, point - across if face == POINT_ON_FIXED_BLOCK else point, rtol=1e-12)
     if face == 0:
         np.testing.assert_allclose(meet.face_arm, matrix(d, 0) @ ORIGIN[d] + across, rtol=1e-12)
     assert meet.past is False
@@ -118,8 +121,8 @@ def test_the_end_of_a_face_presses_on_the_face_of_the_block_above(d, face, over,
 @BOTH
 def test_past_the_end_of_both_faces_nothing_is_left(d):
     meet = met(ended(d, 0, 0.02, within=0.001)[0])
-    assert (meet.gap, meet.past) == (contact.OPEN, True)
-    assert contact.OPEN > 0.1
+    assert (meet.gap, meet.past) == (contact.GAP_OF_OPEN, True)
+    assert contact.GAP_OF_OPEN > 0.1
 
 
 @BOTH
@@ -153,7 +156,7 @@ def test_faces_that_are_turned_away_from_each_other_do_not_press(d, turned):
     assert (meet.gap, meet.past) == (contact.TURNED_OVER, True)
     line.margin = math.inf  # a line of a place that was found has no end
     assert (met(whole).gap, met(whole).past) == (pytest.approx(-0.003), False)
-    assert contact.TURNED_OVER > contact.OPEN
+    assert contact.TURNED_OVER > contact.GAP_OF_OPEN
 
 
 LAW = Meeting(0.0, (0.0, 1.0), (0.0, 0.0), (0.0, 0.0), False)

@@ -38,7 +38,7 @@ def test_the_calls_do_not_matter(monkeypatch, masonry):
     velocity[:, 0] = 2.0
     case = mr.MasonryCase(masonry, 0.05, velocity=velocity)
     whole = mr.solve_explicit(case, output_step=0.02)
-    monkeypatch.setattr(following, "FIRST", 100)
+    monkeypatch.setattr(following, "FIRST_CALL", 100)
     monkeypatch.setattr(following, "HEARD", 1e-6)
     assert mr.solve_explicit(case, output_step=0.02) == whole
 
@@ -74,7 +74,7 @@ def test_ten_seconds_are_worth_saying_where_the_run_is_asked_for(monkeypatch):
 def test_the_estimate_is_near_what_it_takes(monkeypatch):
     """Within a factor of five, of the processor: the machine may do other things too."""
     masonry = mr.Masonry.arch(5.0, 0.75, k_n=1e10)
-    monkeypatch.setattr(following, "WORTH_SAYING", 0.0)
+    monkeypatch.setattr(following, "SECONDS_WORTH_SAYING", 0.0)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         run = mr.solve_explicit(mr.MasonryCase(masonry, 0.2))

@@ -151,7 +151,7 @@ def test_a_body_that_a_guide_holds_hardly_yields():
     body = system(3).bodies[1]
     body.inverse_mass[:] = [0.5, 0.25, 0.0]
     assert friction.inverse_mass_along(body, (0.6, 0.8, 0.0)) == pytest.approx(0.36 * 0.5 + 0.64 * 0.25)
-    assert friction.inverse_mass_along(body, (0.0, 0.0, 1.0)) == friction.HELD / 5.0
+    assert friction.inverse_mass_along(body, (0.0, 0.0, 1.0)) == friction.COMPLIANCE_OF_GUIDED / 5.0
     body.mass, body.inverse_mass[:] = 1e6, 1e-6
     assert friction.inverse_mass_along(body, (0.6, 0.8, 0.0)) == pytest.approx(1e-6)
 

@@ -7,7 +7,7 @@ import pytest
 from by_hand import ANGLES, PLACE, REST, TURNS, matrix, system
 
 from mjrock.distinct.contacts import contact
-from mjrock.distinct.rows import POINT, kinds, rows
+from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK, kinds, rows
 from mjrock.distinct.search import handover
 from mjrock.distinct.search.finder import Found
 from mjrock.distinct.search.handover import Blocks, Lines, Pairs, Place
@@ -87,7 +87,7 @@ def test_a_line_is_where_its_place_was_found(d, face, other, slack):
     carries, faced = (face, other) if point else (other, face)
     normal = -NORMAL[d] if point else NORMAL[d]
     np.testing.assert_allclose(meet.normal, normal, rtol=1e-12)
-    assert (line.body, line.face) == (carries - 1, POINT if point else numbers.body[faced])
+    assert (line.body, line.face) == (carries - 1, POINT_ON_FIXED_BLOCK if point else numbers.body[faced])
     assert (line.support, line.fixed) == ((0, 0) if 0 in (face, other) else (-1, -1))
     half = -0.002 * normal
     at = turn(d, carries).T @ (AT[d] + half - centre(d, carries))

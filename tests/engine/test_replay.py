@@ -14,7 +14,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.__main__ import main
-from mjrock.engine.replay import BACKSPACE, SPACE, Replay, columns_of, load, read_motion, show
+from mjrock.engine.replay import BACKSPACE_KEY, SPACE_KEY, Replay, columns_of, load, read_motion, show
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +140,7 @@ class Window:
 
 def test_keys_stop_it_and_begin_again(column):
     model = load(column[0])
-    window = Window({5: SPACE, 10: SPACE, 15: BACKSPACE}, 20)
+    window = Window({5: SPACE_KEY, 10: SPACE_KEY, 15: BACKSPACE_KEY}, 20)
     show(Replay(model, read_motion(model, column[1])), window.launch, 1.0)
     states, times = zip(*window.texts, strict=True)
     assert states[:5] == ("replay",) * 5

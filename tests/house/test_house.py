@@ -165,3 +165,22 @@ def test_no_name_stands_twice_in_the_explicit_steps():
     ]
     assert len(modules) > 10
     assert sorted(defined) == sorted(set(defined))
+
+
+def test_a_constant_of_the_explicit_steps_and_of_what_they_stand_on_has_a_name_of_its_own():
+    """In no other module of the package does this name mean something else."""
+    named = {}
+    for path in MODULES:
+        for node in ast.parse(path.read_text()).body:
+            targets = {ast.Assign: lambda n: n.targets, ast.AnnAssign: lambda n: [n.target]}.get(
+                type(node), lambda n: []
+            )
+            for one in (x for target in targets(node) for x in ast.walk(target)):
+                if isinstance(one, ast.Name) and one.id.isupper():
+                    named.setdefault(one.id, []).append(str(path.relative_to(ROOT)))
+    core = ("geometry", "scene", "result", "distinct")
+    shared = {
+        name: where for name, where in named.items() if len(where) > 1 and any(one.startswith(core) for one in where)
+    }
+    assert len(named) > 100
+    assert shared == {}

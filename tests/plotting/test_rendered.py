@@ -13,7 +13,7 @@ from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
 from mjrock.plotting.masonry import BRICK
-from mjrock.plotting.section import GROUND, STONE
+from mjrock.plotting.section import GROUND_COLOUR, STONE
 from mjrock.plotting.solids import Solids
 
 
@@ -116,7 +116,7 @@ def test_a_support_that_moves_is_drawn_where_it_is():
     figure, update = animation.scene(Bodies.of(run).at(run.t[[0, -1]]), [], run.case)
     for frame, raised in ((0, 0.0), (1, 0.3)):
         update(frame)
-        assert heights_of(figure, figure.axes[0], GROUND) == pytest.approx([raised, 0.2 + raised], abs=0.02)
+        assert heights_of(figure, figure.axes[0], GROUND_COLOUR) == pytest.approx([raised, 0.2 + raised], abs=0.02)
         assert heights_of(figure, figure.axes[0], STONE) == pytest.approx([0.2 + raised, 0.6 + raised], abs=0.02)
 
 

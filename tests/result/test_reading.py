@@ -8,7 +8,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.result.motion import SampledMotion
-from mjrock.result.reading import STILL, BesidePoses, masonry_reading, wall_reading
+from mjrock.result.reading import TIME_AT_REST, BesidePoses, masonry_reading, wall_reading
 from mjrock.scene.masonry import masonry_scene
 
 BOX = mr.Masonry([GROUND, box(-0.3, 0.3, 0, 0.5, name="left"), box(1.0, 1.6, 0, 0.5, name="right")], k_n=1e8)
@@ -62,13 +62,13 @@ def test_blocks_that_left_joints_and_lie_still_have_come_to_rest(left, outcome):
     t = np.linspace(0.0, 2.0, 201)
     pose = np.tile(scene().at_rest, (len(t), 1, 1))
     velocity = np.zeros_like(pose)
-    velocity[t < 2.0 - 1.5 * STILL] = 1.0
+    velocity[t < 2.0 - 1.5 * TIME_AT_REST] = 1.0
     beside = BesidePoses(np.full(len(scene().contacts.joint), 0.3), left, {})
     motion = SampledMotion(pose, velocity, np.full(len(t), -1e6))
     reading = masonry_reading(CASE, scene(), t, motion, beside)
     assert reading.outcome is mr.Outcome[outcome]
     np.testing.assert_array_equal(reading.joints.opening, 0.3)
-    velocity[t > 2.0 - 0.5 * STILL] = 1.0
+    velocity[t > 2.0 - 0.5 * TIME_AT_REST] = 1.0
     assert masonry_reading(CASE, scene(), t, motion, beside).outcome is mr.Outcome.TIME_ENDED
 
 

@@ -169,4 +169,4 @@ def test_bodies_fall_along_the_way_that_takes_the_most_energy():
     assert math.log2(abs(far) / first) == pytest.approx(round(math.log2(abs(far) / first)), abs=1e-6)
     assert far > first
     assert energy(1.0) < energy(0.5) < energy(0.0)
-    assert energy(2.0) >= energy(1.0) or np.abs(far * way).max() >= rest.TURNED
+    assert energy(2.0) >= energy(1.0) or np.abs(far * way).max() >= rest.ROTATION_OF_FALLEN

@@ -3,10 +3,9 @@
 The force along the normal is that of `joint_law`. The dashpot takes the velocity half a step before the pose. Along the
 face a spring with a slider acts, or the line sticks rigidly, see `friction`.
 
-A line beyond the outline of its face has moved past an end of it. The nearest place of the outline then presses on the
-face of the block that carries the line, and past the outline of that face too nothing is left of the contact. Nor is
-anything left of it once the two faces are turned away from each other. A line of a place that was found where blocks
-are has no end.
+A line beyond the outline of its face has moved past an end of it. The nearest point of the outline then presses on the
+face of the block that carries the line. Past the outline of that face too the contact has no force, and it has none
+once the two faces are turned away from each other. A line that the contact search has found has no end.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from typing import NamedTuple
 from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, increase, minus, moment, no_spin, plus, put, read, scaled, spun, vector
 from ...problem.masonry.laws.joint_law import normal_force, shear_limit, stored
-from ..rows import POINT, Row, Rows
+from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
 from ..supports import Supports
 from ..system import Books, System
 from ..turning import in_body, in_world, may_face_away, rotation_change, strike_body
@@ -25,13 +24,13 @@ from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
 
-OPEN = 1.0
+GAP_OF_OPEN = 1.0
 """Gap of a line that has left its face [m]."""
-TURNED_OVER = 2 * OPEN
-"""Gap of a line whose block has turned over [m]. The contact is gone for good."""
-PASSES = 3
-"""Passes over the lines that touched in a step, which change the rates of each other. A pass takes the rates of all
-lines before it strikes any, so that it does not matter in which order they stand."""
+TURNED_OVER = 2 * GAP_OF_OPEN
+"""Gap of a line whose block has turned over [m]. The contact does not close again."""
+TOUCH_PASSES = 3
+"""Passes over the lines that touched in a step, which change the rates of each other. A pass reads the rates of all
+lines before it applies an impulse to any, so that their order does not matter."""
 
 
 class Meeting(NamedTuple):
@@ -54,7 +53,7 @@ class Meeting(NamedTuple):
 
 @inlined
 def over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector]:
-    """Where the point of a line is from its face, the normal of that, and the arms to it, see `Meeting`."""
+    """Position of the point of a line relative to its face, the normal of the face, and the arms, see `Meeting`."""
     body, at, normal = system.bodies[line.body], read(line.at), read(line.normal)
     change = rotation_change(body, at)
     arm, across = plus(at, change), plus(read(line.between), plus(read(body.place), change))
@@ -68,7 +67,7 @@ def over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector
     else:
         if line.support >= 0:
             across = minus(across, vector(system.supports.moved, line.support, at))
-        if line.face == POINT:
+        if line.face == POINT_ON_FIXED_BLOCK:
             normal, arm = in_world(body, normal), minus(arm, across)
     return across, normal, arm, face_arm
 
@@ -104,7 +103,7 @@ def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meet
     along = minus(apart, scaled(gap, own))
     place = minus(read(line.at), in_body(body, along))
     if is_beside(system.edges, line.own_first, line.own_last, place):
-        gap = OPEN
+        gap = GAP_OF_OPEN
     normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
     normal = scaled(1 / math.sqrt(dot(normal, normal)), normal)
     return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along), True)
@@ -141,10 +140,11 @@ def where_friction_rubs(meet: Meeting) -> Meeting:
 
 @inlined
 def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
-    """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
-    its spring holds less, and has not done as work while the gap grew by some length [m].
+    """Energy that a line has lost in the last step because it was past the end of its face before or after it [J]: the
+    decrease of its spring energy minus the work it has done while the gap grew by some length [m].
 
-    A line that opened or closed as far as it moved did so within the step, and has lost nothing at an end.
+    A line whose gap changed by as much as it moved has opened or closed within the step, and has lost no energy at an
+    end.
     """
     mean = 0.5 * (normal_force(line, -line.depth, 0.0) + normal_force(line, meet.gap, 0.0))
     lost: float = stored(line, -line.depth) - stored(line, meet.gap) - mean * opened
@@ -228,15 +228,15 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
 
 @inlined
 def settle_touches(system: System, books: Books, count: int, kick: float) -> tuple[float, float]:
-    """Let the springs of lines that met or left their face do the work of their touch, see `touches`.
+    """Let the springs of lines that closed or opened in the step do the remaining work of their touch, see `touches`.
 
-    Returns what the halves of these impulses before the pose have taken, which a sample counts as held by the springs,
-    and what the supports have put in through them [J].
+    Returns the energy that the halves of these impulses before the pose have taken, which a sample counts as held by
+    the springs, and the work of the supports through them [J].
     """
     taken, put_in = 0.0, 0.0
     for i in range(count):
         books.struck[i] = 0.0
-    for _ in range(PASSES):
+    for _ in range(TOUCH_PASSES):
         for i in range(count):
             line = system.lines[books.touched[i]]
             meet = meeting(system, line)

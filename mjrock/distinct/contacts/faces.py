@@ -11,8 +11,8 @@ from ...quantities import Array
 from ..rows import Rows, kinds, rows
 
 OVERHANG = 0.02
-"""Length by which a face is taken to be longer at either end, over its length or that of the face that it meets, which
-is shorter [-]. The points of a block that stands flush lie at the very end of the face, and move to and fro there. Over
+"""Length by which a face is taken to be longer at either end, over the shorter of its length and that of the face that
+it meets [-]. The points of a block that stands flush lie at the very end of the face, and move to and fro there. Over
 the same length beyond, the normal turns from that of the face to that of the face of the block above."""
 ROUNDS = 3
 """Rounds over the edges of a face in the search for the nearest place of its outline. One is enough in the plane and
@@ -32,7 +32,7 @@ def edges_of(face: Face, origin: Array, met: Face) -> Rows:
 
 
 def margins(lines: Rows, edges: Rows) -> Array:
-    """Square of the least way that each line has along its face to its end [m2], shape (m,)."""
+    """Square of the smallest distance of each line from the end of its face [m2], shape (m,)."""
     margin = np.empty(len(lines))
     for i, (place, first, last) in enumerate(zip(lines["origin"], lines["first"], lines["last"], strict=True)):
         margin[i] = max(float((edges["reach"][first:last] - edges["way"][first:last] @ place).min()), 0.0)
@@ -51,7 +51,9 @@ def is_beside(edges: Rows, first: int, last: int, place: Vector) -> bool:
 
 @inlined
 def pulled_inside(edges: Rows, first: int, last: int, place: Vector) -> tuple[Vector, float]:
-    """The place of the outline that is nearest to a place on a body [m], and how far beyond this is, over its band."""
+    """The point of the outline that is nearest to a place on a body [m], and the distance of the place beyond it, over
+    the width of its band.
+    """
     inside, share = place, 0.0
     for sweep in range(ROUNDS):
         for i in range(first, last):

@@ -1,13 +1,13 @@
 """Friction along a face: one way in the plane, two in space.
 
-A line with a shear stiffness has a spring with a slider, as in distinct-element codes: its force is no larger than the
-face holds. What it keeps is the stretch of the spring, in the plane a number along the face and in space a vector in
-the axes of the face.
+A line with a shear stiffness has a spring with a slider, as in distinct-element codes: its force is at most the
+friction that the face can carry. The line keeps the elongation of the spring, in the plane a number along the face and
+in space a vector in the axes of the face.
 
 A line that sticks rigidly gets an impulse along its face that stops the slip, as far as Coulomb's law lets it. The
 impulses of all lines are found by projected Gauss-Seidel: one line after the other gets the impulse that stops its
-slip, until the impulses no longer change. They start from those of the last step. In space, where this impulse is more
-than the face holds, the point gets one against its slip instead, shortened to what the face holds. In the end the
+slip, until the impulses no longer change. They start from those of the last step. In space, where this impulse exceeds
+the friction that the face can carry, the point gets that friction against its slip instead. After the sweeps the
 friction of a point that slips is against its slip.
 """
 
@@ -43,10 +43,11 @@ from ..turning import in_body, in_world, kick_place, spin_from_many, turn_moment
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
 SETTLED = 1e-3
-"""Change of an impulse in a sweep, over the largest of a line that is pressed most, below which the sweeps end [-]."""
+"""Change of an impulse in a sweep, over the friction that the most loaded line can carry, below which the sweeps end
+[-]."""
 STRIDE = 3
 """Lines from one that a sweep takes to the next."""
-HELD = 1e-9
+COMPLIANCE_OF_GUIDED = 1e-9
 """Least compliance of a body that a guide holds, over that of its mass [-]."""
 
 
@@ -79,7 +80,7 @@ def shortened(a: Vector, limit: float) -> Vector:
 
 @inlined
 def carried(row: Row, supports: Supports, way: Vector) -> float:
-    """Velocity of the support of a line, or of one of its ways, along a vector, zero where none moves it."""
+    """Velocity along a vector of the support that carries a line or one of its ways, zero where no support does."""
     if row.support < 0:
         return 0.0
     return dot(way, vector(supports.moving, row.support, way))
@@ -87,7 +88,7 @@ def carried(row: Row, supports: Supports, way: Vector) -> float:
 
 @inlined
 def stretched(bodies: Rows, face: int, grip: Array, normal: Vector, way: Vector) -> Vector:
-    """Stretch of a shear spring, kept in the axes of its face, after a way along the face [m]."""
+    """Elongation of a shear spring in the axes of its face, after a displacement along the face [m]."""
     kept = spin_components(grip, normal)
     if face >= 0:
         kept = in_world(bodies[face], kept)
@@ -99,8 +100,8 @@ def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push:
     """Force of the shear spring with its slider and dashpot along the face [N]. The last velocity has stretched it for
     as long as the line was closed in the last step [s].
 
-    The slider shortens the spring to what the face holds, and then spring and dashpot together pull no more than that.
-    A dashpot that alone exceeds it stretches no spring, which would put energy in.
+    The slider limits the spring to the friction that the face can carry, and then the sum of spring and dashpot to the
+    same. A dashpot that alone exceeds it leaves the spring as it is, since a longer spring would add energy.
     """
     limit = shear_limit(line, push)
     grip = shortened(stretched(bodies, line.face, line.grip, normal, scaled(time, slip)), limit / line.k_s)
@@ -127,7 +128,7 @@ def inverse_mass_along(body: Row, way: Vector) -> float:
     It is not quite zero of a body that a guide holds, so that it can be divided by.
     """
     inverse_mass: float = dot(way, times(read(body.inverse_mass), way))
-    return inverse_mass if inverse_mass * body.mass > HELD else HELD / body.mass
+    return inverse_mass if inverse_mass * body.mass > COMPLIANCE_OF_GUIDED else COMPLIANCE_OF_GUIDED / body.mass
 
 
 @inlined
@@ -154,7 +155,7 @@ def list_way(
 
 @inlined
 def swept(system: System, line: Row, arm: Vector, face_arm: Vector) -> Vector:
-    """Acceleration of the point of a line over its face that turning alone makes, towards both centroids [m/s2]."""
+    """Centripetal acceleration of the point of a line relative to its face [m/s2], of both bodies."""
     spin = spin_components(system.bodies[line.body].spin, arm)
     towards = spun(spin, spun(spin, arm))
     if line.face >= 0:
@@ -210,7 +211,7 @@ def slip_along(system: System, row: Row) -> float:
 
 @inlined
 def along_ways(impulses: Vector, first: Vector, second: Vector) -> Vector:
-    """What impulses along the ways of a line do, from what a unit impulse along each does; the plane has one way."""
+    """Effect of impulses along the ways of a line, from that of a unit impulse along each; the plane has one way."""
     if len(impulses) == 1:
         return scaled(impulses[0], first)
     return plus(scaled(impulses[0], first), scaled(impulses[1], second))
@@ -240,7 +241,7 @@ def impulses_of(system: System, first: int, like: Vector) -> Vector:
 
 @inlined
 def begin(system: System, line: Row, first: int, held: float, kick: float, like: Vector) -> None:
-    """Let the ways of a line start with the friction of the last step, as far as the face holds it now [N]."""
+    """Let the ways of a line start with the friction of the last step, limited to what the face can carry now [N]."""
     limit: float = kick * held
     grip = scaled(kick, read(line.grip))
     if line.face >= 0:
@@ -257,10 +258,10 @@ def begin(system: System, line: Row, first: int, held: float, kick: float, like:
 
 @inlined
 def stopping(system: System, first: int, like: Vector) -> Vector:
-    """The impulses along its ways that stop the slip of a line in the middle of the step as far as its face can [N s].
+    """The impulses along its ways that stop the slip of a line in the middle of the step, within its friction [N s].
 
-    Its slip at the pose is then the drift before the forces act, and less the drift after them: a line that sticks
-    takes nothing, and stays where it is.
+    The slip before the forces act is then the negative of that after them, so that a line that sticks dissipates no
+    energy and stays where it is.
     """
     a = system.ways[first]
     slip, limit = slip_along(system, a) + a.drift, a.limit
@@ -281,7 +282,7 @@ def stopping(system: System, first: int, like: Vector) -> Vector:
 
 @inlined
 def stop(system: System, first: int, like: Vector) -> float:
-    """Stop the slip of one line as far as its face can. Returns by how much its impulses have changed [N s]."""
+    """Stop the slip of one line within its friction. Returns by how much its impulses have changed [N s]."""
     impulses = stopping(system, first, like)
     change = minus(impulses, impulses_of(system, first, like))
     strike(system, first, change)
@@ -296,8 +297,8 @@ def stop(system: System, first: int, like: Vector) -> float:
 def stick(system: System, active: Integers, count: int, kick: float) -> None:
     """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s].
 
-    Lines that follow each other share their bodies, so that each would wait for the one before it: a sweep takes every
-    third line, then the next ones.
+    Neighbouring lines share their bodies, so that the processor would wait for each before the next: a sweep takes
+    every third line, then the next ones.
     """
     like = read(system.bodies[0].place)
     each, largest = len(like) - 1, 0.0
@@ -318,7 +319,7 @@ def stick(system: System, active: Integers, count: int, kick: float) -> None:
 
 @inlined
 def keep_rigid(system: System, line: Row, first: int, kick: float, like: Vector) -> None:
-    """Keep the friction of a line that sticks rigidly for the next step [N], and what it turns the bodies by."""
+    """Keep the friction of a line that sticks rigidly for the next step [N], and its moments on the bodies."""
     impulses = impulses_of(system, first, like)
     if len(like) == 2:
         line.grip[0] = impulses[0] / kick
@@ -336,8 +337,9 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, like: Vector)
 
 @inlined
 def book_rubbing(system: System, books: Books, count: int) -> tuple[float, float]:
-    """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
-    the supports put in through it. Returns the halves of both before the pose [J]."""
+    """Book the energy that rigid friction dissipates in a step, its impulses times the mean of the slips before and
+    after, and the work of the supports through it. Returns the halves of both before the pose [J].
+    """
     totals, rubbed, put_in = books.totals[0], 0.0, 0.0
     for i in range((len(read(system.bodies[0].place)) - 1) * count):
         row = system.ways[i]

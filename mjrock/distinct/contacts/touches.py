@@ -1,15 +1,15 @@
-"""Touches: the forces of a contact line that has met its face, or that no longer presses on it, inside a step.
+"""Touches: the forces of a contact line that closes or opens inside a step.
 
 The force at a pose acts from the middle of the step before to the middle of the next one. A line with a spring k that
-meets its face inside a step of length h, tau before the pose, would get too much: k |rate| tau (h - tau) / 2 from its
-spring, and from its dashpot the force for the time h / 2 - tau. One that leaves its face inside a step has got too much
-at the pose before, and the pose after takes it back, with the friction that belongs to it.
+closes inside a step of length h, tau before the pose, would get too large an impulse: by k |rate| tau (h - tau) / 2
+from its spring, and by the force of its dashpot over the time h / 2 - tau. A line that opens inside a step has got too
+large an impulse at the pose before. The pose after subtracts it again, with its friction.
 
-With m = k tau (h - tau) / 2 [kg], negative for a line that has met its face, the spring is corrected by the impulse
--m rate. The rate changes in the step, so that the work m rate (change of the rate) / 2 is still missing, known when
-all forces have acted, and one more impulse does it. The springs then give back the energy that they took. Of a spring
-that is not linear k is its secant stiffness, and m grows by half of what that is above its equivalent stiffness, times
-the square of tau.
+With m = k tau (h - tau) / 2 [kg], negative for a line that closes, the spring is corrected by the impulse -m rate. The
+rate changes in the step, so that the work m rate (change of the rate) / 2 is still missing. It is known when all forces
+have acted, and a second impulse does it. The springs then return the energy that they stored. For a spring that is not
+linear k is the secant stiffness, and m grows by half the difference between secant and equivalent stiffness, times the
+square of tau.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ def time_closed(line: Row, gap: float, rate: float, h: float) -> float:
 def touched_forces(line: Row, gap: float, rate: float, h: float) -> tuple[float, float]:
     """Force of the spring and force along the normal [N] of a line that has begun or ceased to press in the last step.
 
-    Leaves what the spring is still `due`. A line whose gap has changed by more than it has moved, at an end of its
-    face, has not touched.
+    Leaves the impulse that is still `due` in the line. A line whose gap has changed by more than it has moved is at an
+    end of its face, and has not touched.
     """
     sprung, push = normal_force(line, gap, 0.0), normal_force(line, gap, rate)
     if h == 0:
@@ -62,7 +62,9 @@ def touched_forces(line: Row, gap: float, rate: float, h: float) -> tuple[float,
 
 @inlined
 def mass_of_bending(line: Row, depth: float, since: float) -> float:
-    """What a spring that is not linear adds to m [kg], at a depth that it reached or left in a time [m, s]."""
+    """What a spring that is not linear adds to m [kg], from its overlap [m] and the time since it closed or until it
+    opened [s].
+    """
     bent: float = 0.5 * (secant_stiffness(line, depth) - equivalent_stiffness(line, depth)) * since * since
     return bent
 
@@ -90,7 +92,7 @@ def forces_of_leaving(line: Row, gap: float, rate: float, h: float) -> tuple[flo
 
 @inlined
 def due_impulse(line: Row, rate: float) -> float:
-    """Impulse that the spring of a line which has touched is due [N s], at the rate after all forces have acted."""
+    """The second impulse of the spring of a line that has touched [N s], at the rate after all forces have acted."""
     before = line.rate
     share = before * before / max(before * (before + rate), 0.5 * before * before)
     impulse: float = line.due * (rate - before) * share
@@ -99,8 +101,9 @@ def due_impulse(line: Row, rate: float) -> float:
 
 @inlined
 def in_transit(line: Row, h: float) -> tuple[float, float]:
-    """Work for a touch in the last step that a sample counts as held by the spring, and what it counts as taken by the
-    dashpot, which the halves of the impulses after the pose will take [J]."""
+    """Work of the halves of the impulses of a touch that act after the pose [J]: the part that a sample counts as held
+    by the spring, and the part that it counts as dissipated by the dashpot.
+    """
     by_spring = 0.5 * h * (line.push - line.pressed - normal_force(line, -line.depth, 0.0)) * line.rate
     if line.push < 0:
         work = 0.5 * h * line.push * line.rate

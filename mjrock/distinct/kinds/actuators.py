@@ -97,7 +97,7 @@ class Actuators(Kind, Histories):
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
-        """They put in what they push over the ways of their histories."""
+        """Their work is their force times the displacement of their histories."""
         drives = self.drives
         move_supports(drives, t, h)
         for i in range(len(self.rows)):
@@ -113,7 +113,7 @@ class Actuators(Kind, Histories):
 
     @inlined
     def hold(self, system: System, books: Books, energy: Row) -> None:
-        """What their springs hold, and what they have put in."""
+        """The energy of their springs, and their work."""
         for i in range(len(self.rows)):
             row = self.rows[i]
             held = row.pulled - row.dragged

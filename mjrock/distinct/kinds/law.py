@@ -1,8 +1,8 @@
 """What all laws of joints beside the dry one have: a row for each contact line, and what a run asks of a law.
 
-A contact line is dry: it presses and rubs. A law holds its lines besides, and takes over as much of their springs,
-dashpots and friction as it has itself. It is a class in a file of this folder. `LAWS` of `lists` names the laws, and
-nothing else knows which there are.
+A contact line is dry: it has pressure and friction. A law adds forces to its lines, and takes over as much of their
+springs, dashpots and friction as it has itself. It is a class in a file of this folder. `LAWS` of `lists` names the
+laws, and nothing else knows which there are.
 """
 
 from __future__ import annotations

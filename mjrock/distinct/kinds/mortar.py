@@ -1,9 +1,10 @@
-"""Bonds of mortared joints: the part of a line that pulls as it pushes, and its shear spring with cohesion.
+"""Bonds of mortared joints: the part of a line that acts in tension and compression, and its shear spring with
+cohesion.
 
 While a bond holds, its line is split in two. The secant of the bond acts both ways, here. The rest of the stiffness of
-the line pushes only, in `contact`, as a dry line does. An intact bond leaves nothing to its line, and once the bond has
-gone the line is the dry one. Friction of a bonded line is that of the bond, and its faces have no ends as
-long as it holds.
+the line pushes only, in `contact`, as a dry line does. An intact bond has the whole stiffness of its line, and once the
+bond is lost the line is a dry one. Friction of a bonded line is that of the bond, and its faces have no ends as long as
+it holds.
 """
 
 from __future__ import annotations
@@ -28,10 +29,10 @@ from ..turning import in_body
 from .law import JointLaw
 from .link import Table
 
-GONE = math.exp(-9)
-"""What is left of a bond when it counts as gone [-]."""
-CRACKED = 0.5
-"""What is left of a bond when it counts as cracked [-]."""
+INTEGRITY_OF_LOST = math.exp(-9)
+"""Integrity below which a bond counts as lost [-]."""
+INTEGRITY_OF_CRACKED = 0.5
+"""Integrity below which a bond counts as cracked [-]."""
 
 
 class Bonds(JointLaw, Table):
@@ -79,7 +80,7 @@ class Bonds(JointLaw, Table):
         """Those that have gone leave their lines to themselves."""
         for p in range(len(self.rows)):
             line, bond = system.lines[p], self.rows[p]
-            if bond.k > 0 and bond.integrity <= GONE:
+            if bond.k > 0 and bond.integrity <= INTEGRITY_OF_LOST:
                 let_go(books, line, bond)
             if bond.k > 0:
                 hold_line(system, books, line, bond, h)
@@ -103,7 +104,7 @@ class Bonds(JointLaw, Table):
     def holding(self) -> Flags:
         """Those of bonds that have not gone."""
         bonds = self.rows
-        return np.asarray((bonds["k"] > 0) & (bonds["tension"] > 0) & (bonds["integrity"] > GONE))
+        return np.asarray((bonds["k"] > 0) & (bonds["tension"] > 0) & (bonds["integrity"] > INTEGRITY_OF_LOST))
 
     def release(self, lines: Rows, which: Flags) -> None:
         """The secants go too."""
@@ -120,14 +121,14 @@ class Bonds(JointLaw, Table):
         when, contacts = {}, scene.contacts
         for i in np.flatnonzero([type(bond) is Bond and bond.tension > 0 for bond in contacts.bonds]):
             of_joint = self.rows[contacts.joint == i]
-            if (of_joint["integrity"] <= CRACKED).all():
+            if (of_joint["integrity"] <= INTEGRITY_OF_CRACKED).all():
                 when[contacts.joints[i]] = float(of_joint["age"].max())
         return dict(sorted(when.items(), key=lambda item: item[1]))
 
 
 @inlined
 def let_go(books: Books, line: Row, bond: Row) -> None:
-    """Leave the line to itself whose bond has gone, but for its crushing where it has a strength for that."""
+    """Make the line dry whose bond is lost, but for crushing where it has a crushing strength."""
     if bond.tension > 0:
         books.totals[0].tension += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
         bond.tension = bond.cohesion = bond.secant = bond.slip_rate = 0.0
@@ -175,7 +176,7 @@ def slide(
 
 @inlined
 def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> None:
-    """Add the forces of one bond, after it has torn and been crushed as far as the pose asks."""
+    """Add the forces of one bond, after its softening and crushing at the pose."""
     bodies, supports, before = system.bodies, system.supports, bond.gap
     meet = where_friction_rubs(meeting(system, line))
     gap = meet.gap
@@ -208,7 +209,7 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
     bond.gap, bond.push, bond.pressed = gap, push, pressed
     line.widest = max(line.widest, gap)
     put(bond.dragged, drag)
-    if bond.integrity > CRACKED:
+    if bond.integrity > INTEGRITY_OF_CRACKED:
         bond.age += h
     force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
     add_force(bodies[line.body], meet.arm, force)

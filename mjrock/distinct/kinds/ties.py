@@ -79,8 +79,9 @@ def since_broken(over: float, rate: float, h: float) -> float:
 def pulled_until_broken(tie: Row, since: float, h: float) -> float:
     """Force at the pose after a tie broke, in place of none [N].
 
-    That of the pose before acts on the velocity up to the middle of the step. What the tie pulled after the middle and
-    before it broke is still to act, and what it pulled in the middle after it had broken is to be taken back.
+    The force of the pose before acts on the velocity up to the middle of the step. The impulse of the tie after the
+    middle and before it broke has still to be added, and its impulse before the middle and after it had broken has to
+    be subtracted.
     """
     return tie.strength * (0.5 - since / h) if h > 0 else 0.0
 

@@ -1,9 +1,9 @@
 """Clipping: the places where a face of one block lies over a face of another.
 
-The part of one face that lies over the other is bounded by corners of either and by places where edges cross. Each of
-them is a place: a corner meets the other face, and edges that cross meet along the normal of both. It stands for the
-angle by which the outline of the part turns there, over a whole turn: a quarter for each corner of a rectangle. So
-places that fall together stand for what one stood for, and one on a straight side stands for nothing.
+The common area of the two faces is bounded by corners of either and by points where edges cross. Each of these is a
+place of contact: a corner meets the other face, and edges that cross meet along the normal of both. Its share of the
+contact is the angle by which the outline of the area turns there, over a whole turn: a quarter for each corner of a
+rectangle. Places that coincide have together the share of one, and a place on a straight side has none.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
 from ...quantities import Array
 from ..rows import Row, Rows, integers, numbers, vectors
-from .constants import ON_EDGE, ONE_PLACE, PARALLEL, UPRIGHT
+from .constants import EDGES_ALONG_FACE, ON_EDGE, ONE_PLACE, PARALLEL_EDGES
 from .solids import Solids, triple
 
 PLACE = np.dtype(
@@ -71,9 +71,10 @@ def sides_between(solids: Solids, faces: tuple[int, int]) -> int:
 
 @inlined
 def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, room: Array) -> int:
-    """Cut a polygon to where it reaches no further along a direction. Returns how many corners are left.
+    """Cut off the part of a polygon beyond a limit along a direction. Returns how many corners are left.
 
-    A convex one gets one corner more at most. One that rounding has dented gets no more than there is room for."""
+    A convex polygon gains at most one corner. One that is no longer convex by rounding gains no more than there is room
+    for."""
     left = 0
     for i in range(count):
         a, b = vector(polygon, i, way), vector(polygon, (i + 1) % count, way)
@@ -92,7 +93,7 @@ def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, roo
 
 @inlined
 def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
-    """Write the part of a face that lies over another into the first half of the room.
+    """Write the common area of two faces into the first half of the room.
 
     Returns:
         How many corners it has.
@@ -114,7 +115,7 @@ def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
 
 @inlined
 def parted(polygon: Array, count: int) -> int:
-    """Leave out the corners of a polygon that fall on those before them. Returns how many are left."""
+    """Remove corners of a polygon that coincide with those before them. Returns how many are left."""
     left = 0
     for i in range(count):
         at, last = triple(polygon, i), triple(polygon, left - 1 if left else count - 1)
@@ -159,7 +160,7 @@ def write_place(place: Row, blocks: tuple[int, int], at: Vector, normal: Vector,
 
 @inlined
 def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, place: Row) -> None:
-    """Write what a corner of the part of a face that lies over another is: a corner of either, or edges that cross.
+    """Write the place at a corner of the common area of two faces: a corner of either, or edges that cross.
 
     Args:
         solids: the blocks where they are.
@@ -199,7 +200,7 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
     )
     across = spun(along, own)
     size = length_of(across)
-    if abs(dot(across, normal)) > UPRIGHT * size and size > PARALLEL * length_of(along) * length_of(own):
+    if abs(dot(across, normal)) > EDGES_ALONG_FACE * size and size > PARALLEL_EDGES * length_of(along) * length_of(own):
         normal = scaled(math.copysign(1 / size, dot(across, normal)), across)
     write_place(place, blocks, at, normal, dot(normal, minus(at, below)))
 

@@ -71,7 +71,7 @@ ON_EDGE = 1e-9
 """Distance of a corner beyond an edge within which it counts as on it, over the length of the edges."""
 ONE_PLACE = 1e-6
 """Distance of two places that are one, over the length of an edge."""
-PARALLEL, UPRIGHT = 1e-4, 0.3
+PARALLEL_EDGES, EDGES_ALONG_FACE = 1e-4, 0.3
 """Sine of the angle of two edges, and cosine of the angle between their common normal and that of the face, below which
 they do not meet as edges."""
 
@@ -111,7 +111,7 @@ AS_NEAR = 1 + 1e-6
 
 # How far blocks overlap at the end
 
-MOST_SAMPLES = 200
+OVERLAP_SAMPLES = 200
 """Most samples at which the overlap of blocks is measured."""
 DEEPEST_PAIRS = 16
 """Pairs whose overlap is measured: those whose mean depth over their size is largest."""

@@ -40,7 +40,7 @@ from .constants import (
 )
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
-from .pair_law import SHARED, PairLaw, least_among, longest_step_of_loose, pair_number
+from .pair_law import SHARED_COLUMNS, PairLaw, least_among, longest_step_of_loose, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
 from .validity import (
@@ -237,7 +237,7 @@ class ContactSearch:
         law = self.law.of_places(number, found.share, found.area, self.count)
         share = np.minimum(share, self._stable(found, law, poses, system, h))
         for name, column in law.items():
-            new.rows[name] = share * column if name in SHARED else column
+            new.rows[name] = share * column if name in SHARED_COLUMNS else column
         blocks = self.blocks._replace(poses=poses)
         hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks)
         for place in unsound(np.asarray(new.rows))[:1]:

@@ -1,9 +1,10 @@
-"""Finder: where convex blocks meet or are about to, at any pose.
+"""Finder: the places where convex blocks touch or are about to, at any pose.
 
-Two blocks are apart by what the best of all directions parts them by: a normal of a face, or one across an edge of
-each (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). Where that is a face the places come from `clipping`, and
-where it is two edges there is one place. MuJoCo finds such contacts too, but of two faces that are nearly flush it
-gives four places at most, and not always the deepest. The finder decides neither the law of a contact nor the motion.
+The distance of two blocks is the largest gap along any direction: the normal of a face, or one across an edge of each
+(Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). Where this direction is that of a face the places come from
+`clipping`, and where it is across two edges there is one place. MuJoCo finds such contacts too, but for two faces that
+are nearly flush it gives at most four places, and not always the deepest. The finder decides neither the law of a
+contact nor the motion.
 """
 
 from __future__ import annotations
@@ -124,7 +125,7 @@ class Finder:
         self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 3))
 
     def apart(self) -> Finder:
-        """The same with room of its own, which runs in two threads must not share."""
+        """A copy with work arrays of its own, which runs in two threads must not share."""
         fresh = copy(self)
         fresh._table, fresh._room = self._table.copy(), np.empty_like(self._room)
         return fresh
@@ -154,7 +155,7 @@ class Finder:
         return self._among_blocks(found) if of_parts else found
 
     def _once(self, table: Rows) -> Rows:
-        """Places of two sides once, that each pair of parts of their blocks has."""
+        """Places of two sides without those that several pairs of parts of their blocks have found alike."""
         sides, pair = table["sides"], pair_number(table["face"], table["other"], len(self.owner))
         _, of = np.unique(sides, return_inverse=True)
         first = np.full(len(table) + 1, np.iinfo(np.int64).max)
@@ -211,8 +212,8 @@ class Finder:
 
 
 def ranked(fixed: Flags, volumes: Array, heights: Array, size: float) -> Integers:
-    """The rank of each block: fixed ones first, then the largest and then the lowest ones, whatever their numbers are
-    and whichever side is left. Only of those that are alike in all of these the first one in the drawing comes first.
+    """The rank of each block: fixed ones first, then the largest and then the lowest ones. It depends neither on their
+    numbers nor on which side is left. Blocks that are alike in all of these have the order of the drawing.
 
     Args:
         fixed, volumes, heights: of the blocks, fixed or not, volume [m3] and height of the centroid [m], shape (n,).
@@ -324,8 +325,8 @@ def find_pair(
 
 @inlined
 def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Rows, count: int) -> int:
-    """Write a corner of a face that another block is near and does not lie over, as two that come together at their
-    corners: a place without a share, so that it is known when to search again.
+    """Write a corner of a face that another block is near to without a common area, as where two blocks approach at
+    their corners: a place without a share, which says when to search again.
 
     Returns how many places there are then."""
     corner = solids.first[face]
@@ -341,11 +342,11 @@ def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, tabl
 def shallowest(
     solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Rows, count: int, room: Array
 ) -> tuple[int, tuple[int, int], float]:
-    """The face of two blocks that overlap along which their places are least deep, its block and the other one, and the
-    least gap of these places [m].
+    """The face of two overlapping blocks for which the overlap at the places is smallest, its block and the other one,
+    and the least gap of these places [m].
 
     A corner of the whole face may lie deep below the plane of another one, far from where the two lie over each other.
-    A face whose places are open, or leave out the deepest place of the first face, does not part the blocks.
+    A face whose places are open, or that misses the deepest place of the first face, does not separate the blocks.
 
     Args:
         solids: the blocks where they are.
@@ -374,7 +375,7 @@ def shallowest(
 
 @inlined
 def deepest(table: Rows, first: int, last: int) -> int:
-    """Which of some places has the least gap, -1 for none."""
+    """Number of the place with the least gap, -1 for none."""
     best = -1
     for i in range(first, last):
         if best < 0 or table[i].gap < table[best].gap:
@@ -418,8 +419,8 @@ def farthest(solids: Solids, block: int, way: Vector) -> float:
 def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[int, float]:
     """The face of a block that another block is farthest outside of, and how far [m], negative for an overlap.
 
-    More than it reaches is far enough. Nothing meets a face that lies inside its block: what is outside of one is near
-    other parts of the block, and counts as far."""
+    The search ends at a face that the block is farther outside of than it reaches. No contact is on a face inside its
+    block, between two parts of it: a block outside of such a face counts as far."""
     best, most = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
         apart = outside(solids, face, other)

@@ -1,10 +1,10 @@
-"""The grid of a joint, laid out anew where one of its faces lies over the other.
+"""The grid of points of a joint, laid out again over the common area of its two faces.
 
-A pair that had a joint keeps the `points` of the joint. A part of four corners is one quadrilateral, divided into
-points - 1 cells a side, in the plane along the joint alone. Any other part is divided into a quadrilateral for each
-corner, between that corner, the middles of its two edges and the centroid, with half as many cells a side. So the grid
-is that of `geometry.convex.spread`. Even pressure on the part, shared out by bilinear weights, is what each place
-stands for: their sum and their mean are those of the part.
+A pair that had a joint keeps the `points` of the joint. A common area of four corners is one quadrilateral, divided
+into points - 1 cells a side, in the plane along the joint alone. Any other area is divided into a quadrilateral for
+each corner, between that corner, the middles of its two edges and the centroid, with half as many cells a side. So the
+grid is that of `geometry.convex.spread`. The tributary area of each point is the integral of its bilinear weight: the
+sum of these areas is the common area, and their mean position is its centroid.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ Quad = tuple[Vector, Vector, Vector, Vector]
 
 
 class Grid(NamedTuple):
-    """How a part with some corners is divided: into how many quadrilaterals, each into along x across cells."""
+    """How a common area is divided: numbers of corners and of quadrilaterals, each of along x across cells."""
 
     corners: int
     quads: int
@@ -49,7 +49,7 @@ class Grid(NamedTuple):
 
 @inlined
 def straightened(polygon: Array, count: int, room: Array) -> int:
-    """Leave out the corners of a polygon where it goes straight on. Returns how many are left."""
+    """Remove corners of a polygon on straight edges. Returns how many are left."""
     left = 0
     for i in range(count):
         if turn_at(polygon, count, i) > ONE_PLACE:
@@ -62,7 +62,7 @@ def straightened(polygon: Array, count: int, room: Array) -> int:
 
 @inlined
 def grid_of(polygon: Array, corners: int, cells: tuple[int, int]) -> Grid:
-    """The grid of a part with so many cells a side: along x and z, and along y."""
+    """The grid of a common area with so many cells a side: along x and z, and along y."""
     if corners != 4:
         return Grid(corners, corners, (cells[0] + 1) // 2, (cells[0] + 1) // 2)
     way = minus(triple(polygon, 1), triple(polygon, 0))
@@ -131,7 +131,7 @@ def place_in(quad: Quad, s: float, t: float) -> Vector:
 
 @inlined
 def density_at(quad: Quad, s: float, t: float) -> float:
-    """Area for a unit of s and t there [m2], which is bilinear."""
+    """Area per unit of s and t there [m2], the determinant of the map, which is bilinear."""
     a, b, c, d = of_corners(s, t)
     ab, bc, cd, da = minus(quad[1], quad[0]), minus(quad[2], quad[1]), minus(quad[3], quad[2]), minus(quad[0], quad[3])
     low = a * length_of(spun(da, ab)) + b * length_of(spun(ab, bc))
@@ -140,7 +140,7 @@ def density_at(quad: Quad, s: float, t: float) -> float:
 
 @inlined
 def stands_for(quad: Quad, grid: Grid, i: int, j: int) -> float:
-    """Area that node i, j of a quadrilateral stands for [m2]: of each cell beside it, the integral of its weight."""
+    """Tributary area of node i, j of a quadrilateral [m2]: the integral of its weight over the cells beside it."""
     across, along, area = 1 / grid.across, 1 / grid.along, 0.0
     at_node = density_at(quad, i * along, j * across)
     for x in range(2):
@@ -185,8 +185,9 @@ def press_at(
     on_edge: bool,
     place: Row,
 ) -> None:
-    """Write a place of the part of a face that lies over another, which is not a corner of it: a point of the face
-    over, or, at an edge of the face below alone, a point of that edge on the face over."""
+    """Write a place of the common area of two faces that is not a corner of it: a point of the upper face, or, on an
+    edge of the lower face alone, a point of that edge on the upper face.
+    """
     face, over = faces
     normal = normal_of(solids, face)
     gap = dot(normal, minus(at, corner_of(solids, solids.first[face])))

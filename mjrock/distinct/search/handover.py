@@ -1,7 +1,7 @@
-"""Handover: lines at places that were found, which take the place of those of their pair that are gone.
+"""Handover: replaces contact lines of two blocks by newly found ones, and keeps their force, friction and energy.
 
-The new lines of a pair start with no more force and energy than those before them had, so that a search puts no
-energy in, and each takes over the friction of those to which it is the nearest one.
+The new lines of a pair start with at most the force and energy of those before them, so that a search adds no energy.
+Each takes over the friction of the old lines that it is nearest to.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from ...geometry.vectors import (
 from ...problem.masonry.laws.joint_law import depth_of_energy, depth_of_force, normal_force, shear_limit, stored
 from ...quantities import Array, Integers
 from ..contacts.friction import shortened
-from ..rows import POINT, Row, Rows
+from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
 from .constants import AS_NEAR, FIRST_OPENING, REGAINED, SAME_NORMAL, SAME_PLACE
 from .finder import Found
 from .solids import Poses, changed
@@ -58,7 +58,7 @@ class Lines(NamedTuple):
 
     Args:
         rows: their numbers.
-        slack, depth: what presses nothing of the overlap of each [m], and what does [m], shape (n,) each.
+        slack, depth: the part of the overlap of each without force, and the part with force [m], shape (n,) each.
         at: room for their points [m], shape (n, d).
     """
 
@@ -135,7 +135,7 @@ def place_of(line: Row, both: int, blocks: Blocks) -> Place:
     face, normal, own = both - block, read(line.normal), read(line.at)
     arm = turned(poses, block, own)
     at = plus(centroid(poses, block, own), arm)
-    if line.face == POINT:
+    if line.face == POINT_ON_FIXED_BLOCK:
         way = minus(plus(minus(arm, own), vector(poses.moved, block, own)), vector(poses.moved, face, own))
         at, normal = minus(at, plus(read(line.between), way)), turned(poses, block, normal)
     elif line.face >= 0:
@@ -169,8 +169,10 @@ def nearest(lines: Lines, ends: tuple[int, int], at: Vector) -> tuple[int, float
 
 @inlined
 def pressed_at(line: Row, i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks) -> float:
-    """What presses of the overlap of place i, that of a new line [m], if a line of its pair was there, see `hand_over`.
-    It is that of the nearest line of such a normal: at a corner two joints of a pair may have their lines."""
+    """The part of the overlap of place i, where a new line is, that has a force [m], if a line of its pair was there,
+    see `hand_over`. It is that of the nearest line of such a normal: at a corner two joints of a pair may have their
+    lines.
+    """
     overlap: float = max(-found.gap[i], 0.0)
     like = read(line.normal)
     face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, like), vector(found.normal, i, like)
@@ -188,8 +190,10 @@ def pressed_at(line: Row, i: int, found: Found, gone: Lines, ends: tuple[int, in
 
 @inlined
 def press(new: Lines, places: tuple[int, int], found: Found, gone: Lines, ends: tuple[int, int]) -> None:
-    """Let the places of a pair press as much in all as the lines that are gone, and hold no more energy. A pair that
-    has lost force in a search gets it back in others, or blocks would sink into each other from search to search."""
+    """Give the places of a pair in all the normal force of the lines that they replace, and no more energy. A pair that
+    has lost force in a search gets it back in later ones, since blocks would otherwise sink into each other from search
+    to search.
+    """
     force = energy = had = held = 0.0
     for j in range(ends[0], ends[1]):
         had += normal_force(gone.rows[j], -gone.depth[j], 0.0)
@@ -226,7 +230,7 @@ def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks) ->
         between = minus(between, vector(poses.drawn, face, like))
     if point or not held:
         normal = turned_back(poses, block if point else face, normal)
-    line.body, line.face = blocks.body[block], POINT if point else blocks.body[face]
+    line.body, line.face = blocks.body[block], POINT_ON_FIXED_BLOCK if point else blocks.body[face]
     line.support, line.fixed = blocks.support[face], blocks.fixed[face]
     put(line.at, at)
     put(line.origin, origin)
@@ -236,7 +240,9 @@ def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks) ->
 
 @inlined
 def along_new(along: Vector, old: Place, new: Place) -> Vector:
-    """What a line keeps along its face, along that of another one. In the plane it is a number along the tangent."""
+    """The force or elongation that a line keeps along its face, in the axes of another face. In the plane it is a
+    number along the tangent.
+    """
     sense = old.sense * new.sense
     if len(along) == 1:
         return (sense * along[0] * dot(tangent(old.normal), tangent(new.normal)),)
@@ -245,7 +251,7 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 
 @inlined
 def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks) -> None:
-    """Let a line take over a share of the friction of one that is gone, and of its push of the last step.
+    """Give a line a share of the friction of one that it replaces, and of its normal force of the last step.
 
     Of a spring along the face the force is kept, as that of rigid friction is. Of several the deepest
     gives its rate.
@@ -266,7 +272,9 @@ def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks) -> None:
 
 @inlined
 def give_to_nearest(gone: Row, new: Lines, places: tuple[int, int], both: int, blocks: Blocks) -> None:
-    """Let the nearest places of a pair take over what a line has that is gone. Places that are as near share it."""
+    """Give the forces of a line that is replaced to the nearest places of its pair. Places that are equally near share
+    them.
+    """
     at, count = place_of(gone, both, blocks).at, 0
     _, off = nearest(new, places, at)
     near = AS_NEAR * off * off
@@ -279,12 +287,13 @@ def give_to_nearest(gone: Row, new: Lines, places: tuple[int, int], both: int, b
 
 @compiled_at_once
 def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
-    """Write the lines of places, and let them take over what the lines of their pair had that are gone.
+    """Write the lines of places, and give them the forces of the lines of their pair that they replace.
 
-    What presses nothing of the overlap of a place is written too. It is the overlap of a place that no line was near,
-    as long as it has it. So what a search has missed, or what touched at rest without a joint, puts no energy in. The
-    places of a pair press as much in all as the lines before them where they can, and hold no more energy. Each line
-    that is gone gives all that it has along its face to the nearest new ones, so that the forces of a pair stay.
+    The part of the overlap without force is written too. It is the whole overlap of a place that no line was near, for
+    as long as this overlap lasts. So a contact that an earlier search has missed, or one that touched at rest without a
+    joint, adds no energy. The places of a pair have the normal force of the lines before them where they can, and no
+    more energy. Each line that is replaced gives all of its force along its face to the nearest new ones, so that the
+    forces of a pair are kept.
 
     Args:
         new: rows with the law of each place, and room for what presses of its overlap and what does not.

@@ -1,4 +1,4 @@
-"""Overlap: how much of a block lies inside another, which no account of energy shows."""
+"""Overlap: the share of a block that lies inside another, which the energy ledger does not show."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...quantities import Array
 from ..setup import Setup
 from ..system import System
 from ..turning import set_rotations
-from .constants import DEEPEST_PAIRS, FLUSH, MOST_SAMPLES, OF_STABLE_STEP, OVERLAP_WARNED_OF
+from .constants import DEEPEST_PAIRS, FLUSH, OF_STABLE_STEP, OVERLAP_SAMPLES, OVERLAP_WARNED_OF
 from .contact_search import ContactSearch
 from .pair_law import pair_number
 from .softening import unsoftened
@@ -39,7 +39,7 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
     search = setup.search
     if search is None or not search.state.validity.searched.any():
         return 0.0
-    chosen = np.unique(np.linspace(0, len(t) - 1, min(MOST_SAMPLES, len(t))).round().astype(int))
+    chosen = np.unique(np.linspace(0, len(t) - 1, min(OVERLAP_SAMPLES, len(t))).round().astype(int))
     poses = {i: _posed(search, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
     every, deepest = np.ones(search.count, dtype=bool), set[tuple[float, int, int, int]]()
     for i, there in poses.items():
@@ -71,7 +71,7 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
 
 
 def what_keeps_apart(share: float, left: float, shorter: float) -> str:
-    """What brings the share of a block that lies inside another down to the one that is doubted, in words.
+    """The remedy, in words, that reduces the overlap of a block to the share from which on there is a warning.
 
     It falls at least as the root of the stiffness, of which the step has left a part, and a shorter one [s] leaves all.
     """

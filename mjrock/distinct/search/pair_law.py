@@ -1,11 +1,11 @@
 """The law of the contact of two blocks beyond their joints.
 
-Two blocks that had a joint keep its stiffness and dashpot per area of what lies over each other, and its friction,
-that of a mortared joint without its bond. So a joint that has slid is as stiff as one that is drawn where it is. Two
-that had none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more,
-since a block of a wall has joints on two sides. Where their faces lie over each other by less than a tenth of the area
-of such a joint, they have less in proportion. So blocks that only touch along their edges bear nothing. The places
-where a pair touches share what it has.
+Two blocks that had a joint keep its stiffness and dashpot per area over their common area, and its friction, that of a
+mortared joint without its bond. So a joint that has slid is as stiff as one that is drawn where it is. Two that had
+none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more, since a block
+of a wall has joints on two sides. Where their faces lie over each other by less than a tenth of the area of such a
+joint, they have less in proportion. So blocks that only touch along their edges carry no force. The places where a pair
+touches share its stiffness.
 
 A block without any joint is loose. It has what a joint over its largest face would have, per area that of the softest
 joint of the masonry. Where it is the softer block, the pair has that over the area on which the two faces lie, as a
@@ -14,8 +14,9 @@ so that how many blocks stand on the ground plays no part.
 
 A corner or a small face of a loose block has a quarter of the largest face, and what is left of a joint that has slid
 has a quarter of the joint, with the same decrease for areas that are ten times smaller still. Otherwise they would sink
-in. The step of a run is found from the joints at rest, which loose blocks do not have. So `longest_step_of_loose` takes
-each with the springs that it has on one of its sides, twice over, as a block between two others.
+into the other block. The step of a run is found from the joints at rest, which loose blocks do not have. So
+`longest_step_of_loose` takes each with the springs that it has on one of its sides, twice over, as a block between two
+others.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ from ..rows import Rows, chosen, joined, rows
 from ..system import System
 from .constants import AS_STIFF, LEAST_CONTACT, SIDES_THAT_BEAR, WHOLE_CONTACT
 
-SHARED = ("k", "c", "k_s", "c_s")
-"""What the places of a pair share."""
+SHARED_COLUMNS = ("k", "c", "k_s", "c_s")
+"""The properties that the places of a pair share."""
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -67,8 +68,8 @@ class PairLaw(NamedTuple):
 
     Args:
         jointed: numbers of the pairs that have a joint, increasing, shape (p,).
-        of_pair: columns of `SHARED` and area [m2], in the plane width [m], of these pairs, shape (p, 5), and their
-            friction, shape (p,).
+        of_pair: `SHARED_COLUMNS` and area [m2], in the plane width [m], of these pairs, shape (p, 5), and their
+            friction, (p,).
         of_block: likewise of each block as a pair without a joint takes it.
         fixed, loose: which blocks are fixed, and which have no joint, shape (blocks,).
     """
@@ -88,7 +89,7 @@ class PairLaw(NamedTuple):
         blocks, joints = len(solids), len(scene.standing.joints)
         below, above = np.array([(each.below, each.above) for each in scene.standing.joints]).T
         areas = np.array([each.area if in_space else each.width for each in scene.standing.joints])
-        sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED), areas])
+        sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED_COLUMNS), areas])
         friction = np.zeros(joints)
         friction[joint] = np.minimum(lines["friction"], springs.residual[joint])
         jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
@@ -118,7 +119,7 @@ class PairLaw(NamedTuple):
         over = area / shared[:, -1]
         part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
-        return {**dict(zip(SHARED, share * shared[:, :-1].T, strict=True)), "friction": friction}
+        return {**dict(zip(SHARED_COLUMNS, share * shared[:, :-1].T, strict=True)), "friction": friction}
 
     def _of_softer(self, ends: Integers) -> tuple[Array, Flags]:
         """What pairs without a joint have, shape (n, 5), and whether the block that rules is loose, shape (n,), from
@@ -187,7 +188,7 @@ def longest_step_of_loose(solids: Sequence[Solid], law: PairLaw, system: System)
         solid = solids[i]
         centroid = solid.rest if in_space else solid.rest[::2]
         for corners, normal, shared in _springs(solid, law.of_block[0][i]):
-            columns = dict(zip(SHARED, shared, strict=True))
+            columns = dict(zip(SHARED_COLUMNS, shared, strict=True))
             ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
             tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
             kept.append(solid.body)

@@ -1,9 +1,10 @@
-"""Softening: how much of its law a place has that is found in a run, so that the step of the run stays stable.
+"""Softening: the share of their stiffness with which contacts that are found in a run leave its step stable.
 
-Each body is bounded alone. For this a spring between two bodies is taken as two, one on each body with the other one
-held, which together are never softer: (a - b)^2 <= a^2 / s + b^2 / (1 - s) for any share s. The shares go as what all
-springs of each body are over its masses, so that a heavy body on many light ones is not softened for them. The trace of
-a power of a matrix bounds its highest eigenvalue.
+The highest eigenvalue of each body is bounded alone. For this a spring between two bodies is replaced by two, one on
+each body with the other one held, which together are never softer: (a - b)^2 <= a^2 / s + b^2 / (1 - s) for any share
+s. The shares are proportional to the stiffness of all springs of each body over its masses, so that the contacts of a
+heavy body on many light ones are not softened because of these. The trace of a power of a matrix bounds its highest
+eigenvalue.
 """
 
 from __future__ import annotations
@@ -52,8 +53,8 @@ class Room(NamedTuple):
     """Room for `soften`.
 
     Args:
-        traces: of each place on its two bodies, that of its stiffness over the masses of the body, shape (2, n).
-        shares: of the springs of each place that its two bodies take, shape (2, n).
+        traces: of each place on its two bodies, the trace of its stiffness over the masses of the body, shape (2, n).
+        shares: of the springs of each place, in which its two bodies have them, shape (2, n).
         loads: of each body, the sum of these traces, shape (bodies,).
         stiffness: of each body by its places, shape (bodies, nv, nv).
         powers: of the stiffness of a body over its masses, two matrices, shape (2, nv, nv).
@@ -104,7 +105,7 @@ def add_up(sides: Sides, room: Room) -> None:
 
 @inlined
 def split(sides: Sides, room: Room) -> None:
-    """Let the two bodies of each place take shares of its springs that go as their loads."""
+    """Divide the springs of each place between its two bodies in proportion to their loads."""
     for p in range(sides.bodies.shape[1]):
         if sides.bodies[0, p] >= 0 and sides.bodies[1, p] >= 0:
             one, other = room.loads[sides.bodies[0, p]], room.loads[sides.bodies[1, p]]
@@ -155,7 +156,7 @@ def squared(a: Array, square: Array) -> float:
 
 @compiled_at_once
 def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room) -> None:
-    """Write the share of their law that the places of each body have left, see `shares_within`.
+    """Write the share of their stiffness that the places of each body keep, see `shares_within`.
 
     Args:
         sides: the two blocks of each place.
@@ -201,9 +202,9 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
 
 
 def unsoftened(share: float, step: float, slow: float) -> float:
-    """The step with which a place keeps all of its law that a longer one leaves a share of [s].
+    """The step with which a place keeps its whole stiffness, where a longer step leaves it a share [s].
 
-    What counts of a place goes as the square of the step for its spring, and as the step for its dashpot.
+    The limit of a spring is proportional to the square of the step, that of a dashpot to the step.
 
     Args:
         share: of its law that the longer step leaves [-].

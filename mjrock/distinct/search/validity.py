@@ -1,4 +1,4 @@
-"""Validity: for how long the contacts that a search has found are valid, and which joints blocks have left."""
+"""Validity: how long the contacts that a search has found are valid, and which joints blocks have left."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def longest_interval(sizes: Array) -> float:
 
 @inlined
 def fall_within(interval: float) -> float:
-    """What a block falls by in the longest time between two updates [m]."""
+    """The height by which a block falls in the longest time between two updates [m]."""
     return 0.5 * GRAVITY * interval**2
 
 

@@ -258,13 +258,13 @@ PUBLISHED = DampingLaw(
 )
 """The law of the paper (Eqs. 5-6), fitted there in a finite element code with its own contact discretisation."""
 
-LAWS = Path(__file__).with_name("laws")
+LAW_FILES = Path(__file__).with_name("laws")
 """Folder of the laws that come with the package."""
 
-CALIBRATED = DampingLaw.load(LAWS / "calibrated.toml")
+CALIBRATED = DampingLaw.load(LAW_FILES / "calibrated.toml")
 """The law for two corner lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
-CALIBRATED_BED = DampingLaw.load(LAWS / "calibrated_bed.toml")
+CALIBRATED_BED = DampingLaw.load(LAW_FILES / "calibrated_bed.toml")
 """The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
 NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}

@@ -28,7 +28,7 @@ from ...quantities import (
 from ..ground.motion import GroundMotion
 from ..wall.case import Case
 from ..wall.effect import Anchored, Effect, require_in_plane
-from ..wall.effects import KINDS, Carrying, Load
+from ..wall.effects import EFFECT_KINDS, Carrying, Load
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
@@ -130,7 +130,7 @@ class MasonryCase(Carrying):
         numbers: list[Effect] = []
         for i, effect in enumerate(self.effects):
             if not (isinstance(effect, Effect) and effect.only):
-                require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
+                require_kind(f"effects[{i}]", effect, *EFFECT_KINDS, Actuator)
             effect = numbered(f"effects[{i}]", effect, self.masonry)
             numbers.append(effect)
             if effect.block is None:

@@ -26,7 +26,7 @@ from ...quantities import (
 from ..ground.motion import GroundMotion
 from .block import Block
 from .effect import Anchored, Effect, require_in_plane
-from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
+from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, forces_of
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
 from .standing import WallStanding
@@ -104,7 +104,7 @@ class Case(Carrying):
         for i, effect in enumerate(self.effects):
             if isinstance(effect, SideStop):
                 raise TypeError(f"effects[{i}] = {shown(effect)}: give it as side_stop")
-            require_kind(f"effects[{i}]", effect, *KINDS)
+            require_kind(f"effects[{i}]", effect, *EFFECT_KINDS)
             if effect.block:
                 raise ValueError(
                     f"effects[{i}], block = {effect.block}, is outside the valid range: a wall has block 0"

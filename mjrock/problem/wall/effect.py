@@ -1,7 +1,7 @@
 """What every effect says of itself, so that nobody has to ask which kind it is.
 
 An effect has a link, a constant force or a mass, or several of them. A scene, the solvers, pictures and reports take
-these, and a new effect is a class of its own with one entry in `mjrock.problem.wall.effects.KINDS`.
+these, and a new effect is a class of its own with one entry in `mjrock.problem.wall.effects.EFFECT_KINDS`.
 """
 
 from __future__ import annotations

@@ -172,7 +172,7 @@ class SideStop:
         keep_declared(self, "side stop")
 
 
-KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, AddedMass)
+EFFECT_KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, AddedMass)
 """The kinds of effects, in the order in which scenes, pictures and reports name them."""
 Kind = TypeVar("Kind", bound=Effect)
 
@@ -181,7 +181,7 @@ def named_effects(effects: Sequence[Effect]) -> dict[str, Effect]:
     """Effects by name: `tie_0`, `load_0` and so on, each kind in its order."""
     return {
         f"{kind.label}_{i}": effect
-        for kind in KINDS
+        for kind in EFFECT_KINDS
         for i, effect in enumerate(effect for effect in effects if isinstance(effect, kind))
     }
 
@@ -228,8 +228,8 @@ class Carrying:
         return {name: effect for name, effect in self.links.items() if effect.law.k > 0}
 
     def _keep_sequence(self, *further: type[Effect]) -> None:
-        """Keep the effects, or a single one, as a tuple. They are of `KINDS` or `further` ones."""
-        kinds = (*KINDS, *further)
+        """Keep the effects, or a single one, as a tuple. They are of `EFFECT_KINDS` or `further` ones."""
+        kinds = (*EFFECT_KINDS, *further)
         given = (self.effects,) if isinstance(self.effects, kinds) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
             names = [kind.__name__ for kind in kinds]
