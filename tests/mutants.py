@@ -217,15 +217,15 @@ EQUIVALENT = {
     "the duration": "no sample is half a step before the end to the last bit",
     "turning.py: SPIN_PASSES = 6": "more passes take time only",
     "turning.py: SLOW_TURN, PASSES_OF_SLOW = 1e-3, 4": "more passes take time only",
-    "turning.py: SLOW_TURN, PASSES_OF_SLOW = 0.002, 2": "what two passes leave is within the error of the step there, too",
+    "turning.py: SLOW_TURN, PASSES_OF_SLOW = 0.002, 2": "two passes are within the error of the step there, too",
     "turning.py: SERIES_ANGLE = 0.0002": "the first term of the series that is left out is below rounding there, too",
     **{
         f"turning.py: {line}": "the term is below rounding there"
         for line in (
             "sine, versine = 1 - square / 6, 0.5 - square / 48",
             "sine, versine = 1 - square / 6, 0.5 + square / 24",
-            "if angle <= SMALL:",
-            "if half <= SMALL:",
+            "if angle <= SERIES_ANGLE:",
+            "if half <= SERIES_ANGLE:",
         )
     },
     "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > SAME_NORMAL:": (
@@ -255,7 +255,7 @@ EQUIVALENT = {
         for line in (
             "Search(2000.0, 20),",
             "Search(0.2, 300, accumulates=True),",
-            "HELD = Search(20000.0, 100, limited=False)",
+            "SEARCH_WITHOUT_LIMIT = Search(20000.0, 100, limited=False)",
         )
     },
     "rest.py: NEGLIGIBLE_STIFFNESS = 2e-12": "what is put down to rounding is far below what lets bodies fall",
