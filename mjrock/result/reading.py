@@ -37,7 +37,7 @@ TIME_AT_REST = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """What is read from a motion.
+    """Results that are read from a motion.
 
     Args:
         outcome, message: how it ended.
@@ -60,7 +60,7 @@ class Reading:
 
 
 class BesidePoses(NamedTuple):
-    """What a solver that finds all contacts knows beside the poses.
+    """Results beside the poses of a solver that finds all contacts.
 
     Args:
         widest: the widest gap of each contact in any step [m], shape (m,).
@@ -130,7 +130,7 @@ def _fallen_from_faces(
 
 
 def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
-    """The end of a run that a block ended by going too far or turning over [s], by the name of each that did."""
+    """When a run ended because a block went too far or turned over [s], by the name of the block."""
     freedom, first = scene.freedom, scene.at_rest
     shifted = np.hypot.reduce((last - first)[:, : freedom.translations], axis=1)
     far = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.bodies.extent
@@ -146,6 +146,6 @@ def _past_edges(
 
 
 def _lies_still(scene: Scene, t: Array, motion: SampledMotion) -> bool:
-    """Whether nothing moves any more: for the last 0.2 s none did as `is_quiet` says."""
+    """Whether all blocks lie still: for the last 0.2 s the masonry was at rest as `is_quiet` says."""
     last = motion.velocity[t >= t[-1] - TIME_AT_REST]
     return t[-1] > TIME_AT_REST and all(is_quiet(scene, 0.0, velocity) for velocity in last)

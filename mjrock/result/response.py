@@ -1,4 +1,4 @@
-"""What a solver returns: the motion, what is read from it for a wall or for joints, and how it ended."""
+"""The response of a solver: the motion, the results of a wall or of joints, and how it ended."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Response:
         solver: which solver answered.
         t: times [s], shape (n,).
         motion: pose, velocity and energy of the bodies at these times.
-        outcome: how the run ended. Masonry has overturned when a block has fallen.
+        outcome: how the run ended. The outcome of masonry is overturned when a block has fallen.
         message: the same in words, for the user.
         rocking: impacts and peaks of a wall; None for masonry.
         joints: openings and slidings of joints, and fallen blocks; None for a wall.
@@ -223,7 +223,7 @@ class Response:
 
     @property
     def of_joints(self) -> JointMotion:
-        """What joints and blocks did.
+        """The motion of joints and blocks.
 
         Raises:
             AttributeError: for a wall.

@@ -42,7 +42,7 @@ class Impact(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rocking:
-    """What is read from the motion of a wall.
+    """Results of the motion of a wall.
 
     Args:
         impacts: the impacts in order.
@@ -75,7 +75,7 @@ class Rocking:
 def peak_energies(case: Case, peaks: Array) -> tuple[Array, Array]:
     """Energy of the rigid wall at its rotation peaks, on leaving each and on the way to it [J], shape (m,) each.
 
-    The release counts with its velocity. Peaks have their sign where the wall is lopsided.
+    The release counts with its velocity. Peaks have their sign where the wall is not symmetric.
     """
     leaving, reaching = (energy.copy() for energy in case.peak_energies(np.asarray(peaks, dtype=float)))
     if len(leaving) and not case.released_outwards and abs(peaks[0]) == case.release_peak and case.omega0:

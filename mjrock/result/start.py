@@ -46,7 +46,7 @@ def required_start(start: object, case: AnyCase) -> State:
 
 
 def require_unbreakable(case: AnyCase) -> None:
-    """Raise ValueError for a tie that breaks, of which the text of a model, which a fixed step is, knows nothing."""
+    """Raise ValueError for a tie that breaks, which the text of a model, and so a fixed step, cannot describe."""
     for name, link in case.links.items():
         if link.law.ultimate < math.inf:
             raise ValueError(

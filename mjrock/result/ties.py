@@ -1,4 +1,4 @@
-"""What ties did: how far they were drawn out, what they pulled, and when they broke."""
+"""The motion of ties: their elongation, their force, and when they broke."""
 
 from __future__ import annotations
 
@@ -40,7 +40,9 @@ class Plastic(NamedTuple):
 
 
 def plastic_of(scene: Scene, *columns: Array) -> dict[str, Plastic]:
-    """What each link of a scene has yielded, from the fields of `Plastic` but `start`, shape (links,) each."""
+    """Plastic elongation and energy of each link of a scene, from the fields of `Plastic` but `start`, shape (links,)
+    each.
+    """
     links = scene.links.sprung
     rows = zip(links.names, *columns, scene.ties.reach - links.reach, strict=True)
     return {name: Plastic(*map(float, values)) for name, *values in rows}
@@ -54,8 +56,8 @@ class TieMotion:
         elongation: beyond its slack, with what has yielded; zero where the tie is slack for the first time, NaN once it
             has broken [m], shape (n,).
         plastic: the part that has yielded [m], shape (n,).
-        force: what it pulls with, zero once it has broken [N], shape (n,). A link that also pushes does so with a
-            negative one, and its elongation and its plastic part are those from rest, of either sign.
+        force: its tension, zero once it has broken [N], shape (n,). A link that also pushes has a negative one then,
+            and its elongation and its plastic part are those from rest, of either sign.
         largest_force: the largest force [N]: that among the samples, or the strength where it has yielded or broken.
         broken: when it broke [s], infinite for one that did not.
     """
