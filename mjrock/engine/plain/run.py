@@ -37,9 +37,9 @@ from .pairs import Pairs
 from .pieces import Piece, pieces_of
 from .text import plain_text
 
-RESOLVED, RESOLVED_OF_MANY = 0.1, 1.0
+RESOLVED, RESOLVED_OF_MANY = 0.1, 0.5
 """omega h of the step that is taken where none is asked for, omega the highest frequency of the closed contacts, of one
-body and of several [-] (`scripts/studies/plain_models.py`)."""
+body and of several [-] (`scripts/studies/plain_models.py`, `scripts/studies/plain_masonry.py`)."""
 OPEN = 0.01
 """Energy without an account that is warned of, over the largest part of the ledger [-]."""
 DOUBTED = 0.01
