@@ -26,7 +26,8 @@ from .notes import (
     rounded_down,
     stiffest,
 )
-from .row_of_model import Grip, ModelRow, unused
+from .row_of_model import Grip, Mixed, ModelRow, unused
+from .trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -100,7 +101,9 @@ def contact_for(
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
     asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
-    contact = beside(*contact_of(pair, Pose(whole, keyframe, qpos), asked), {})
+    pose = Pose(whole, keyframe, qpos)
+    contact = beside(*contact_of(pair, pose, asked), {})
+    contact = replace(contact, needs=solver_need(whole, pose, [contact]))
     for sentence in (*spoilers(pair, contact), *contact.remarks):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
     return contact
@@ -134,7 +137,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
     speed = None if asked.speed is None else require_within("speed", asked.speed, 1e-9, 1e6, "m/s")
     if asked.mass is not None and asked.at is not None:
         raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
-    grip = Grip.of(pair, asked.friction)
+    grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
     rate = None if k is not None else RESOLVED / h
     alone = asked.mass is not None
     met = meeting(pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k)
@@ -159,6 +162,8 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         solref=(stiffness, damping),
         solimp=(d, d, 0.001, 0.5, 2.0),
         **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
+        adhesion=mixed.adhesion,
+        gap=mixed.gap,
         speed=speed,
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,

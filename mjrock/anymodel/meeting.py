@@ -41,7 +41,7 @@ class Trial:
         option, disabled = self.model.opt, mujoco.mjtDisableBit
         option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
         option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
-        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
         self.data = mujoco.MjData(self.model)
         for name in ("qpos", "mocap_pos", "mocap_quat"):
             getattr(self.data, name)[:] = getattr(data, name)
@@ -157,6 +157,15 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
     return data
 
 
+def awake(model: mujoco.MjModel) -> mujoco.MjModel:
+    """The model without the sleep flag, with which MuJoCo makes no constraints of bodies that begin asleep."""
+    sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    if model.opt.enableflags & sleep:
+        model = copy.copy(model)
+        model.opt.enableflags &= ~sleep
+    return model
+
+
 class Pose:
     """A model in a pose.
 
@@ -167,6 +176,7 @@ class Pose:
     """
 
     def __init__(self, model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> None:
+        model = awake(model)
         self.model, self.data = model, state_of(model, keyframe, qpos)
         self.given = keyframe is not None or qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
