@@ -52,7 +52,7 @@ def _beside(pose: Pose, motion: Array, k: float, xi: float, mass: float, speed: 
     contact it pulls the bodies together on both ways, as gravity does. What it takes is at most the larger of both.
     """
     springs, e = pose.springs, rebound_restitution(xi)
-    stiffness, damping = springs.along(motion)
+    stiffness, damping = springs.along(motion, speed)
     friction = springs.friction(motion)
     added = float(stiffness.sum())
     if added > STIFF * k:
