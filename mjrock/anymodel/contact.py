@@ -64,7 +64,8 @@ class PairContact:
         speed: speed of approach for which the contact was made [m/s], or None where it leaves out gravity.
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         pose: the pose in which they meet: `qpos0`, a keyframe, or `qpos`.
-        load: static load of each contact point [N], see `GeomPair.load`.
+        load: static load of each contact point [N], that of the pose at rest, or the weight of the
+            lighter tree of bodies where the geoms are apart.
         needs: iterations of the solver that the contact needs, found by a trial in the pose.
         remarks: what in this pose keeps the contact from being what was asked, one sentence each.
     """

@@ -17,7 +17,7 @@ from ..quantities import Array, named, require_whole, require_within, shown, spe
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, PairMeeting, Pose, meeting, other_keyframes
+from .meeting import Company, Keyframe, PairMeeting, Pose, meeting, other_keyframes
 from .notes import (
     RESOLVED,
     UNSOUND,
@@ -46,7 +46,7 @@ def contact_for(
     mass: float | None = None,
     at: Sequence[float] | Array | None = None,
     contacts: int | None = None,
-    keyframe: str | int | None = None,
+    keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,
     speed: float | None = None,
     timestep: float | None = None,
@@ -80,7 +80,8 @@ def contact_for(
         contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None counts
             them, with those of other geoms of the two bodies that land together with these: the four balls of a foot
             share its mass. Another number than is counted refers to the centres of mass, unless `at` is given.
-        keyframe: name or number of the keyframe in which the geoms meet.
+        keyframe: name or number of the keyframe in which the geoms meet. Or several, each for the joints that it moves
+            from `qpos0`: robots that are attached bring keyframes of their own.
         qpos: positions of the joints in which they meet, shape (nq,). It is not given together with `keyframe`.
         speed: speed of the approach for which `restitution` holds with gravity [m/s], positive.
         timestep: MuJoCo's step [s], positive. None takes the model's.
@@ -167,7 +168,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         speed=speed,
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
-        load=pair.load / met.points,
+        load=pose.load(pair, met.points, points),
         remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))

@@ -15,7 +15,7 @@ from ..quantities import Array, named, shown
 from .contact import PairContact, Writing, document, options_of, spoilers, write
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of
 from .make import ContactRequest, beside, contact_of
-from .meeting import Pose
+from .meeting import Keyframe, Pose
 from .notes import VARIES, ContactWarning
 from .trial import solver_need
 
@@ -85,7 +85,7 @@ def contacts_for(
     model: mujoco.MjModel | mujoco.MjSpec,
     pairs: Mapping[tuple[Geom, Geom], Mapping[str, Any]],
     *,
-    keyframe: str | int | None = None,
+    keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,
     timestep: float | None = None,
 ) -> PairContacts:

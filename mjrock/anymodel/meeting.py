@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..quantities import Array, Integers, require_array, require_whole, shown
+from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
 from .felt import EffectiveMass, JointSprings, PoseConstraints, felt
 from .geoms import FARTHEST, GeomPair, makes
 
@@ -23,12 +23,18 @@ one in a thousand meets in all of its points."""
 DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 """Geoms that stay where they are."""
 KEY = mujoco.mjtObj.mjOBJ_KEY
+Keyframe = str | int | Sequence[str | int] | None
+"""A keyframe by name or number, or several."""
 FOREIGN = 1.2
 """Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
 LEVEL = 0.05
 """Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
 SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
+IMMOVABLE = 10.0
+"""Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
+REST = 1e-4
+"""Distance within which geoms of a pose at rest touch [m]."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
 
@@ -135,7 +141,11 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
     if keyframe is not None and qpos is not None:
         raise ValueError(f"keyframe = {shown(keyframe)} and qpos are both given; give one of them")
     data = mujoco.MjData(model)
-    if keyframe is not None:
+    if is_iterable(keyframe):
+        for each in keyframe:
+            pose = model.key_qpos[keyframe_id(model, each)]
+            data.qpos[:] = np.where(pose == model.qpos0, data.qpos, pose)
+    elif keyframe is not None:
         mujoco.mj_resetDataKeyframe(model, data, keyframe_id(model, keyframe))
         data.qvel[:] = 0
     elif qpos is not None:
@@ -166,19 +176,47 @@ def awake(model: mujoco.MjModel) -> mujoco.MjModel:
     return model
 
 
+def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset[int], list[float]]:
+    """Normal forces of all contact points of a pose at rest [N], by the numbers of their geoms.
+
+    They hold the bodies where they are: contacts that do not yield, within `REST` of touch. Joints beyond the first
+    body of each tree are held by a great armature, as servos hold a robot that stands.
+    """
+    held, option = copy.copy(model), mujoco.mjtEnableBit
+    held.opt.enableflags = int(held.opt.enableflags & ~int(option.mjENBL_SPECULATIVE) | int(option.mjENBL_OVERRIDE))
+    held.opt.o_solref[:], held.opt.o_solimp[:3], held.opt.o_margin = 0, (0.9999, 0.9999, 0.001), REST
+    held.opt.solver, held.opt.cone = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtCone.mjCONE_ELLIPTIC
+    held.opt.iterations, held.opt.ls_iterations, held.opt.impratio = 100, 50, 1
+    held.body_invweight0[:] *= 1e-4  # of the regularisation
+    first = held.dof_bodyid[held.tree_dofadr[held.dof_treeid]]
+    held.dof_armature[held.dof_bodyid != first] += 1e6 * float(held.body_mass.sum())
+    state = mujoco.MjData(held)
+    for name in ("qpos", "mocap_pos", "mocap_quat"):
+        getattr(state, name)[:] = getattr(data, name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mujoco.mj_forward(held, state)
+    found: dict[frozenset[int], list[float]] = {}
+    force = np.zeros(6)
+    for i, geoms in enumerate(state.contact.geom.tolist()):
+        mujoco.mj_contactForce(held, state, i, force)
+        found.setdefault(frozenset(geoms), []).append(float(force[0]))
+    return found
+
+
 class Pose:
     """A model in a pose.
 
     Args:
         model: the model, which is only read.
-        keyframe: name or number of a keyframe.
+        keyframe: name or number of a keyframe, or several, each for the joints that it moves from `qpos0`.
         qpos: positions of the joints, shape (nq,). Without either it is `qpos0`.
     """
 
     def __init__(self, model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> None:
         model = awake(model)
         self.model, self.data = model, state_of(model, keyframe, qpos)
-        self.given = keyframe is not None or qpos is not None
+        self.given, self.exact = keyframe is not None or qpos is not None, qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
         self._landings: dict[tuple[int, int], Landing] = {}
         self._groups: dict[tuple[int, ...], Group] = {}
@@ -197,6 +235,19 @@ class Pose:
         return self._groups[bodies]
 
     @cached_property
+    def resting(self) -> dict[frozenset[int], list[float]]:
+        """Normal forces of the contact points of geoms that touch, in the pose at rest [N]; see `forces_at_rest`."""
+        return forces_at_rest(self.model, self.data)
+
+    def load(self, pair: GeomPair, points: int, contacts: int | None) -> float:
+        """Static load of each contact point [N]: that of the pose at rest where the geoms touch, otherwise the weight
+        of the lighter of the two. `points` share it, or those that `contacts` gives."""
+        forces = self.resting.get(frozenset(pair.geoms))
+        if forces is None:
+            return pair.load / points
+        return max(1e-9, sum(forces)) / (contacts or len(forces))
+
+    @cached_property
     def ground(self) -> Trial:
         """A copy of the model in which geoms are tried against each other."""
         return Trial(self.model, self.data)
@@ -213,8 +264,15 @@ class Pose:
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
-        """The poses of the model's keyframes, if this one is not among them and was not asked for."""
-        return () if self.given else tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
+        """The poses of the model's keyframes."""
+        return tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
+
+    def leaves(self, pair: GeomPair) -> bool:
+        """Whether the joints of both geoms are where they are in `qpos0`, although another pose may have been given."""
+        moved = np.flatnonzero(np.array(self.data.qpos) != self.model.qpos0)
+        joints = np.searchsorted(self.model.jnt_qposadr, moved, side="right") - 1
+        bodies = self.model.jnt_bodyid[joints]
+        return not any(tree[bodies].any() for tree in pair.trees)
 
 
 class Company(NamedTuple):
@@ -342,10 +400,14 @@ def other_keyframes(
     pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
 ) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
+    if pose.given and (pose.exact or not pose.leaves(pair)):
+        return
     names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
     for name, other in zip(names, pose.others, strict=False):
+        if pose.given and other.leaves(pair):
+            continue
         share = meeting(pair, other, contacts=contacts, friction=friction).share
-        if 0 < share < np.inf:
+        if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be
             worst = max(worst, (max(share / here.share, here.share / share), name, share))
     _, name, share = worst
     if name:
