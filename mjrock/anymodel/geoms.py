@@ -21,6 +21,8 @@ FARTHEST = 1e10
 TOUCHING, ASIDE = 1e-3, 1e-2
 """Geoms that are nearer than this share of the distance of their centres touch, and the shortest distance has no
 direction. It is then looked for with one of them moved aside by the other share."""
+FACING = 0.999
+"""Cosine from which a direction is the normal of a face [-]; 2.6 degrees."""
 ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 """Geoms that meet any other convex geom in a single point."""
 UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
@@ -221,6 +223,32 @@ class GeomPair:
         up = np.array((0.0, 0.0, 1.0))
         vector = next(vector for vector in (apart, between, up) if np.any(np.abs(vector) > 1e-12))
         return np.array(vector / np.linalg.norm(vector)), distance, ends
+
+    def field_axis(self, data: mujoco.MjData) -> Array | None:
+        """The unit vector along which the first geom parts from a height field, its axis; None for other geoms."""
+        for geom, sign in zip(self.geoms, (-1.0, 1.0), strict=True):
+            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_HFIELD:
+                return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2])
+        return None
+
+    def meets_edges(self, data: mujoco.MjData, away: Array) -> bool:
+        """Whether a line meets edges or corners of all boxes, cylinders and meshes among the two geoms."""
+        model, found = self.model, []
+        for geom in self.geoms:
+            kind, along = model.geom_type[geom], np.abs(data.geom_xmat[geom].reshape(3, 3).T @ away)
+            if kind == mujoco.mjtGeom.mjGEOM_PLANE or kind in UNEVEN:
+                return False
+            if kind == mujoco.mjtGeom.mjGEOM_BOX:
+                found.append(along.max())
+            elif kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+                found.append(max(along[2], float(np.hypot(*along[:2]))))
+            elif kind == mujoco.mjtGeom.mjGEOM_MESH:
+                mesh = int(model.geom_dataid[geom])
+                first = int(model.mesh_polyadr[mesh])
+                normals = model.mesh_polynormal[first : first + int(model.mesh_polynum[mesh])]
+                local = data.geom_xmat[geom].reshape(3, 3).T @ away
+                found.append(float(np.abs(normals @ local).max(initial=0)))
+        return bool(found) and max(found) < FACING
 
     def _shortest(self, data: mujoco.MjData) -> tuple[float, Array | None]:
         """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo knows none."""

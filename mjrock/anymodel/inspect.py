@@ -181,6 +181,7 @@ def _notes(
             f"and the mass {found.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
         )
         return
+    yield from pose.unknown(pair)
     if found.k > 0:
         yield from holding(pose, met.felt, found.k * met.points, found.xi, found.mass)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):

@@ -45,6 +45,7 @@ def contact_for(
     friction: float | Sequence[float] | None = None,
     mass: float | None = None,
     at: Sequence[float] | Array | None = None,
+    normal: Sequence[float] | Array | None = None,
     contacts: int | None = None,
     keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,
@@ -77,6 +78,9 @@ def contact_for(
         mass: effective mass of the whole contact [kg], positive. None takes it from the model.
         at: contact point that meets first, in the world's frame and in the pose [m], shape (3,). None is the middle of
             the points that meet. It is not given together with `mass`.
+        normal: direction in which geom1 parts from geom2, in the world's frame, shape (3,): (0, 0, 1) for a foot on
+            whatever lies below. None is the normal of a plane, the axis of a height field, and the shortest line of
+            other geoms.
         contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None counts
             them, with those of other geoms of the two bodies that land together with these: the four balls of a foot
             share its mass. Another number than is counted refers to the centres of mass, unless `at` is given.
@@ -101,7 +105,7 @@ def contact_for(
     """
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
+    asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta, normal)
     pose = Pose(whole, keyframe, qpos)
     contact = beside(*contact_of(pair, pose, asked), {})
     contact = replace(contact, needs=solver_need(whole, pose, [contact]))
@@ -125,12 +129,13 @@ class ContactRequest:
     speed: float | None = None
     timestep: object = None
     newmark_beta: object = 0.25
+    normal: object = None
 
 
 def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:
     """The contact of a pair in a pose, with `remarks` on how it differs from what was asked, and what lands
     with it."""
-    option = pair.model.opt
+    option, pose = pair.model.opt, pose.along(asked.normal)
     k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
     beta = require_within("newmark_beta", asked.newmark_beta, 0.0, 1e6)
@@ -261,7 +266,8 @@ def _remarks(
     if asked.mass is not None or not met.felt.mass < math.inf:
         return ()
     xi = c / (2 * math.sqrt(k * met.share))
-    found = list(holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0)))
+    found = [*pose.unknown(pair)] if asked.at is None else []
+    found += holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points
         found += other_keyframes(pair, pose, met, contacts, mu)

@@ -20,6 +20,8 @@ from .geoms import FARTHEST, GeomPair, makes
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
 one in a thousand meets in all of its points."""
+HALVINGS = 40
+"""Halvings of the way on which a landing is looked for."""
 DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 """Geoms that stay where they are."""
 KEY = mujoco.mjtObj.mjOBJ_KEY
@@ -62,9 +64,7 @@ class Trial:
         self._let_meet(geoms, bodies, 1)
         moves = 1 if self.model.geom_type[geoms[0]] in DIRECTIONLESS else 0
         place = np.array(self.data.geom_xpos[geoms[moves]])
-        radii = self.model.geom_rbound[geoms]
-        depth = DEPTH * float(min((radius for radius in radii if radius > 0), default=1.0))
-        shift = (distance + depth) * away
+        shift = (distance + self.pressed(pair)) * away
         self.data.geom_xpos[geoms[moves]] += shift if moves else -shift
         try:
             mujoco.mj_collision(self.model, self.data)
@@ -75,6 +75,34 @@ class Trial:
             self._let_meet(geoms, bodies, 0)
         points = met[:: max(1, len(pair.listed))]
         return points + shift if moves == 0 else points
+
+    def drop(self, pair: GeomPair, away: Array) -> Landing | None:
+        """Where the first geom lands as it moves against `away`; if it passes the second, over the middle of that.
+        None where it meets nothing."""
+        geoms, place, radii = pair.geoms, self.data.geom_xpos, self.model.geom_rbound
+        apart, moved = place[geoms[0]] - place[geoms[1]], geoms[self.model.geom_type[geoms[0]] in DIRECTIONLESS]
+        level, start = float(apart @ away), np.array(place[moved])
+        for aside in (np.zeros(3), level * away - apart):
+            place[moved] = start + (aside if moved == geoms[0] else -aside)
+            far, near = level - 1.01 * float(radii[list(geoms)].sum()), level
+            if not len(self.points(pair, away, near)):
+                continue
+            for _ in range(HALVINGS):
+                middle = 0.5 * (far + near)
+                far, near = (far, middle) if len(self.points(pair, away, middle)) else (middle, near)
+            distance = near + self.pressed(pair)
+            points = self.points(pair, away, distance)
+            place[moved] = start
+            if moved == geoms[0]:
+                points = points - aside
+            return Landing(away, distance, points, points - distance * away + aside) if len(points) else None
+        place[moved] = start
+        return None
+
+    def pressed(self, pair: GeomPair) -> float:
+        """How far the geoms are pressed into each other [m]."""
+        radii = self.model.geom_rbound[list(pair.geoms)]
+        return DEPTH * float(min((radius for radius in radii if radius > 0), default=1.0))
 
     def _let_meet(self, geoms: list[int], bodies: list[int], value: int) -> None:
         self.model.geom_contype[geoms] = self.model.geom_conaffinity[geoms] = value
@@ -97,15 +125,21 @@ class Landing(NamedTuple):
     second: Array
 
 
-def landing(pair: GeomPair, data: mujoco.MjData, ground: Trial | None) -> Landing:
+def landing(pair: GeomPair, data: mujoco.MjData, ground: Trial | None, normal: Array | None = None) -> Landing:
     """Where two geoms meet.
 
     Args:
         pair: the geoms.
         data: the pose, see `state_of`.
-        ground: a copy of the model in this pose; None for geoms that meet in a single point.
+        ground: a copy of the model in this pose; None for geoms that meet in a single point, without a normal.
+        normal: unit vector along which the first parts from the second, shape (3,). None is that of a plane, the axis
+            of a height field, or the shortest line.
     """
+    along = pair.field_axis(data) if normal is None else normal
+    if along is not None and ground is not None and (found := ground.drop(pair, along)):
+        return found
     away, distance, ends = pair.apart(data)
+    away = away if along is None else along
     if ground is not None:
         points = ground.points(pair, away, distance)
         if len(points):
@@ -218,14 +252,38 @@ class Pose:
         self.model, self.data = model, state_of(model, keyframe, qpos)
         self.given, self.exact = keyframe is not None or qpos is not None, qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
-        self._landings: dict[tuple[int, int], Landing] = {}
+        self.normal: Array | None = None
+        self._landings: dict[tuple[int, ...], Landing] = {}
         self._groups: dict[tuple[int, ...], Group] = {}
 
     def landing(self, pair: GeomPair) -> Landing:
         """Where two geoms meet in the pose."""
-        if pair.geoms not in self._landings:
-            self._landings[pair.geoms] = landing(pair, self.data, self.ground if pair.makes_several_points else None)
-        return self._landings[pair.geoms]
+        key = (*pair.geoms, *([] if self.normal is None else self.normal.tolist()))
+        if key not in self._landings:
+            tried = pair.makes_several_points or self.normal is not None
+            self._landings[key] = landing(pair, self.data, self.ground if tried else None, self.normal)
+        return self._landings[key]
+
+    def along(self, normal: object) -> Pose:
+        """The pose in which geoms part along a direction, in the world's frame, shape (3,); itself for None."""
+        if normal is None:
+            return self
+        given = require_array("normal", normal, (3,))
+        if not (size := float(np.linalg.norm(given))) > 0:
+            raise ValueError(f"normal = {shown(normal)} has no direction; give a vector that is not zero")
+        other = copy.copy(self)
+        other.normal, other._groups = given / size, {}
+        return other
+
+    def unknown(self, pair: GeomPair) -> Iterator[str]:
+        """A sentence where the pose does not show how two geoms land."""
+        here = self.landing(pair)
+        if self.normal is None and here.distance > REST and pair.meets_edges(self.data, here.away):
+            yield (
+                f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
+                "neither: how they land is not known, nor the mass; give normal, the direction in which the first "
+                "parts from the second, or the pose in which they land"
+            )
 
     def group(self, pair: GeomPair) -> Group:
         """The geoms of the two bodies of a pair."""
@@ -383,7 +441,10 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     ends, reach, own = place[group.geoms], radius[group.geoms], np.array(pair.geoms)[:, None]
     between = reach + np.linalg.norm(ends - place[own], axis=2) + radius[own]
     least = np.linalg.norm(ends[0] - ends[1], axis=1) - (reach + SLOPING * between).sum(axis=0)
-    near = np.flatnonzero((least <= max(here.distance, 0.0)) & (group.geoms != own).any(axis=0))
+    met = (group.geoms != own).any(axis=0)
+    if pose.normal is not None:  # of several geoms that may lie below, one does
+        met &= group.geoms[1] == pair.geoms[1]
+    near = np.flatnonzero((least <= max(here.distance, 0.0)) & met)
     distance, away, middle = group.landed(near)
     between, differs = np.linalg.norm(middle - here.first.mean(axis=0), axis=1), np.abs(distance - here.distance)
     along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)

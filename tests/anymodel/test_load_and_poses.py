@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import warnings
 
 import mujoco
 import pytest
@@ -84,3 +85,41 @@ def test_keyframes_of_nested_robots_are_an_error_and_no_signal(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0
     assert "model does not compile: Error: repeated name 'b_home' in key" in done.stdout
+
+
+GROUNDS = {
+    "plane": FLOOR,
+    "field": '<geom name="floor" type="hfield" hfield="hf"/>',
+    "tiles": "".join(f'<geom name="floor{i}" type="box" size=".5 .5 .05" pos="{i} 0 -.05"/>' for i in range(4)),
+}
+FOOT = """<body pos="{x} 0 1"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><geom size=".1"
+mass="9" contype="0" conaffinity="0"/><body pos="0 0 -.3"><joint type="slide" axis="1 0 0"/>
+<geom name="{name}" type="{kind}" size=".05 .05 .05" mass="1" pos="0 0 -.3"/></body></body>"""
+
+
+@pytest.mark.parametrize(("kind", "points"), [("sphere", 1), ("box", 4)])
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("x", [0.0, 2.2])
+def test_a_foot_lands_on_whatever_lies_below(ground, kind, points, x):
+    """It stops 10 kg on each tile that it does not stand above, and where it stands on a field."""
+    field = '<asset><hfield name="hf" nrow="41" ncol="41" size="4 4 .1 .1"/></asset><worldbody>'
+    text = scene(GROUNDS[ground], FOOT.format(x=x, name="foot", kind=kind)).replace("<worldbody>", field)
+    spec = mujoco.MjSpec.from_string(text)
+    asked = {"k": 1e5, "restitution": 0.5, "friction": 0, "normal": (0, 0, 1)}
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", ".*one of the geoms is uneven")
+        contacts = mr.contacts_for(spec, {("foot", "floor*"): asked})
+    assert [contact.mass * contact.contacts for contact in contacts] == pytest.approx([10.0] * len(contacts))
+    if ground != "field":
+        assert {contact.contacts for contact in contacts} == {points}
+
+
+def test_where_the_pose_does_not_show_the_landing_it_says_so():
+    spec = mujoco.MjSpec.from_string(scene(GROUNDS["tiles"], FOOT.format(x=0.2, name="foot", kind="sphere")))
+    asked = {"k": 1e5, "restitution": 0.5, "friction": 0}
+    mr.contact_for(spec, "foot", "floor0", **asked)
+    with pytest.warns(mr.ContactWarning, match=r"their shortest line meets a face of neither: how .* is not known"):
+        mr.contact_for(spec, "foot", "floor2", **asked)
+    for normal, error in (((0, 0, 0), "no direction"), ((0, 1), "normal has the shape")):
+        with pytest.raises(ValueError, match=error):
+            mr.contact_for(spec, "foot", "floor2", normal=normal, **asked)
