@@ -278,7 +278,12 @@ class Pose:
     def unknown(self, pair: GeomPair) -> Iterator[str]:
         """A sentence where the pose does not show how two geoms land."""
         here = self.landing(pair)
-        if self.normal is None and here.distance > REST and pair.meets_edges(self.data, here.away):
+        if self.normal is None and int(mujoco.mjtGeom.mjGEOM_SDF) in self.model.geom_type[list(pair.geoms)]:
+            yield (
+                "MuJoCo has no shortest line to a geom of signed distances, and that of the centres is taken; give "
+                "normal, the direction in which the first geom parts from the second"
+            )
+        elif self.normal is None and here.distance > REST and pair.meets_edges(self.data, here.away):
             yield (
                 f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
                 "neither: how they land is not known, nor the mass; give normal, the direction in which the first "

@@ -56,6 +56,7 @@ JUDGED: dict[mujoco.mjtEnableBit | mujoco.mjtDisableBit, str] = {
 }
 """What each flag of MuJoCo does to a contact in N/m, once it is set; empty where it does nothing."""
 
+SAFE = "; with refsafe it also replaces contacts that the step does not resolve by some without a rebound"
 MOST, SEARCHES = 100, 50
 """Iterations and line searches with which a solver is taken to converge, MuJoCo's defaults."""
 
@@ -77,7 +78,7 @@ def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
     if option.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE:
         yield (
             "the integrator `discrete` takes energy from every contact, as much as a damping ratio of omega h / 2; "
-            "take Euler, implicitfast or RK4"
+            "take Euler, implicitfast or RK4" + ("" if option.disableflags & int(DISABLE.mjDSBL_REFSAFE) else SAFE)
         )
     for bits, kind in ((int(option.enableflags), ENABLE), (int(option.disableflags), DISABLE)):
         known = {int(flag): text for flag, text in JUDGED.items() if isinstance(flag, kind)}
