@@ -11,11 +11,12 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from ..engine.replay import load
 from ..files import aligned, csv_text, write_text
 from ..quantities import named, require_within
-from .geoms import BODY, label_of, names_of
+from .geoms import BODY, GeomPair, label_of, names_of
 from .inspect import InspectedContact, inspect_contacts
 from .notes import VARIES
 
@@ -25,17 +26,16 @@ GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infini
 """Parts of notes that put a contact first or last in the table."""
 
 
-def is_of(contact: InspectedContact, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
-    """Whether a contact has names that match, with the wildcards `*`, `?` and `[...]`.
+def is_of(found: GeomPair, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
+    """Whether two geoms have names that match, with the wildcards `*`, `?` and `[...]`.
 
     Args:
-        contact: the contact.
+        found: the geoms.
         geoms, bodies: names of geoms and of bodies, of which it has at least one; none are all.
         pair: names of its two geoms or bodies, in any order; None are all.
     """
-    own = contact.geom1, contact.geom2
-    sides = list(zip(own, contact.bodies, strict=True))
-    if (geoms and not _like(own, geoms)) or (bodies and not _like(contact.bodies, bodies)):
+    sides = list(zip(found.labels, found.body_names, strict=True))
+    if (geoms and not _like(found.labels, geoms)) or (bodies and not _like(found.body_names, bodies)):
         return False
     return pair is None or any(
         all(_like(side, [pattern]) for side, pattern in zip(order, pair, strict=True)) for order in (sides, sides[::-1])
@@ -73,7 +73,7 @@ def report(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int |
     """
     speed = require_within("speed", speed, 1e-9, 1e9, "m/s")
     if not found:
-        return "This model has no contact that can act."
+        return "This model has no contact of two geoms that can act."
     shown = found if most is None else found[:most]
     alike: dict[str, list[str]] = {}
     for contact in found:
@@ -90,7 +90,7 @@ def report(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int |
         lines.append(
             f"and {len(found) - len(shown)} more; --all shows them, --geom, --body and --pair choose among them"
         )
-    lines.append(f"v is {speed:g} m/s. k loaded carries the static load: the weight of what moves, or --load.")
+    lines.append(f"v is {speed:g} m/s. k loaded carries the static load: that of the pose, or --load.")
     for number, (first, *others) in enumerate(alike.values(), 1):
         lines.append(f"{number}: {first}" + (f" [and {len(others)} like it]" if others else ""))
     return "\n".join(lines)
@@ -156,13 +156,32 @@ def answer(argv: Sequence[str]) -> str:
     model = load(args.model)
     require_known(model, [*args.geom, *args.body, *(args.pair or ())])
     found = inspect_contacts(
-        model, candidates=not args.pairs, contacts=args.contacts, keyframe=keyframe, load=args.load
+        model,
+        candidates=not args.pairs,
+        contacts=args.contacts,
+        keyframe=keyframe,
+        load=args.load,
+        chosen=lambda pair: is_of(pair, args.geom, args.body, args.pair),
     )
-    chosen = worst_first([contact for contact in found if is_of(contact, args.geom, args.body, args.pair)])
+    chosen = worst_first(found)
     if args.csv is not None:
         header = ["geom1", "geom2", *HEADER[2:]]
         rows = [[*values(contact, args.speed), "; ".join(contact.notes)] for contact in chosen]
         write_text(args.csv, csv_text(header, rows))
-    if found and not chosen:
-        return f"None of the {len(found)} contacts of this model is of these geoms, bodies or pairs."
-    return report(chosen, speed=args.speed, most=None if args.all else PAGE)
+    flexes = flexes_of(model)
+    if not chosen and (args.geom or args.body or args.pair):
+        return "No contact of this model is of these geoms, bodies or pairs." + flexes
+    return report(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes
+
+
+def flexes_of(model: mujoco.MjModel) -> str:
+    """A line on the flexes that can meet something; empty without any. Their contacts are not among those of geoms."""
+    meet = np.flatnonzero((model.flex_contype != 0) | (model.flex_conaffinity != 0))
+    if not len(meet):
+        return ""
+    told = named([mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, i) or f"[{i}]" for i in meet.tolist()])
+    points = int(model.flex_vertnum[meet].sum())
+    return (
+        f"\nLeft out: the contacts of {len(meet)} flexes with {points} points ({told}). They mix solref and solimp of "
+        "the flex and the geom, and the stiffness of each grows with the mass of its point."
+    )

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -18,10 +18,13 @@ from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text
 from .geoms import GeomPair, compiled_model, kept_apart
 from .notes import (
+    ENOUGH,
     SCATTER,
     UNSOUND,
     ContactWarning,
+    SolverNeed,
     duplicates,
+    few_iterations,
     model_spoilers,
     resolving_step,
     rounded_down,
@@ -56,10 +59,14 @@ class PairContact:
         contacts: contact points that share the mass.
         solref, solimp, solreffriction, friction, condim: what the `<pair>` carries.
         impratio: smallest impratio of the model with which the friction holds [-]; 1 without friction.
+        adhesion, gap: tensile force of each contact point [N] and the distance up to which it pulls [m], as the model
+            has them. The margin of a contact is zero.
         speed: speed of approach for which the contact was made [m/s], or None where it leaves out gravity.
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         pose: the pose in which they meet: `qpos0`, a keyframe, or `qpos`.
-        load: static load of each contact point [N], the weight of the lighter of the two trees of bodies, shared.
+        load: static load of each contact point [N], that of the pose at rest, or the weight of the
+            lighter tree of bodies where the geoms are apart.
+        needs: iterations of the solver that the contact needs, found by a trial in the pose.
         remarks: what in this pose keeps the contact from being what was asked, one sentence each.
     """
 
@@ -79,10 +86,13 @@ class PairContact:
     friction: tuple[float, float, float, float, float]
     condim: int
     impratio: float
+    adhesion: float = 0.0
+    gap: float = 0.0
     speed: float | None = None
     gravity: float = 0.0
     pose: str = "qpos0"
     load: float = 0.0
+    needs: SolverNeed = ENOUGH
     remarks: tuple[str, ...] = ()
 
     @property
@@ -138,7 +148,12 @@ class PairContact:
         return document([self])
 
     def apply(
-        self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False, keep_others: bool = False
+        self,
+        model: mujoco.MjModel | mujoco.MjSpec,
+        *,
+        on_geoms: bool = False,
+        keep_others: bool = False,
+        iterations: bool = False,
     ) -> None:
         """Write the contact into a model, with the options that it needs.
 
@@ -155,6 +170,8 @@ class PairContact:
             keep_others: whether other contacts that the options change are kept as stiff as they were. Named geoms of a
                 specification get explicit pairs, which their own parameters and filters do not change any more, and
                 existing pairs get other numbers.
+            iterations: whether the options `iterations` and `ls_iterations` are raised to what the contact needs, see
+                `needs`. Models for MJX have few.
 
         Raises:
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
@@ -164,7 +181,7 @@ class PairContact:
             ContactWarning: of other contacts that are stiffer or softer now, with k before and after. The elliptic cone
                 makes contacts with friction mu softer by 2 impratio / (mu^2 (1 + mu^2)), or stiffer for mu above 1.
         """
-        write([self], model, on_geoms, keep_others)
+        write([self], model, Writing(on_geoms, keep_others, iterations))
 
     def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
@@ -172,10 +189,8 @@ class PairContact:
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
             self._write_spec(model, geoms)
-        elif geoms.explicit >= 0:
-            self._write_pair(model, geoms.explicit)
-        elif on_geoms:
-            self._write_geoms(model)
+        elif geoms.explicit >= 0 or on_geoms:
+            self.write_numbers(model, geoms)
         else:
             raise ValueError(
                 f"model has no explicit <pair> of {self.geom1 or self.ids[0]!r} and {self.geom2 or self.ids[1]!r}; "
@@ -192,7 +207,8 @@ class PairContact:
         """
         self._require_names()
         found = {"geom1": self.geom1, "geom2": self.geom2, "condim": self.condim}
-        found |= {"solref": self.solref, "solimp": self.solimp}
+        found |= {"solref": self.solref, "solimp": self.solimp, "margin": 0.0, "gap": self.gap}
+        found |= {"adhesion": self.adhesion}
         return found | ({"solreffriction": self.solreffriction, "friction": self.friction} if self.condim > 1 else {})
 
     @property
@@ -204,15 +220,20 @@ class PairContact:
         pair = _spec_pair(spec, geoms)
         pair.condim, pair.friction = self.condim, self.friction
         pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
+        pair.margin, pair.gap, pair.adhesion = 0.0, self.gap, self.adhesion
 
-    def _write_pair(self, model: mujoco.MjModel, i: int) -> None:
-        model.pair_dim[i], model.pair_friction[i] = self.condim, self.friction
-        model.pair_solref[i], model.pair_solimp[i] = self.solref, self.solimp
-        model.pair_solreffriction[i] = self.solreffriction
-
-    def _write_geoms(self, model: mujoco.MjModel) -> None:
-        """Equal geoms of equal priority mix to what they are."""
-        geoms = list(self._pair_in(model).geoms)
+    def write_numbers(self, model: mujoco.MjModel, pair: GeomPair) -> None:
+        """Write the numbers into the explicit pair of a compiled model or, without one, into both geoms, which mix to
+        the contact, as equal geoms of equal priority do; margin, gap and adhesion add up."""
+        if (i := pair.explicit) >= 0:
+            model.pair_dim[i], model.pair_friction[i] = self.condim, self.friction
+            model.pair_solref[i], model.pair_solimp[i] = self.solref, self.solimp
+            model.pair_solreffriction[i] = self.solreffriction
+            model.pair_margin[i], model.pair_gap[i], model.pair_adhesion[i] = 0.0, self.gap, self.adhesion
+            return
+        geoms = list(pair.geoms)
+        model.geom_margin[geoms], model.geom_gap[geoms] = 0.0, 0.5 * self.gap
+        model.geom_adhesion[geoms] = 0.5 * self.adhesion
         model.geom_solref[geoms], model.geom_solimp[geoms] = self.solref, self.solimp
         model.geom_condim[geoms], model.geom_friction[geoms] = self.condim, self.friction[1:4]
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
@@ -279,12 +300,18 @@ def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> Any:
     return next(listed, None) or spec.add_pair(geomname1=first, geomname2=second)
 
 
-def write(
-    contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, on_geoms: bool, keep_others: bool
-) -> None:
+class Writing(NamedTuple):
+    """How contacts are written; see `PairContact.apply`."""
+
+    on_geoms: bool
+    keep_others: bool
+    iterations: bool
+
+
+def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, how: Writing) -> None:
     """Write contacts of one time step into a model or a specification, and warn of others that this changes."""
-    whole, on_geoms = compiled_model(model), require_flag("on_geoms", on_geoms)
-    require_flag("keep_others", keep_others)
+    whole = compiled_model(model)
+    on_geoms, keep_others, iterations = (require_flag(name, value) for name, value in how._asdict().items())
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
     rubs = any(contact.condim > 1 for contact in contacts)
     switches = rubs and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
@@ -298,6 +325,8 @@ def write(
         if rubs:
             each.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
             each.impratio = max([float(each.impratio), *(contact.impratio for contact in contacts)])
+        for name in ("iterations", "ls_iterations") if iterations else ():
+            setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
     changed = [] if others is None else list(others.changed())
     if keep_others:
         changed = [each for each in changed if not _keep(model, each)]
@@ -320,8 +349,7 @@ def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
     pair.solref, pair.solimp = numbers.solref, numbers.solimp
     if geoms.explicit < 0:
         pair.condim, pair.friction = numbers.condim, numbers.friction
-        pair.margin, pair.adhesion = numbers.margin, numbers.adhesion
-        pair.gap = float(geoms.model.geom_gap[list(geoms.geoms)].sum())
+        pair.margin, pair.gap, pair.adhesion = numbers.margin, numbers.gap, numbers.adhesion
     return True
 
 
@@ -346,15 +374,16 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     yield from duplicates(pair)
     if pair.explicit < 0 and (reason := kept_apart(pair)):
         yield f"MuJoCo keeps these geoms apart, since {reason}; an explicit <pair> overrides that and lets them collide"
-    if pair.explicit >= 0:
-        mixed = Mixed.of(pair)
-        if mixed.margin != 0:
-            yield f"the pair has a margin of {mixed.margin:g} m, at which the spring begins; set it to 0"
-        if mixed.adhesion != 0:
-            yield f"the pair has an adhesion of {mixed.adhesion:g} N, with which the contact pulls"
+    mixed = Mixed.of(pair)
+    if mixed.margin != 0:
+        yield f"it has a margin of {mixed.margin:g} m, at which the spring begins; apply writes a margin of 0"
+    if mixed.adhesion != 0:
+        within = f" within {mixed.gap:g} m" if mixed.gap else ""
+        yield f"it has an adhesion of {mixed.adhesion:g} N a point, with which the contact pulls{within}"
     if pair.is_uneven:
         yield uneven(contact.contacts)
     yield from step_spoilers(contact)
+    yield from few_iterations(model.opt, contact.needs)
 
 
 def weight_spoilers(contact: PairContact) -> Iterator[str]:
@@ -418,7 +447,7 @@ def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
             yield "geoms have no solreffriction, so that sliding changes the normal force"
     elif contact.condim > 1:
         names.append("solreffriction")
-    for name in names:
+    for name in (*names, "adhesion", "gap"):
         if not np.allclose(getattr(mixed, name), getattr(contact, name), rtol=1e-5, atol=1e-12):
             yield f"the pair has another {name}: {getattr(mixed, name)} for {getattr(contact, name)}"
     if mixed.condim != contact.condim:

@@ -8,10 +8,14 @@ force of the law with the friction in place. A contact whose slip friction stops
 
 from __future__ import annotations
 
+import warnings
+
 import mujoco
 import numpy as np
 
-from ..quantities import Array, Integers, require_kind
+from ..quantities import Array, Integers, named, require_kind, require_within
+from .geoms import label_of
+from .notes import ContactWarning
 
 LOOKS = 10
 """Most iterations for the friction in a step."""
@@ -19,6 +23,7 @@ KNOWN = 1e-6
 """Change of the friction in an iteration at which it has converged, as a share of it [-]."""
 SATURATED = 0.99
 """Friction over mu times the normal force from which on a contact is taken to slide [-]."""
+REST = np.zeros(2)
 VELOCITY = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
@@ -33,20 +38,26 @@ class CoulombFriction:
             mujoco.mj_step(model, data)
 
     It is for explicit pairs with friction, as `contact_for` makes them, with the elliptic cone. A pair of which one
-    point sticks while others slide keeps its rows. It changes `pair_dim` of the model from step to step, and
-    `release` gives it back. So a model is stepped with one `MjData` at a time: each of several, and each thread, has a
-    copy of the model and a `CoulombFriction` of its own. Forces of the user in `qfrc_applied` remain, and may be set
-    anew before each call.
+    point sticks while others slide keeps its rows, and so does a pair with torsional or rolling friction, condim 4 or
+    6, which is warned of. Surfaces that move, `surfacevel`, carry along what lies on them. It changes `pair_dim` of the
+    model from step to step, and `release` gives it back. So a model is stepped with one `MjData` at a time: each of
+    several, and each thread, has a copy of the model and a `CoulombFriction` of its own. Forces of the user in
+    `qfrc_applied` remain, and may be set anew before each call.
 
     Args:
         model: the model that is stepped, which is changed.
+        kinetic: friction of what slides over that of what sticks, which the pairs have, within [0, 1] [-].
 
     Raises:
-        TypeError: unless it is a compiled model.
-        ValueError: if it has no explicit pair with friction, the pyramidal cone, or the integrator RK4.
+        TypeError: unless it is a compiled model, and a number.
+        ValueError: if it has no explicit pair with friction, the pyramidal cone, or the integrator RK4, or the share is
+            outside its range.
+
+    Warns:
+        ContactWarning: of pairs with condim 4 or 6.
     """
 
-    def __init__(self, model: mujoco.MjModel) -> None:
+    def __init__(self, model: mujoco.MjModel, kinetic: float = 1.0) -> None:
         require_kind("model", model, mujoco.MjModel)
         if not np.any(model.pair_dim > 1):
             raise ValueError("model has no explicit <pair> with friction; contact_for gives it one")
@@ -54,6 +65,16 @@ class CoulombFriction:
             raise ValueError("model has the pyramidal cone; set cone to elliptic, as PairContact.apply does")
         if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
             raise ValueError("model has the integrator RK4, in whose stages the friction of a step is not known")
+        self.kinetic = require_within("kinetic", kinetic, 0.0, 1.0)
+        if spun := np.flatnonzero(model.pair_dim > 3).tolist():
+            ends = zip(model.pair_geom1[spun], model.pair_geom2[spun], strict=True)
+            names = [" on ".join(label_of(model, int(geom)) for geom in both) for both in ends]
+            warnings.warn(
+                f"pairs {named(names)} have condim 4 or 6, torsional or rolling friction, and keep their rows, which "
+                "press apart what slides; condim 3 has Coulomb's friction",
+                ContactWarning,
+                stacklevel=2,
+            )
         self.model = model
         self.dimensions = np.array(model.pair_dim)
         self._pairs = {
@@ -62,6 +83,7 @@ class CoulombFriction:
         }
         self._now = self.dimensions
         self._data: mujoco.MjData | None = None
+        self._moving: dict[int, Array] = {}
         self._given = np.zeros(model.nv)
         self._left = np.zeros(model.nv)
         self.sliding: tuple[int, ...] = ()
@@ -94,7 +116,7 @@ class CoulombFriction:
         self.release(data)
         self._data = data
         mujoco.mj_forward(self.model, data)
-        pairs = self._find(data)
+        self._moving, pairs = self._surface(data), self._find(data)
         while pairs and (stopped := self._settle(data, pairs)):
             pairs -= stopped
             self.model.pair_dim[:] = self.dimensions
@@ -114,13 +136,14 @@ class CoulombFriction:
             self._given[:] = data.qfrc_applied
             self._left[:] = data.qfrc_applied
 
-    def _pressing(self, data: mujoco.MjData) -> tuple[Integers, Integers, Integers]:
-        """The contacts that press: their numbers, those of their pairs, and those of their normal rows."""
+    def _pressing(self, data: mujoco.MjData, least: float = 0.0) -> tuple[Integers, Integers, Integers]:
+        """The contacts that press with more than the least force [N]: their numbers, those of their pairs, and those of
+        their normal rows."""
         pressing, forces = [], data.efc_force
         addresses, geoms = data.contact.efc_address.tolist(), data.contact.geom.tolist()
         for i, (address, both) in enumerate(zip(addresses, geoms, strict=True)):
             pair = self._pairs.get(frozenset(both), -1)
-            if pair >= 0 and self.dimensions[pair] > 1 and address >= 0 and forces[address] > 0:
+            if pair >= 0 and self.dimensions[pair] == 3 and address >= 0 and forces[address] > least:
                 pressing.append((i, pair, address))
         number, pairs, rows = np.reshape(np.array(pressing, dtype=np.int64), (-1, 3)).T
         return number, pairs, rows
@@ -150,7 +173,8 @@ class CoulombFriction:
         chosen = np.isin(owners, list(pairs))
         number, owners, rows = number[chosen], owners[chosen], rows[chosen]
         tangents = self._tangents(data, number, owners)
-        mu, slip = model.pair_friction[owners, :2], tangents @ data.qvel
+        mu = self.kinetic * model.pair_friction[owners, :2]
+        slip = tangents @ data.qvel + np.reshape([self._moving.get(i, REST) for i in number.tolist()], (-1, 2))
         before = np.zeros(model.nv)
         stops = np.zeros(len(rows), dtype=bool)
         for _ in range(LOOKS):
@@ -170,6 +194,14 @@ class CoulombFriction:
             stops[:] = True  # beyond some coefficient friction raises the force by more than that gives
         self._left[:] = data.qfrc_applied
         return {int(pair) for pair in owners[stops]}
+
+    def _surface(self, data: mujoco.MjData) -> dict[int, Array]:
+        """Velocity of the slip of each contact that its bodies do not have [m/s], that of its surfaces."""
+        if not self.model.geom_surfacevel.any():
+            return {}
+        number, owners, rows = self._pressing(data, -np.inf)
+        moving = data.efc_vel[rows[:, None] + np.array((1, 2))] - self._tangents(data, number, owners) @ data.qvel
+        return dict(zip(number.tolist(), moving, strict=True))
 
     def _tangents(self, data: mujoco.MjData, number: Integers, owners: Integers) -> Array:
         """Jacobians of the slip of contacts along their two tangents, shape (n, 2, nv)."""

@@ -35,42 +35,55 @@ class JointSprings:
     Attributes:
         owners: all joints, then the tendons and actuators that have a spring, a damper or dry friction.
         joint_of: the joint of each degree of freedom, shape (nv,).
-        joint_k: stiffness of each joint [N/m or N m], shape (njnt,).
-        dof_c: damping of each degree of freedom [N s/m or N m s], shape (nv,).
+        joint_k: stiffness of each joint in the pose [N/m or N m], shape (njnt,).
+        dof_c: coefficients of the damping of each degree of freedom [N s/m or N m s, and of higher order], (nv, 3).
         stretch: stretch of each tendon and actuator for a unit velocity of each degree of freedom, shape (n, nv).
-        k, c: stiffness and damping of each tendon and actuator, shape (n,).
+        k: stiffness of each tendon and actuator in the pose, shape (n,).
+        c: coefficients of their damping, shape (n, 3).
         dof_dry: dry friction of each degree of freedom [N or N m], shape (nv,).
         dry: dry friction of each tendon, and 0 of each actuator, shape (n,).
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        servo = model.actuator_biastype == int(mujoco.mjtBias.mjBIAS_AFFINE)
-        servo_k, servo_c = (np.where(servo, np.maximum(-model.actuator_biasprm[:, n], 0.0), 0.0) for n in (1, 2))
-        k = np.concatenate([_first(model.tendon_stiffness, model.ntendon), servo_k])
-        c = np.concatenate([_first(model.tendon_damping, model.ntendon), servo_c])
+        servo_k, servo_c = _actuators(model, data)
+        tendons, spared = (_coefficients(model, f"tendon_{name}", model.ntendon) for name in ("stiffness", "damping"))
         stretch = np.vstack(
             [
                 _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv),
                 _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv),
             ]
         )
-        dry = np.concatenate([_first(model.tendon_frictionloss, model.ntendon), np.zeros(model.nu)])
-        acts = (k > 0) | (c > 0) | (dry > 0)
-        others = [(TENDON, i) for i in range(model.ntendon)] + [(ACTUATOR, i) for i in range(model.nu)]
+        low, high = model.tendon_lengthspring.reshape(-1, 2).T
+        length = np.array(data.ten_length)
+        drawn = length - np.clip(length, low, high)  # a range of lengths in which it is slack
+        k = np.concatenate([_tangent(tendons, drawn), servo_k])
+        geared = np.maximum(np.abs(model.actuator_gear[:, :1]), mujoco.mjMINVAL) ** np.arange(spared.shape[1])
+        own = _coefficients(model, "actuator_damping", model.nactuator) / geared  # of the speed before the gear
+        own[:, 0] += servo_c
+        c = np.vstack([spared, own])
+        rubs = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
+        dry = np.concatenate([rubs * np.reshape(model.tendon_frictionloss, -1), np.zeros(model.nactuator)])
+        acts = (k != 0) | (c != 0).any(axis=1) | (dry > 0)
+        others = [(TENDON, i) for i in range(model.ntendon)] + [(ACTUATOR, i) for i in range(model.nactuator)]
         self.owners: list[Owner] = [(JOINT, i) for i in range(model.njnt)] + [others[i] for i in np.flatnonzero(acts)]
         self.joint_of = np.array(model.dof_jntid, dtype=np.int64)
-        self.joint_k = _first(model.jnt_stiffness, model.njnt)
-        self.dof_c, self.dof_dry = _first(model.dof_damping, model.nv), _first(model.dof_frictionloss, model.nv)
+        self.joint_k = _tangent(_coefficients(model, "jnt_stiffness", model.njnt), _strain(model, data))
+        self.dof_c = _coefficients(model, "dof_damping", model.nv)
+        self.dof_dry = rubs * np.array(model.dof_frictionloss)
         self.stretch, self.k, self.c, self.dry = stretch[acts], k[acts], c[acts], dry[acts]
 
-    def along(self, motion: Array) -> tuple[Array, Array]:
+    def along(self, motion: Array, speed: float = 1.0) -> tuple[Array, Array]:
         """What each owner adds to stiffness [N/m] and damping [N s/m] of a contact, shape (owners,), where `motion` is
-        the velocity of the joints for a unit speed of the contact, shape (nv,)."""
+        the velocity of the joints for a unit speed of the contact, shape (nv,). Damping is that at a speed [m/s]."""
         squares, joints = motion**2, len(self.joint_k)
-        moved = (self.stretch @ motion) ** 2
+        stretch = self.stretch @ motion
         joint_k = self.joint_k * np.bincount(self.joint_of, squares, joints)
-        joint_c = np.bincount(self.joint_of, self.dof_c * squares, joints)
-        return np.concatenate([joint_k, self.k * moved]), np.concatenate([joint_c, self.c * moved])
+        joint_c = np.bincount(self.joint_of, _secant(self.dof_c, speed * np.abs(motion)) * squares, joints)
+        moved = stretch**2
+        return (
+            np.concatenate([joint_k, self.k * moved]),
+            np.concatenate([joint_c, _secant(self.c, speed * np.abs(stretch)) * moved]),
+        )
 
     def friction(self, motion: Array) -> Array:
         """The dry friction of each owner along the approach of a contact [N], shape (owners,)."""
@@ -78,9 +91,48 @@ class JointSprings:
         return np.concatenate([joints, self.dry * np.abs(self.stretch @ motion)])
 
 
-def _first(values: Array, count: int) -> Array:
-    """The linear coefficient of each, shape (count,)."""
-    return np.array(np.reshape(values, (count, -1))[:, 0] if count else np.zeros(0), dtype=float)
+def _coefficients(model: mujoco.MjModel, name: str, count: int) -> Array:
+    """The linear coefficient of springs or dampers and those of higher order, shape (count, 3); zeros where a flag
+    of the model disables them."""
+    flag = mujoco.mjtDisableBit.mjDSBL_DAMPER if "damping" in name else mujoco.mjtDisableBit.mjDSBL_SPRING
+    sizes = {"": 1, "poly": mujoco.mjNPOLY}
+    values = np.hstack([np.reshape(getattr(model, name + part), (count, size)) for part, size in sizes.items()])
+    return np.array(values * (not model.opt.disableflags & int(flag)))
+
+
+def _secant(coefficients: Array, size: Array) -> Array:
+    """Force over what causes it, a + b s + c s^2 of MuJoCo's polynomials: of a speed's size or a signed stretch."""
+    return np.einsum("ij,ij->i", coefficients, size[:, None] ** np.arange(coefficients.shape[1]))
+
+
+def _tangent(coefficients: Array, size: Array) -> Array:
+    """Change of the force with what causes it, a + 2 b s + 3 c s^2."""
+    return _secant(coefficients * np.arange(1, coefficients.shape[1] + 1), size)
+
+
+def _strain(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
+    """How far each hinge and slide is from where its spring is slack [rad or m], 0 for other joints; shape (njnt,)."""
+    place = model.jnt_qposadr
+    scalar = np.isin(model.jnt_type, (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)))
+    return np.where(scalar, np.array(data.qpos)[place] - np.array(model.qpos_spring)[place], 0.0)
+
+
+def _actuators(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, Array]:
+    """Stiffness and damping of every actuator, from its force at two lengths and at two speeds; shape (n,)."""
+    kept, found = np.array(data.actuator_force), []
+    for name in ("actuator_length", "actuator_velocity"):
+        values = getattr(data, name)
+        before = np.array(values)
+        values += NUDGE
+        mujoco.mj_fwdActuation(model, data)
+        found.append(np.maximum((kept - data.actuator_force) / NUDGE, 0.0))
+        values[:] = before
+    mujoco.mj_fwdActuation(model, data)
+    return found[0], found[1]
+
+
+NUDGE = 1e-6
+"""Change of the length and of the speed of an actuator at which its force is read [m or rad, and per second]."""
 
 
 def _dense(values: Array, count: Integers, start: Integers, columns: Integers, width: int) -> Array:

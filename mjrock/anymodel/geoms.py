@@ -5,6 +5,7 @@ Which geoms MuJoCo lets collide without an explicit pair are the rules of its ma
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +13,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from ..quantities import Array, require_kind, require_text, shown
+from ..quantities import Array, Flags, require_kind, require_text, shown
 
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST = 1e10
@@ -20,6 +21,8 @@ FARTHEST = 1e10
 TOUCHING, ASIDE = 1e-3, 1e-2
 """Geoms that are nearer than this share of the distance of their centres touch, and the shortest distance has no
 direction. It is then looked for with one of them moved aside by the other share."""
+FACING = 0.999
+"""Cosine from which a direction is the normal of a face [-]; 2.6 degrees."""
 ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 """Geoms that meet any other convex geom in a single point."""
 UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
@@ -27,7 +30,8 @@ UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 
 
 def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
-    """The compiled model of either; an MjSpec stays as it is. TypeError for any other, and a ValueError with the
+    """The compiled model of either. An MjSpec itself is compiled, and stays as it is: MuJoCo 4.0 ends the process where
+    a copy does not compile for a keyframe of a nested attachment. TypeError for any other, and a ValueError with the
     compiler's message for a specification that does not compile."""
     if isinstance(model, str | os.PathLike):
         load = "from_xml_string" if isinstance(model, str) and model.lstrip().startswith("<") else "from_xml_path"
@@ -36,7 +40,9 @@ def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
     if isinstance(model, mujoco.MjModel):
         return model
     try:
-        return model.copy().compile()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # MuJoCo repeats what it said when the parts were attached
+            return model.compile()
     except ValueError as error:
         raise ValueError(f"model does not compile: {error}") from error
 
@@ -154,16 +160,25 @@ class GeomPair:
         """W, the sum of `body_invweight0` of both bodies, translation [1/kg]."""
         return float(sum(self.model.body_invweight0[body, 0] for body in self.bodies))
 
+    @cached_property
+    def trees(self) -> list[Flags]:
+        """The bodies of each tree of joints that moves with one of the two; none of what is fixed or mocap."""
+        tree = np.array(self.model.body_treeid)
+        return [tree == number for number in dict.fromkeys(tree[list(self.bodies)].tolist()) if number >= 0]
+
     @property
-    def trees(self) -> list[float]:
-        """Mass of each tree of bodies that moves with one of the two, to its root [kg]."""
-        roots = {int(self.model.body_rootid[body]) for body in self.bodies if self.model.body_weldid[body] != 0}
-        return [float(self.model.body_subtreemass[root]) for root in roots]
+    def moving(self) -> float:
+        """Mass of all trees that move with one of the two [kg]."""
+        return float(sum(self.model.body_mass[bodies].sum() for bodies in self.trees))
 
     @property
     def load(self) -> float:
-        """Weight of the lighter tree [N], or next to nothing where there is none."""
-        return max(1e-9, min(self.trees, default=0.0) * float(np.linalg.norm(self.model.opt.gravity)))
+        """Weight of the lighter tree [N], without what `gravcomp` or the flag of gravity take; next to nothing where
+        there is none. It is the static load where the geoms are apart, see `Pose.load`."""
+        option = self.model.opt
+        pull = 0.0 if option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY) else np.linalg.norm(option.gravity)
+        mass = self.model.body_mass * (1 - self.model.body_gravcomp)
+        return max(1e-9, min((abs(float(mass[bodies].sum())) for bodies in self.trees), default=0.0) * float(pull))
 
     @property
     def thickness(self) -> float:
@@ -208,6 +223,32 @@ class GeomPair:
         up = np.array((0.0, 0.0, 1.0))
         vector = next(vector for vector in (apart, between, up) if np.any(np.abs(vector) > 1e-12))
         return np.array(vector / np.linalg.norm(vector)), distance, ends
+
+    def field_axis(self, data: mujoco.MjData) -> Array | None:
+        """The unit vector along which the first geom parts from a height field, its axis; None for other geoms."""
+        for geom, sign in zip(self.geoms, (-1.0, 1.0), strict=True):
+            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_HFIELD:
+                return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2])
+        return None
+
+    def meets_edges(self, data: mujoco.MjData, away: Array) -> bool:
+        """Whether a line meets edges or corners of all boxes, cylinders and meshes among the two geoms."""
+        model, found = self.model, []
+        for geom in self.geoms:
+            kind, along = model.geom_type[geom], np.abs(data.geom_xmat[geom].reshape(3, 3).T @ away)
+            if kind == mujoco.mjtGeom.mjGEOM_PLANE or kind in UNEVEN:
+                return False
+            if kind == mujoco.mjtGeom.mjGEOM_BOX:
+                found.append(along.max())
+            elif kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+                found.append(max(along[2], float(np.hypot(*along[:2]))))
+            elif kind == mujoco.mjtGeom.mjGEOM_MESH:
+                mesh = int(model.geom_dataid[geom])
+                first = int(model.mesh_polyadr[mesh])
+                normals = model.mesh_polynormal[first : first + int(model.mesh_polynum[mesh])]
+                local = data.geom_xmat[geom].reshape(3, 3).T @ away
+                found.append(float(np.abs(normals @ local).max(initial=0)))
+        return bool(found) and max(found) < FACING
 
     def _shortest(self, data: mujoco.MjData) -> tuple[float, Array | None]:
         """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo knows none."""

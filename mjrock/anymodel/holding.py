@@ -52,10 +52,10 @@ def _beside(pose: Pose, motion: Array, k: float, xi: float, mass: float, speed: 
     contact it pulls the bodies together on both ways, as gravity does. What it takes is at most the larger of both.
     """
     springs, e = pose.springs, rebound_restitution(xi)
-    stiffness, damping = springs.along(motion)
+    stiffness, damping = springs.along(motion, speed)
     friction = springs.friction(motion)
     added = float(stiffness.sum())
-    if added > STIFF * k:
+    if abs(added) > STIFF * k:
         yield (
             f"{_names(pose, stiffness)} {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
             "approach, which changes its restitution"
@@ -81,6 +81,7 @@ def _beside(pose: Pose, motion: Array, k: float, xi: float, mass: float, speed: 
 
 def _names(pose: Pose, shares: Array) -> str:
     """Those that add nearly all of it, the largest first, and the verb."""
+    shares = np.abs(shares)
     order = np.argsort(-shares, kind="stable")
     most = [_name(pose.model, *pose.springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]]
     return f"{named(most)} add{'s' * (len(most) == 1)}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -13,12 +13,9 @@ from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within
 from .geoms import GeomPair, compiled_model, every_pair
 from .holding import holding
-from .meeting import PairMeeting, Pose, meeting, other_keyframes
+from .meeting import IMMOVABLE, Keyframe, PairMeeting, Pose, meeting, other_keyframes
 from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
 from .row_of_model import ModelRow
-
-IMMOVABLE = 10.0
-"""Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +30,7 @@ class InspectedContact:
         mass: effective mass of the whole contact in the pose [kg]; infinity if the geoms cannot approach each other.
         impedance: d at zero penetration [-].
         points: contact points that share the mass; frequency, xi and restitution are those of so many.
-        load: static load of each contact point [N], the weight of what moves, shared by the points, or what was given.
+        load: static load of each contact point in the pose [N], or what was given.
         k_loaded: load over the indentation at which the contact carries it [N/m].
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         bodies: names of the two bodies, or their numbers in brackets.
@@ -101,9 +98,10 @@ def inspect_contacts(
     *,
     candidates: bool = True,
     contacts: int | None = None,
-    keyframe: str | int | None = None,
+    keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,
     load: float | None = None,
+    chosen: Callable[[GeomPair], bool] | None = None,
 ) -> tuple[InspectedContact, ...]:
     """Every contact that a model can make, in physical units.
 
@@ -115,7 +113,8 @@ def inspect_contacts(
             those in which the geoms meet in the pose. 1 is a single point that bears the whole mass.
         keyframe: name or number of the keyframe in which the geoms meet.
         qpos: positions of the joints in which they meet, shape (nq,). Without either it is `qpos0`.
-        load: static load of each contact point [N], positive. None shares the weight of what moves among the points.
+        load: static load of each contact point [N], positive. None is that of the pose at rest, see `contact_for`.
+        chosen: which pairs of geoms are looked at, by their `.labels`, `.body_names` or `.geoms`. None are all.
 
     Returns:
         Explicit pairs first, then candidates. Pairs of which neither body can move are left out.
@@ -129,14 +128,15 @@ def inspect_contacts(
     force = None if load is None else require_within("load", load, 1e-12, 1e15, "N")
     whole = compiled_model(model)
     pose = Pose(whole, keyframe, qpos)
-    return tuple(_inspected(pair, pose, points, force) for pair in every_pair(whole, candidates=candidates))
+    pairs = (pair for pair in every_pair(whole, candidates=candidates) if chosen is None or chosen(pair))
+    return tuple(_inspected(pair, pose, points, force) for pair in pairs)
 
 
 def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
     row = ModelRow(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
-    force = load if load is not None else pair.load / met.points
+    force = load if load is not None else pose.load(pair, met.points, points)
     contact = InspectedContact(
         *pair.labels,
         explicit=pair.explicit >= 0,
@@ -174,13 +174,14 @@ def _notes(
     if not found.mass < math.inf:
         yield "mass is infinite: the geoms cannot approach each other along their normal, and there is no xi and no e"
         return
-    total = sum(pair.trees)
+    total = pair.moving
     if max(found.mass, 1 / pair.inverse_weight) > IMMOVABLE * total:
         yield (
             f"k, c and mass belong to a body that can hardly move this way: 1/W is {1 / pair.inverse_weight:.2g} kg "
             f"and the mass {found.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
         )
         return
+    yield from pose.unknown(pair)
     if found.k > 0:
         yield from holding(pose, met.felt, found.k * met.points, found.xi, found.mass)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):

@@ -17,7 +17,7 @@ from ..quantities import Array, named, require_whole, require_within, shown, spe
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, PairMeeting, Pose, meeting, other_keyframes
+from .meeting import Company, Keyframe, PairMeeting, Pose, meeting, other_keyframes
 from .notes import (
     RESOLVED,
     UNSOUND,
@@ -26,7 +26,8 @@ from .notes import (
     rounded_down,
     stiffest,
 )
-from .row_of_model import Grip, ModelRow, unused
+from .row_of_model import Grip, Mixed, ModelRow, unused
+from .trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -44,8 +45,9 @@ def contact_for(
     friction: float | Sequence[float] | None = None,
     mass: float | None = None,
     at: Sequence[float] | Array | None = None,
+    normal: Sequence[float] | Array | None = None,
     contacts: int | None = None,
-    keyframe: str | int | None = None,
+    keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,
     speed: float | None = None,
     timestep: float | None = None,
@@ -76,10 +78,14 @@ def contact_for(
         mass: effective mass of the whole contact [kg], positive. None takes it from the model.
         at: contact point that meets first, in the world's frame and in the pose [m], shape (3,). None is the middle of
             the points that meet. It is not given together with `mass`.
+        normal: direction in which geom1 parts from geom2, in the world's frame, shape (3,): (0, 0, 1) for a foot on
+            whatever lies below. None is the normal of a plane, the axis of a height field, and the shortest line of
+            other geoms.
         contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None counts
             them, with those of other geoms of the two bodies that land together with these: the four balls of a foot
             share its mass. Another number than is counted refers to the centres of mass, unless `at` is given.
-        keyframe: name or number of the keyframe in which the geoms meet.
+        keyframe: name or number of the keyframe in which the geoms meet. Or several, each for the joints that it moves
+            from `qpos0`: robots that are attached bring keyframes of their own.
         qpos: positions of the joints in which they meet, shape (nq,). It is not given together with `keyframe`.
         speed: speed of the approach for which `restitution` holds with gravity [m/s], positive.
         timestep: MuJoCo's step [s], positive. None takes the model's.
@@ -99,8 +105,10 @@ def contact_for(
     """
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
-    contact = beside(*contact_of(pair, Pose(whole, keyframe, qpos), asked), {})
+    asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta, normal)
+    pose = Pose(whole, keyframe, qpos)
+    contact = beside(*contact_of(pair, pose, asked), {})
+    contact = replace(contact, needs=solver_need(whole, pose, [contact]))
     for sentence in (*spoilers(pair, contact), *contact.remarks):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
     return contact
@@ -121,12 +129,13 @@ class ContactRequest:
     speed: float | None = None
     timestep: object = None
     newmark_beta: object = 0.25
+    normal: object = None
 
 
 def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:
     """The contact of a pair in a pose, with `remarks` on how it differs from what was asked, and what lands
     with it."""
-    option = pair.model.opt
+    option, pose = pair.model.opt, pose.along(asked.normal)
     k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
     beta = require_within("newmark_beta", asked.newmark_beta, 0.0, 1e6)
@@ -134,7 +143,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
     speed = None if asked.speed is None else require_within("speed", asked.speed, 1e-9, 1e6, "m/s")
     if asked.mass is not None and asked.at is not None:
         raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
-    grip = Grip.of(pair, asked.friction)
+    grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
     rate = None if k is not None else RESOLVED / h
     alone = asked.mass is not None
     met = meeting(pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k)
@@ -159,10 +168,12 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         solref=(stiffness, damping),
         solimp=(d, d, 0.001, 0.5, 2.0),
         **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
+        adhesion=mixed.adhesion,
+        gap=mixed.gap,
         speed=speed,
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
-        load=pair.load / met.points,
+        load=pose.load(pair, met.points, points),
         remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
@@ -255,7 +266,8 @@ def _remarks(
     if asked.mass is not None or not met.felt.mass < math.inf:
         return ()
     xi = c / (2 * math.sqrt(k * met.share))
-    found = list(holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0)))
+    found = [*pose.unknown(pair)] if asked.at is None else []
+    found += holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points
         found += other_keyframes(pair, pose, met, contacts, mu)

@@ -5,18 +5,19 @@ from __future__ import annotations
 import itertools
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
 import mujoco
 
 from ..quantities import Array, named, shown
-from .contact import PairContact, document, options_of, spoilers, write
+from .contact import PairContact, Writing, document, options_of, spoilers, write
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of
 from .make import ContactRequest, beside, contact_of
-from .meeting import Pose
+from .meeting import Keyframe, Pose
 from .notes import VARIES, ContactWarning
+from .trial import solver_need
 
 TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
 """What can be asked of each contact."""
@@ -59,10 +60,15 @@ class PairContacts:
         return options_of(self.contacts)
 
     def apply(
-        self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False, keep_others: bool = False
+        self,
+        model: mujoco.MjModel | mujoco.MjSpec,
+        *,
+        on_geoms: bool = False,
+        keep_others: bool = False,
+        iterations: bool = False,
     ) -> None:
         """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
-        write(self.contacts, model, on_geoms, keep_others)
+        write(self.contacts, model, Writing(on_geoms, keep_others, iterations))
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
         """What in a model keeps the contacts from being what they say, alike sentences once with the geoms that they
@@ -79,7 +85,7 @@ def contacts_for(
     model: mujoco.MjModel | mujoco.MjSpec,
     pairs: Mapping[tuple[Geom, Geom], Mapping[str, Any]],
     *,
-    keyframe: str | int | None = None,
+    keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,
     timestep: float | None = None,
 ) -> PairContacts:
@@ -123,7 +129,8 @@ def contacts_for(
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
     found = [contact_of(GeomPair.named(whole, *geoms), pose, asked) for geoms, asked, _ in meant.values()]
     made = {frozenset(contact.ids): contact for contact, _ in found}
-    contacts = PairContacts(tuple(beside(contact, company, made) for contact, company in found))
+    needs = solver_need(whole, pose, list(made.values()))
+    contacts = PairContacts(tuple(replace(beside(contact, company, made), needs=needs) for contact, company in found))
     sentences = [
         (contact, sentence)
         for contact in contacts

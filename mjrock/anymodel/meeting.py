@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -13,22 +13,30 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..quantities import Array, Integers, require_array, require_whole, shown
+from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
 from .felt import EffectiveMass, JointSprings, PoseConstraints, felt
 from .geoms import FARTHEST, GeomPair, makes
 
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
 one in a thousand meets in all of its points."""
+HALVINGS = 40
+"""Halvings of the way on which a landing is looked for."""
 DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 """Geoms that stay where they are."""
 KEY = mujoco.mjtObj.mjOBJ_KEY
+Keyframe = str | int | Sequence[str | int] | None
+"""A keyframe by name or number, or several."""
 FOREIGN = 1.2
 """Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
 LEVEL = 0.05
 """Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
 SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
+IMMOVABLE = 10.0
+"""Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
+REST = 1e-4
+"""Distance within which geoms of a pose at rest touch [m]."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
 
@@ -41,7 +49,7 @@ class Trial:
         option, disabled = self.model.opt, mujoco.mjtDisableBit
         option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
         option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
-        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
         self.data = mujoco.MjData(self.model)
         for name in ("qpos", "mocap_pos", "mocap_quat"):
             getattr(self.data, name)[:] = getattr(data, name)
@@ -56,9 +64,7 @@ class Trial:
         self._let_meet(geoms, bodies, 1)
         moves = 1 if self.model.geom_type[geoms[0]] in DIRECTIONLESS else 0
         place = np.array(self.data.geom_xpos[geoms[moves]])
-        radii = self.model.geom_rbound[geoms]
-        depth = DEPTH * float(min((radius for radius in radii if radius > 0), default=1.0))
-        shift = (distance + depth) * away
+        shift = (distance + self.pressed(pair)) * away
         self.data.geom_xpos[geoms[moves]] += shift if moves else -shift
         try:
             mujoco.mj_collision(self.model, self.data)
@@ -69,6 +75,34 @@ class Trial:
             self._let_meet(geoms, bodies, 0)
         points = met[:: max(1, len(pair.listed))]
         return points + shift if moves == 0 else points
+
+    def drop(self, pair: GeomPair, away: Array) -> Landing | None:
+        """Where the first geom lands as it moves against `away`; if it passes the second, over the middle of that.
+        None where it meets nothing."""
+        geoms, place, radii = pair.geoms, self.data.geom_xpos, self.model.geom_rbound
+        apart, moved = place[geoms[0]] - place[geoms[1]], geoms[self.model.geom_type[geoms[0]] in DIRECTIONLESS]
+        level, start = float(apart @ away), np.array(place[moved])
+        for aside in (np.zeros(3), level * away - apart):
+            place[moved] = start + (aside if moved == geoms[0] else -aside)
+            far, near = level - 1.01 * float(radii[list(geoms)].sum()), level
+            if not len(self.points(pair, away, near)):
+                continue
+            for _ in range(HALVINGS):
+                middle = 0.5 * (far + near)
+                far, near = (far, middle) if len(self.points(pair, away, middle)) else (middle, near)
+            distance = near + self.pressed(pair)
+            points = self.points(pair, away, distance)
+            place[moved] = start
+            if moved == geoms[0]:
+                points = points - aside
+            return Landing(away, distance, points, points - distance * away + aside) if len(points) else None
+        place[moved] = start
+        return None
+
+    def pressed(self, pair: GeomPair) -> float:
+        """How far the geoms are pressed into each other [m]."""
+        radii = self.model.geom_rbound[list(pair.geoms)]
+        return DEPTH * float(min((radius for radius in radii if radius > 0), default=1.0))
 
     def _let_meet(self, geoms: list[int], bodies: list[int], value: int) -> None:
         self.model.geom_contype[geoms] = self.model.geom_conaffinity[geoms] = value
@@ -91,15 +125,21 @@ class Landing(NamedTuple):
     second: Array
 
 
-def landing(pair: GeomPair, data: mujoco.MjData, ground: Trial | None) -> Landing:
+def landing(pair: GeomPair, data: mujoco.MjData, ground: Trial | None, normal: Array | None = None) -> Landing:
     """Where two geoms meet.
 
     Args:
         pair: the geoms.
         data: the pose, see `state_of`.
-        ground: a copy of the model in this pose; None for geoms that meet in a single point.
+        ground: a copy of the model in this pose; None for geoms that meet in a single point, without a normal.
+        normal: unit vector along which the first parts from the second, shape (3,). None is that of a plane, the axis
+            of a height field, or the shortest line.
     """
+    along = pair.field_axis(data) if normal is None else normal
+    if along is not None and ground is not None and (found := ground.drop(pair, along)):
+        return found
     away, distance, ends = pair.apart(data)
+    away = away if along is None else along
     if ground is not None:
         points = ground.points(pair, away, distance)
         if len(points):
@@ -135,7 +175,11 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
     if keyframe is not None and qpos is not None:
         raise ValueError(f"keyframe = {shown(keyframe)} and qpos are both given; give one of them")
     data = mujoco.MjData(model)
-    if keyframe is not None:
+    if is_iterable(keyframe):
+        for each in keyframe:
+            pose = model.key_qpos[keyframe_id(model, each)]
+            data.qpos[:] = np.where(pose == model.qpos0, data.qpos, pose)
+    elif keyframe is not None:
         mujoco.mj_resetDataKeyframe(model, data, keyframe_id(model, keyframe))
         data.qvel[:] = 0
     elif qpos is not None:
@@ -157,27 +201,94 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
     return data
 
 
+def awake(model: mujoco.MjModel) -> mujoco.MjModel:
+    """The model without the sleep flag, with which MuJoCo makes no constraints of bodies that begin asleep."""
+    sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    if model.opt.enableflags & sleep:
+        model = copy.copy(model)
+        model.opt.enableflags &= ~sleep
+    return model
+
+
+def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset[int], list[float]]:
+    """Normal forces of all contact points of a pose at rest [N], by the numbers of their geoms.
+
+    They hold the bodies where they are: contacts that do not yield, within `REST` of touch. Joints beyond the first
+    body of each tree are held by a great armature, as servos hold a robot that stands.
+    """
+    held, option = copy.copy(model), mujoco.mjtEnableBit
+    held.opt.enableflags = int(held.opt.enableflags & ~int(option.mjENBL_SPECULATIVE) | int(option.mjENBL_OVERRIDE))
+    held.opt.o_solref[:], held.opt.o_solimp[:3], held.opt.o_margin = 0, (0.9999, 0.9999, 0.001), REST
+    held.opt.solver, held.opt.cone = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtCone.mjCONE_ELLIPTIC
+    held.opt.iterations, held.opt.ls_iterations, held.opt.impratio = 100, 50, 1
+    held.body_invweight0[:] *= 1e-4  # of the regularisation
+    first = held.dof_bodyid[held.tree_dofadr[held.dof_treeid]]
+    held.dof_armature[held.dof_bodyid != first] += 1e6 * float(held.body_mass.sum())
+    state = mujoco.MjData(held)
+    for name in ("qpos", "mocap_pos", "mocap_quat"):
+        getattr(state, name)[:] = getattr(data, name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mujoco.mj_forward(held, state)
+    found: dict[frozenset[int], list[float]] = {}
+    force = np.zeros(6)
+    for i, geoms in enumerate(state.contact.geom.tolist()):
+        mujoco.mj_contactForce(held, state, i, force)
+        found.setdefault(frozenset(geoms), []).append(float(force[0]))
+    return found
+
+
 class Pose:
     """A model in a pose.
 
     Args:
         model: the model, which is only read.
-        keyframe: name or number of a keyframe.
+        keyframe: name or number of a keyframe, or several, each for the joints that it moves from `qpos0`.
         qpos: positions of the joints, shape (nq,). Without either it is `qpos0`.
     """
 
     def __init__(self, model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> None:
+        model = awake(model)
         self.model, self.data = model, state_of(model, keyframe, qpos)
-        self.given = keyframe is not None or qpos is not None
+        self.given, self.exact = keyframe is not None or qpos is not None, qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
-        self._landings: dict[tuple[int, int], Landing] = {}
+        self.normal: Array | None = None
+        self._landings: dict[tuple[int, ...], Landing] = {}
         self._groups: dict[tuple[int, ...], Group] = {}
 
     def landing(self, pair: GeomPair) -> Landing:
         """Where two geoms meet in the pose."""
-        if pair.geoms not in self._landings:
-            self._landings[pair.geoms] = landing(pair, self.data, self.ground if pair.makes_several_points else None)
-        return self._landings[pair.geoms]
+        key = (*pair.geoms, *([] if self.normal is None else self.normal.tolist()))
+        if key not in self._landings:
+            tried = pair.makes_several_points or self.normal is not None
+            self._landings[key] = landing(pair, self.data, self.ground if tried else None, self.normal)
+        return self._landings[key]
+
+    def along(self, normal: object) -> Pose:
+        """The pose in which geoms part along a direction, in the world's frame, shape (3,); itself for None."""
+        if normal is None:
+            return self
+        given = require_array("normal", normal, (3,))
+        if not (size := float(np.linalg.norm(given))) > 0:
+            raise ValueError(f"normal = {shown(normal)} has no direction; give a vector that is not zero")
+        other = copy.copy(self)
+        other.normal, other._groups = given / size, {}
+        return other
+
+    def unknown(self, pair: GeomPair) -> Iterator[str]:
+        """A sentence where the pose does not show how two geoms land."""
+        here = self.landing(pair)
+        if self.normal is None and int(mujoco.mjtGeom.mjGEOM_SDF) in self.model.geom_type[list(pair.geoms)]:
+            yield (
+                "MuJoCo has no shortest line to a geom of signed distances, and that of the centres is taken; give "
+                "normal, the direction in which the first geom parts from the second"
+            )
+        elif self.normal is None and here.distance > REST and pair.meets_edges(self.data, here.away):
+            yield (
+                f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
+                "neither: how they land is not known, nor the mass; give normal, the direction in which the first "
+                "parts from the second, or the pose in which they land"
+            )
 
     def group(self, pair: GeomPair) -> Group:
         """The geoms of the two bodies of a pair."""
@@ -185,6 +296,19 @@ class Pose:
         if bodies not in self._groups:
             self._groups[bodies] = Group(pair, self)
         return self._groups[bodies]
+
+    @cached_property
+    def resting(self) -> dict[frozenset[int], list[float]]:
+        """Normal forces of the contact points of geoms that touch, in the pose at rest [N]; see `forces_at_rest`."""
+        return forces_at_rest(self.model, self.data)
+
+    def load(self, pair: GeomPair, points: int, contacts: int | None) -> float:
+        """Static load of each contact point [N]: that of the pose at rest where the geoms touch, otherwise the weight
+        of the lighter of the two. `points` share it, or those that `contacts` gives."""
+        forces = self.resting.get(frozenset(pair.geoms))
+        if forces is None:
+            return pair.load / points
+        return max(1e-9, sum(forces)) / (contacts or len(forces))
 
     @cached_property
     def ground(self) -> Trial:
@@ -203,8 +327,15 @@ class Pose:
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
-        """The poses of the model's keyframes, if this one is not among them and was not asked for."""
-        return () if self.given else tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
+        """The poses of the model's keyframes."""
+        return tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
+
+    def leaves(self, pair: GeomPair) -> bool:
+        """Whether the joints of both geoms are where they are in `qpos0`, although another pose may have been given."""
+        moved = np.flatnonzero(np.array(self.data.qpos) != self.model.qpos0)
+        joints = np.searchsorted(self.model.jnt_qposadr, moved, side="right") - 1
+        bodies = self.model.jnt_bodyid[joints]
+        return not any(tree[bodies].any() for tree in pair.trees)
 
 
 class Company(NamedTuple):
@@ -315,7 +446,10 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     ends, reach, own = place[group.geoms], radius[group.geoms], np.array(pair.geoms)[:, None]
     between = reach + np.linalg.norm(ends - place[own], axis=2) + radius[own]
     least = np.linalg.norm(ends[0] - ends[1], axis=1) - (reach + SLOPING * between).sum(axis=0)
-    near = np.flatnonzero((least <= max(here.distance, 0.0)) & (group.geoms != own).any(axis=0))
+    met = (group.geoms != own).any(axis=0)
+    if pose.normal is not None:  # of several geoms that may lie below, one does
+        met &= group.geoms[1] == pair.geoms[1]
+    near = np.flatnonzero((least <= max(here.distance, 0.0)) & met)
     distance, away, middle = group.landed(near)
     between, differs = np.linalg.norm(middle - here.first.mean(axis=0), axis=1), np.abs(distance - here.distance)
     along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
@@ -332,10 +466,14 @@ def other_keyframes(
     pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
 ) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
+    if pose.given and (pose.exact or not pose.leaves(pair)):
+        return
     names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
     for name, other in zip(names, pose.others, strict=False):
+        if pose.given and other.leaves(pair):
+            continue
         share = meeting(pair, other, contacts=contacts, friction=friction).share
-        if 0 < share < np.inf:
+        if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be
             worst = max(worst, (max(share / here.share, here.share / share), name, share))
     _, name, share = worst
     if name:

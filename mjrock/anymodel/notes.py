@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Iterator
 from decimal import ROUND_DOWN, Context
+from typing import NamedTuple
 
 import mujoco
 
@@ -22,17 +23,42 @@ RESOLVED = 0.3
 """omega h from which a step is called long [-]. The mean of e is then off by up to 0.025, most at e = 0.1."""
 UNSOUND = 1.0
 """omega h from which a step does not resolve the contact [-]. `contact_for` then makes it lose what the step takes."""
-ENABLED = {
-    mujoco.mjtEnableBit.mjENBL_OVERRIDE: "the override flag is set, so that o_solref and o_solimp take the place of "
-    "the solref and solimp of every contact",
-    mujoco.mjtEnableBit.mjENBL_DIAGEXACT: "the diagexact flag is set, with which the stiffness of a contact changes "
-    "with the pose",
-    mujoco.mjtEnableBit.mjENBL_SLEEP: "the sleep flag is set, with which the contacts of bodies at rest vanish",
+ENABLE, DISABLE = mujoco.mjtEnableBit, mujoco.mjtDisableBit
+JUDGED: dict[mujoco.mjtEnableBit | mujoco.mjtDisableBit, str] = {
+    ENABLE.mjENBL_OVERRIDE: "the override flag is set, so that o_solref and o_solimp take the place of the solref and "
+    "solimp of every contact",
+    ENABLE.mjENBL_DIAGEXACT: "the diagexact flag is set, with which the stiffness of a contact changes with the pose",
+    ENABLE.mjENBL_SLEEP: "the sleep flag is set, with which the contacts of bodies at rest vanish",
+    ENABLE.mjENBL_SPECULATIVE: "the speculative flag is set, with which a contact stops a fast body before it touches, "
+    "and takes its rebound",
+    DISABLE.mjDSBL_CONTACT: "contacts are disabled",
+    DISABLE.mjDSBL_CONSTRAINT: "constraints are disabled, and contacts with them",
+    **dict.fromkeys(
+        (
+            # what is reported, and how inverse dynamics read it
+            *(ENABLE.mjENBL_ENERGY, ENABLE.mjENBL_FWDINV, ENABLE.mjENBL_INVDISCRETE, DISABLE.mjDSBL_SENSOR),
+            # contacts of flexes under `discrete`, which is warned of
+            ENABLE.mjENBL_IPC,
+            # what holds the bodies besides: the pose is computed with these flags
+            *(DISABLE.mjDSBL_EQUALITY, DISABLE.mjDSBL_FRICTIONLOSS, DISABLE.mjDSBL_LIMIT, DISABLE.mjDSBL_SPRING),
+            *(DISABLE.mjDSBL_DAMPER, DISABLE.mjDSBL_GRAVITY, DISABLE.mjDSBL_ACTUATION, DISABLE.mjDSBL_CLAMPCTRL),
+            # time constants of MuJoCo's other format
+            DISABLE.mjDSBL_REFSAFE,
+            # which geoms meet, and in how many points: the trial landing is made with these flags
+            *(DISABLE.mjDSBL_FILTERPARENT, DISABLE.mjDSBL_MIDPHASE, DISABLE.mjDSBL_NATIVECCD, DISABLE.mjDSBL_MULTICCD),
+            # how the solver begins, and whether it is split: the trial of the solver is made with these flags
+            *(DISABLE.mjDSBL_WARMSTART, DISABLE.mjDSBL_ISLAND),
+            # damping of joints in the step, and a state that is no longer finite
+            *(DISABLE.mjDSBL_EULERDAMP, DISABLE.mjDSBL_AUTORESET),
+        ),
+        "",
+    ),
 }
-DISABLED = {
-    mujoco.mjtDisableBit.mjDSBL_CONTACT: "contacts are disabled",
-    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT: "constraints are disabled, and contacts with them",
-}
+"""What each flag of MuJoCo does to a contact in N/m, once it is set; empty where it does nothing."""
+
+SAFE = "; with refsafe it also replaces contacts that the step does not resolve by some without a rebound"
+MOST, SEARCHES = 100, 50
+"""Iterations and line searches with which a solver is taken to converge, MuJoCo's defaults."""
 
 VARIES = re.compile(
     r"((joint|tendon|actuator) \S+?(, | (?=adds? |is |are |and \d)))+(and \d+ more )?(adds?|is at its|are at their)"
@@ -52,10 +78,45 @@ def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
     if option.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE:
         yield (
             "the integrator `discrete` takes energy from every contact, as much as a damping ratio of omega h / 2; "
-            "take Euler, implicitfast or RK4"
+            "take Euler, implicitfast or RK4" + ("" if option.disableflags & int(DISABLE.mjDSBL_REFSAFE) else SAFE)
         )
-    yield from (text for flag, text in ENABLED.items() if option.enableflags & int(flag))
-    yield from (text for flag, text in DISABLED.items() if option.disableflags & int(flag))
+    for bits, kind in ((int(option.enableflags), ENABLE), (int(option.disableflags), DISABLE)):
+        known = {int(flag): text for flag, text in JUDGED.items() if isinstance(flag, kind)}
+        for bit in (1 << i for i in range(bits.bit_length()) if bits >> i & 1):
+            if text := known.get(bit, f"{kind.__name__} {bit} is set, and its effect on contacts is not known here"):
+                yield text
+
+
+class SolverNeed(NamedTuple):
+    """What contacts need of MuJoCo's solver.
+
+    Args:
+        iterations, ls_iterations: the options of these names that are enough; those of the model if it has enough.
+        converges: whether the solver converges in `MOST` iterations.
+    """
+
+    iterations: int = 1
+    ls_iterations: int = 1
+    converges: bool = True
+
+
+ENOUGH = SolverNeed()
+"""What any solver has."""
+
+
+def few_iterations(option: mujoco.MjOption, needs: SolverNeed) -> Iterator[str]:
+    """What the solver of a model lacks, as a sentence."""
+    if not needs.converges:
+        solver = mujoco.mjtSolver(option.solver).name.removeprefix("mjSOL_")
+        yield (
+            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST)} "
+            "iterations; take Newton, or a smaller ratio of masses"
+        )
+    elif option.iterations < needs.iterations or option.ls_iterations < needs.ls_iterations:
+        yield (
+            f"the solver needs iterations = {needs.iterations} and ls_iterations = {needs.ls_iterations} for it, and "
+            f"the model has {option.iterations} and {option.ls_iterations}; apply(model, iterations=True) writes them"
+        )
 
 
 def uneven(points: int) -> str:

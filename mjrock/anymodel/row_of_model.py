@@ -38,7 +38,8 @@ class Mixed:
         solreffriction: the same of the friction rows; zeros stand for solref.
         friction: two sliding, one torsional, two rolling coefficients [-].
         condim: 1 without friction, 3 with sliding, 4 with torsional, 6 with rolling friction.
-        margin, adhesion: distance at which the contact starts to act [m], and its tensile force [N].
+        margin, gap, adhesion: distance at which the contact starts to act [m], that from there on up to which it pulls
+            [m], and its tensile force [N].
     """
 
     solref: tuple[float, ...]
@@ -47,6 +48,7 @@ class Mixed:
     friction: tuple[float, float, float, float, float]
     condim: int
     margin: float
+    gap: float
     adhesion: float
 
     @classmethod
@@ -55,7 +57,7 @@ class Mixed:
 
         The geom of higher priority decides. At equal priority solref and solimp are averaged with the weights solmix,
         solref is the element-wise minimum if one of the two is not positive, friction and condim are the larger ones.
-        Margins add up.
+        Margins and gaps add up, and adhesion at equal priority.
         """
         model, i = pair.model, pair.explicit
         if i >= 0:
@@ -66,6 +68,7 @@ class Mixed:
                 tuple(model.pair_friction[i].tolist()),
                 int(model.pair_dim[i]),
                 float(model.pair_margin[i]),
+                float(model.pair_gap[i]),
                 float(model.pair_adhesion[i]),
             )
         geoms = np.array(pair.geoms)
@@ -88,7 +91,8 @@ class Mixed:
             (sliding, sliding, torsional, rolling, rolling),
             int(model.geom_condim[deciding].max()),
             float(model.geom_margin[geoms].sum()),
-            float(model.geom_adhesion[geoms].sum()),
+            float(model.geom_gap[geoms].sum()),
+            float(model.geom_adhesion[deciding].sum()),
         )
 
     @property

@@ -3,7 +3,8 @@
     python scripts/models/stacks_grippers_feet.py --robot go2/scene.xml --feet FL,FR,RL,RR --floor floor --keyframe home
 
 Prints the indentation of a stack of five boxes over weight / k, the creep of an object that two pads hold, and what a
-pushed box lifts by, each with contacts of `contact_for` and with MuJoCo's default. With --robot it prints the mass that
+pushed box lifts by, each with contacts of `contact_for` and with MuJoCo's default; and the iterations that MuJoCo's
+solver needs for stacks. With --robot it prints the mass that
 each foot feels at qpos0 and in a keyframe. Writes stacks_grippers_feet.txt.
 """
 
@@ -61,6 +62,35 @@ def stack(seconds: float) -> list[list[str]]:
     for i in range(STACK):
         above = (STACK - i) * 1.3 * G
         rows.append([str(i + 1), f"{1e3 * above / k:.4f}", f"{measured[0][i]:.4f}", f"{measured[1][i]:.4f}"])
+    return rows
+
+
+CAPS = (1, 3, 5, 10, 15, 20)
+STACKS = ((1, 2.5e4), (2, 2.5e4), (3, 2.5e4), (5, 2.5e4), (10, 2.5e4), (5, 1e3), (5, 1e5))
+"""Boxes of 1.3 kg, and k of a contact point [N/m]."""
+
+
+def iterations(seconds: float) -> list[list[str]]:
+    """Most iterations of a step of a stack that slides at first, and the fewest that leave the depth of its joints."""
+    rows = []
+    for count, k in STACKS:
+        bodies = "".join(BOX.format(z=0.05 + 0.1 * i, i=i) for i in range(count))
+        spec = mujoco.MjSpec.from_string(model_text(bodies, 5e-4))
+        asked = {"k": k, "xi": 0.5, "friction": 0.6}
+        pairs = {("box*", "floor"): asked} | ({("box*", "box*"): asked} if count > 1 else {})
+        mr.contacts_for(spec, pairs).apply(spec)
+        model, heights, most = spec.compile(), [], 0
+        for cap in (300, *CAPS):
+            model.opt.iterations = cap
+            data = mujoco.MjData(model)
+            data.qvel[0] = 0.3
+            for _ in range(int(seconds / 5e-4)):
+                mujoco.mj_step(model, data)
+                most = max(most, int(data.solver_niter.max())) if cap == 300 else most
+            heights.append(data.qpos.reshape(-1, 7)[:, 2].copy())
+        depth = count * 1.3 * G / (4 * k)
+        few = [cap for cap, z in zip(CAPS, heights[1:], strict=True) if np.abs(z - heights[0]).max() < 0.02 * depth]
+        rows.append([str(count), f"{k:g}", f"{model.opt.impratio:.2g}", str(most), str(min(few, default="-"))])
     return rows
 
 
@@ -157,6 +187,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         (["gripper", "creep [um/s]", "depth [um]", "force / (4 k)", "iterations", "us a step"], creep(seconds)),
         (["pushed box", "lift [mm]", "lost [m/s]", "mu g t", "us a step"], push(0.3)),
     ]
+    head = ["boxes", "k of a point [N/m]", "impratio", "most iterations", "fewest that leave the depths"]
+    tables.append((head, iterations(0.05 if args.quick else 1.5)))
     if args.robot is not None:
         header = ["foot", "qpos0, mu 0 [kg]", "qpos0, mu .8", f"{args.keyframe}, mu 0", f"{args.keyframe}, mu .8"]
         tables.append((header, feet(args.robot, args.feet.split(","), args.floor, args.keyframe)))

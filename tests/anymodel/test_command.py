@@ -44,9 +44,9 @@ def test_it_chooses(model, capsys):
     assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1", "--geom", "floor"))) == 1
     assert len(_rows(lines_of(capsys, "inspect", model, "--pair", "leg[12]", "floor"))) == 2
     (none,) = lines_of(capsys, "inspect", model, "--pair", "leg1", "leg1")
-    assert none == "None of the 55 contacts of this model is of these geoms, bodies or pairs."
+    assert none == "No contact of this model is of these geoms, bodies or pairs."
     (none,) = lines_of(capsys, "inspect", model, "--pairs")
-    assert none == "This model has no contact that can act."
+    assert none == "This model has no contact of two geoms that can act."
 
 
 def _rows(lines):
@@ -78,3 +78,13 @@ def test_what_cannot_be_is_said(model, tmp_path, capsys):
         assert "the model has no geom or body foo; geoms are: floor, leg0[1]" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["inspect"])
+
+
+def test_flexes_are_counted(tmp_path, capsys):
+    path = tmp_path / "soft.xml"
+    path.write_text("""<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/><flexcomp name="soft"
+    type="grid"
+    count="3 3 1" spacing=".1 .1 .1" radius=".01" dim="2"><edge equality="true"/></flexcomp></worldbody></mujoco>""")
+    said = lines_of(capsys, "inspect", path)
+    assert said[0] == "This model has no contact of two geoms that can act."
+    assert said[1].startswith("Left out: the contacts of 1 flexes with 9 points (soft).")

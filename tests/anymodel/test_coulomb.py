@@ -146,3 +146,38 @@ def test_what_cannot_be_is_refused():
     ):
         with pytest.raises((ValueError, TypeError), match=complaint):
             mr.CoulombFriction(model)
+
+
+def pushed(kinetic, *, speed=0.0, push=0.0, belt=0.0, condim=3, duration=0.3):
+    """Speed of a box of 2 kg on a floor or a belt after a while."""
+    floor = f'<geom name="floor" type="box" size="9 9 .1" pos="0 0 -.1" surfacevel="{belt} 0 0 0 0 0"/>'
+    box = BOX.replace("mass=", f'condim="{condim}" mass=')
+    spec = mujoco.MjSpec.from_string(scene(floor, box, timestep=1e-3, gravity=G))
+    mr.contact_for(spec, "box", "floor", k=K / 4, xi=0.5, friction=MU).apply(spec)
+    data = mujoco.MjData(model := spec.compile())
+    data.qpos[2] -= 2 * G / K
+    data.qvel[0], data.qfrc_applied[0] = speed, push
+    friction = mr.CoulombFriction(model, kinetic)
+    while data.time < duration - 5e-4:
+        friction(data)
+        mujoco.mj_step(model, data)
+    return float(data.qvel[0])
+
+
+def test_a_belt_carries_along():
+    """A crate that is put on it gains mu g t, until it has the speed of the belt."""
+    assert pushed(1.0, belt=2.0) == pytest.approx(MU * G * 0.3, rel=1e-3)
+    assert pushed(1.0, belt=0.5) == pytest.approx(0.5, rel=1e-3)
+
+
+def test_static_friction_is_above_kinetic_friction():
+    """7 N do not move what mu m g = 7.85 N hold. Once it slides, half of that slows it by less than they push."""
+    assert abs(pushed(0.5, push=7.0)) < 1e-5
+    assert pushed(0.5, push=7.0, speed=0.5) == pytest.approx(0.5 + 0.3 * (3.5 - 0.5 * MU * G), rel=1e-6)
+    with pytest.raises(ValueError, match=r"kinetic = 1\.5 is outside"):
+        pushed(1.5)
+
+
+def test_torsional_friction_keeps_its_rows_and_is_said():
+    with pytest.warns(mr.ContactWarning, match="pairs floor on box have condim 4 or 6"):
+        pushed(1.0, condim=4, duration=2e-3)

@@ -11,6 +11,7 @@ from pairs import BALL, BOX, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 
 import mjrock as mr
 from mjrock.anymodel.contact import weight_spoilers
+from mjrock.anymodel.meeting import Pose
 from scripts.checks import asked_and_found as study
 
 LEG = study.leg(others=study.BENT).text()
@@ -305,3 +306,34 @@ def test_dry_friction_of_a_joint_is_named_with_what_it_takes():
         "joint strut adds a dry friction of 10 N along the approach, which lowers e = 0.5 by up to 0.037"
     )
     assert 0.008 < left[0] - left[1] < 0.037
+
+
+POWERS = """<mujoco><option gravity="0 0 0"><flag {flag}/></option><worldbody><site name="above" pos="0 0 2"/>
+<body pos="0 0 .5"><joint name="lift" type="slide" axis="0 0 1" damping="1 2 3" stiffness="40 50 60" springref=".2"/>
+<geom size=".05" mass="3"/><site name="hook"/></body></worldbody><tendon><spatial name="cable" damping="4 5 6"
+stiffness="70 80 90" springlength=".3 1.2"><site site="above"/><site site="hook"/></spatial></tendon><actuator>
+<position joint="lift" kp="7" kv="8" damping="9 10" gear="2"/><pid joint="lift" kp="11" kv="12"/>
+<dcmotor joint="lift" motorconst="2" resistance="1" input="none"/><velocity joint="lift" kv="3"/></actuator></mujoco>"""
+
+
+@pytest.mark.parametrize("flag", ["", 'damper="disable"', 'spring="disable"', 'actuation="disable"'])
+def test_springs_and_dampers_are_the_forces_of_the_engine(flag):
+    """Polynomials, servos, motors and controllers: the engine's own forces at two places and at two speeds."""
+    pose = Pose(mujoco.MjModel.from_xml_string(POWERS.format(flag=flag)))
+    model, data, speed, step = pose.model, mujoco.MjData(pose.model), 0.7, 1e-6
+    forces = []
+    for place, velocity in ((0, 0), (step, 0), (0, speed)):
+        data.qpos[0], data.qvel[0] = place, velocity
+        mujoco.mj_forward(model, data)
+        forces.append(float(data.qfrc_passive[0] + data.qfrc_actuator[0]))
+    k, c = (float(each.sum()) for each in pose.springs.along(np.array([1.0]), speed))
+    assert k == pytest.approx((forces[0] - forces[1]) / step, rel=1e-4)
+    assert c == pytest.approx((forces[0] - forces[2]) / speed, rel=1e-6)
+
+
+@pytest.mark.parametrize("attribute", ['damping="0 0 200"', 'damping="0 20"', 'stiffness="0 2e5"'])
+def test_higher_terms_of_a_joint_are_named(attribute):
+    slide = f"""<body pos="0 0 .2"><joint name="lift" type="slide" axis="0 0 1" {attribute}/>
+    <geom name="ball" size=".1" mass="1"/></body>"""
+    with pytest.warns(mr.ContactWarning, match="joint lift adds"):
+        mr.contact_for(spec_of(scene(FLOOR, slide)), "ball", "floor", k=1e4, restitution=0.5, qpos=[-0.1])

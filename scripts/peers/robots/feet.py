@@ -123,8 +123,9 @@ class Scene:
         model = self.model
         for values in (model.dof_frictionloss, model.dof_damping, model.jnt_stiffness, model.jnt_limited):
             values[:] = 0
-        for values in (model.tendon_stiffness, model.tendon_damping, model.actuator_biasprm):
+        for values in (model.tendon_stiffness, model.tendon_damping):
             values[:] = 0
+        model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)  # a keyframe has controls too
 
     def stand(self, seconds: float) -> tuple[float, float]:
         """Sum of k times penetration over the weight, and the largest difference of a foot from force over k [-]."""

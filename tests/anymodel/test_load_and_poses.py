@@ -1,0 +1,125 @@
+"""The static load of a contact, keyframes of several robots, and specifications that do not compile."""
+
+import subprocess
+import sys
+import warnings
+
+import mujoco
+import pytest
+from pairs import FLOOR, scene
+
+import mjrock as mr
+
+BOX = '<body pos="0 0 {z}" {more}><freejoint/><geom name="{name}" type="box" size=".1 .1 .1" mass="{mass}"/></body>'
+HEAVY = BOX.format(z=0.1, more="", name="box", mass=10)
+PLATE = '<body mocap="true" pos="0 0 -.05"><geom name="floor" type="box" size=".5 .5 .05" mass="{}"/></body>'
+NO_GRAVITY = '><flag gravity="disable"/></option><option'
+STACK = BOX.format(z=0.1, more="", name="low", mass=0.1) + BOX.format(z=0.3, more="", name="box", mass=10)
+LOADS = {
+    "on a floor": (scene(FLOOR, HEAVY, gravity=9.81), "box", 10.0),
+    "on a mocap body of .1 kg": (scene(PLATE.format(0.1), HEAVY, gravity=9.81), "box", 10.0),
+    "on a mocap body without mass": (scene(PLATE.format(0), HEAVY, gravity=9.81), "box", 10.0),
+    "carried by gravcomp": (scene(FLOOR, HEAVY.replace("><free", ' gravcomp="1"><free'), gravity=9.81), "box", 0.0),
+    "without gravity": (scene(FLOOR, HEAVY, gravity=9.81, options=NO_GRAVITY), "box", 0.0),
+    "under a heavy box": (scene(FLOOR, STACK, gravity=9.81), "low", 10.1),
+    "above the floor": (scene(FLOOR, HEAVY.replace("0 0 0.1", "0 0 .5"), gravity=9.81), "box", 10.0),
+}
+ROBOT = """<mujoco model="bot"><worldbody><body name="base" pos="0 0 .5"><freejoint/><geom type="box" size=".1 .1 .05"
+mass="4"/><body pos="0 0 -.05"><joint axis="0 1 0"/><geom type="capsule" size=".02" fromto="0 0 0 0 0 -.2" mass=".5"
+contype="0" conaffinity="0"/><body pos="0 0 -.2"><joint axis="0 1 0"/><geom name="foot" size=".03" pos="0 0 -.2"
+mass=".3"/></body></body></body></worldbody><keyframe><key name="home" qpos="0 0 .5 1 0 0 0 .6 -1.2"/></keyframe>
+</mujoco>"""
+NESTED = """<mujoco model="mid"><asset><model name="bot" file="bot.xml"/></asset><worldbody><frame>
+<attach model="bot" body="base" prefix="b_"/></frame></worldbody></mujoco>"""
+TWO_NESTED = """import sys, mujoco, mjrock
+spec = mujoco.MjSpec.from_string('<mujoco><worldbody><geom name="floor" size="1"/></worldbody></mujoco>')
+for i in range(2):
+    robot = mujoco.MjSpec.from_file(sys.argv[1])
+    spec.attach(robot, prefix=f"r{i}/", frame=spec.worldbody.add_frame(pos=[i, 0, 0]))
+try:
+    mjrock.contact_for(spec, "r0/b_foot", "floor", k=1e4, xi=0.5)
+except ValueError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize("name", LOADS)
+def test_the_load_is_that_of_the_pose_at_rest(name):
+    text, lower, mass = LOADS[name]
+    contact = mr.contact_for(mujoco.MjSpec.from_string(text), lower, "floor", k=2.5e4, xi=1.0, timestep=1e-4)
+    assert contact.load == pytest.approx(mass * 9.81 / 4, rel=1e-6, abs=1e-6)
+    found = next(each for each in mr.inspect_contacts(mujoco.MjSpec.from_string(text)) if lower in each.geom2)
+    assert found.load == pytest.approx(contact.load)
+
+
+def robots():
+    spec = mujoco.MjSpec.from_string(scene(FLOOR, timestep=1e-4))
+    for i in range(2):
+        spec.attach(mujoco.MjSpec.from_string(ROBOT), prefix=f"r{i}/", frame=spec.worldbody.add_frame(pos=[i, 0, 0]))
+    return spec
+
+
+def test_a_keyframe_of_one_robot_leaves_the_other_and_several_serve_both():
+    asked = {("r?/foot", "floor"): {"k": 1e4, "restitution": 0.5}}
+    with pytest.warns(mr.ContactWarning, match=r"r1/foot on floor: .* 0\.468 kg at keyframe 'r1/home' and 4\.8 kg"):
+        mr.contacts_for(robots(), asked, keyframe="r0/home")
+    both = mr.contacts_for(robots(), asked, keyframe=("r0/home", "r1/home"))
+    assert [contact.mass for contact in both] == pytest.approx([0.4677] * 2, rel=1e-3)
+
+
+def test_a_motion_that_cannot_be_is_no_advice():
+    """A pendulum that hangs upright approaches the floor by rounding only, and stops no mass of 1e20 kg."""
+    text = """<mujoco><option timestep="1e-4"/><worldbody><geom name="floor" type="plane" size="1 1 1"/>
+    <body pos="0 0 1"><joint axis="0 1 0"/><geom name="bob" size=".1" mass="1" pos=".5 0 0"/></body></worldbody>
+    <keyframe><key name="open" qpos="1.5707963"/></keyframe></mujoco>"""
+    (found,) = mr.inspect_contacts(mujoco.MjSpec.from_string(text))
+    assert not any("keyframe='open'" in note for note in found.notes)
+
+
+@pytest.mark.slow
+def test_keyframes_of_nested_robots_are_an_error_and_no_signal(tmp_path):
+    """MuJoCo 4.0 ends the process where a copy of such a specification does not compile."""
+    (tmp_path / "bot.xml").write_text(ROBOT)
+    (tmp_path / "mid.xml").write_text(NESTED)
+    command = [sys.executable, "-c", TWO_NESTED, str(tmp_path / "mid.xml")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert "model does not compile: Error: repeated name 'b_home' in key" in done.stdout
+
+
+GROUNDS = {
+    "plane": FLOOR,
+    "field": '<geom name="floor" type="hfield" hfield="hf"/>',
+    "tiles": "".join(f'<geom name="floor{i}" type="box" size=".5 .5 .05" pos="{i} 0 -.05"/>' for i in range(4)),
+}
+FOOT = """<body pos="{x} 0 1"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><geom size=".1"
+mass="9" contype="0" conaffinity="0"/><body pos="0 0 -.3"><joint type="slide" axis="1 0 0"/>
+<geom name="{name}" type="{kind}" size=".05 .05 .05" mass="1" pos="0 0 -.3"/></body></body>"""
+
+
+@pytest.mark.parametrize(("kind", "points"), [("sphere", 1), ("box", 4)])
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("x", [0.0, 2.2])
+def test_a_foot_lands_on_whatever_lies_below(ground, kind, points, x):
+    """It stops 10 kg on each tile that it does not stand above, and where it stands on a field."""
+    field = '<asset><hfield name="hf" nrow="41" ncol="41" size="4 4 .1 .1"/></asset><worldbody>'
+    text = scene(GROUNDS[ground], FOOT.format(x=x, name="foot", kind=kind)).replace("<worldbody>", field)
+    spec = mujoco.MjSpec.from_string(text)
+    asked = {"k": 1e5, "restitution": 0.5, "friction": 0, "normal": (0, 0, 1)}
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", ".*one of the geoms is uneven")
+        contacts = mr.contacts_for(spec, {("foot", "floor*"): asked})
+    assert [contact.mass * contact.contacts for contact in contacts] == pytest.approx([10.0] * len(contacts))
+    if ground != "field":
+        assert {contact.contacts for contact in contacts} == {points}
+
+
+def test_where_the_pose_does_not_show_the_landing_it_says_so():
+    spec = mujoco.MjSpec.from_string(scene(GROUNDS["tiles"], FOOT.format(x=0.2, name="foot", kind="sphere")))
+    asked = {"k": 1e5, "restitution": 0.5, "friction": 0}
+    mr.contact_for(spec, "foot", "floor0", **asked)
+    with pytest.warns(mr.ContactWarning, match=r"their shortest line meets a face of neither: how .* is not known"):
+        mr.contact_for(spec, "foot", "floor2", **asked)
+    for normal, error in (((0, 0, 0), "no direction"), ((0, 1), "normal has the shape")):
+        with pytest.raises(ValueError, match=error):
+            mr.contact_for(spec, "foot", "floor2", normal=normal, **asked)
