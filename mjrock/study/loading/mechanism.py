@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,6 +37,51 @@ PERIODS = 60
 
 Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
+
+
+class Verdict(NamedTuple):
+    """One condition of a check.
+
+    Args:
+        what: which it is.
+        limit_state: "SLV" or "SLC".
+        demand, capacity: in the unit.
+        unit: of both.
+        clause: where it stands in the Circolare.
+        least: a ratio that counts where that of capacity and demand is less [-].
+    """
+
+    what: str
+    limit_state: str
+    demand: float
+    capacity: float
+    unit: str
+    clause: str
+    least: float = 0.0
+
+    @property
+    def ratio(self) -> float:
+        """Capacity over demand [-]."""
+        return max(self.capacity / self.demand if self.demand > 0 else math.inf, self.least)
+
+    @property
+    def holds(self) -> bool:
+        """Whether the capacity is at least the demand."""
+        return self.ratio >= 1
+
+
+def verdicts_of(verdicts: Sequence[Verdict]) -> str:
+    """Conditions as a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
+    rows = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
+    rows += [
+        (
+            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, f"{one.ratio:.2f}"),
+            *("HOLDS" if one.holds else "FAILS", one.clause),
+        )
+        for one in verdicts
+    ]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return "\n".join("  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +157,25 @@ class MechanismCheck:
         capacity = self.linear if self.linear_tied is None else self.linear_tied
         return capacity / self.peak if self.peak > 0 else math.inf
 
+    @property
+    def ground_ratio(self) -> float:
+        """a_g,SLV over a_g [-], C8.7.1.2.1.8: that of the displacements, and at least a_g,SLD over a_g, where the peak
+        acceleration of the demand is known."""
+        least = self.a_0 / self.peak if self.peak else 0.0
+        return max(self.states["SLV"].ratio, least)
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """The linear check of the SLV, where the peak of the demand is known, and the non-linear ones."""
+        slv, slc, found = self.states["SLV"], self.states["SLC"], list[Verdict]()
+        if self.peak is not None:
+            capacity = self.linear if self.linear_tied is None else self.linear_tied
+            found.append(Verdict("linear kinematic", "SLV", self.peak, capacity, "m/s2", "C8.7.1.2.1.7"))
+        nonlinear = "nonlinear kinematic", "C8.7.1.2.1.8"
+        found.append(Verdict(nonlinear[0], "SLV", slv.demand, slv.capacity, "m", nonlinear[1], self.ground_ratio))
+        found.append(Verdict(nonlinear[0], "SLC", slc.demand, slc.capacity, "m", nonlinear[1]))
+        return tuple(found)
+
     def _acceleration(self, multiplier: float) -> float:
         """Spectral acceleration of a multiplier [m/s2], equation C8.7.1.8."""
         return multiplier * GRAVITY / (self.participation * self.confidence_factor)
@@ -142,6 +207,8 @@ class MechanismCheck:
                 (f"demand, xi = {DAMPING[name]:.0%} [m]", f"{state.demand:.4f}", "C8.7.1.2.1.8"),
                 (f"capacity over demand {name}", f"{state.ratio:.2f}", broken),
             ]
+        if self.ground_ratio > self.states["SLV"].ratio:
+            rows.append(("a_g,SLV / a_g, at least a_g,SLD / a_g", f"{self.ground_ratio:.2f}", "C8.7.1.2.1.8"))
         widths = [max(len(row[i]) for row in rows) for i in range(2)]
         return "\n".join(f"{what:<{widths[0]}}  {value:>{widths[1]}}  {where}".rstrip() for what, value, where in rows)
 
