@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 
@@ -22,6 +22,14 @@ numbers come second, as they tell stations apart too."""
 
 class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     """Records by name: the components of each, the horizontal ones first, a vertical one last where there is one."""
+
+    def __or__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
+        """The records of both; those of the second where both have one of a name."""
+        return RecordSet({**self, **other}) if isinstance(other, Mapping) else NotImplemented
+
+    def __ror__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
+        """The same with the other one first."""
+        return RecordSet({**other, **self}) if isinstance(other, Mapping) else NotImplemented
 
     @property
     def horizontal(self) -> list[GroundMotion]:
