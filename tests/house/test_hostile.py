@@ -210,7 +210,9 @@ CALLS = OF_NUMBERS | {
         },
     ),
     "push": (mr.push, {"masonry": COLUMN, "driver": 1, "to": -0.01, "inertia": 0.01}),
-    "mechanism_check": (mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35}),
+    "mechanism_check": (
+        mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35, "elastic_period": 0.1},
+    ),
     "PointSpectrum": (mr.PointSpectrum, {"period": [0.0, 0.5], "acceleration": [2.0, 5.0], "damping": 0.05}),
     "dynamic_check": (
         mr.dynamic_check,
