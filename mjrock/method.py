@@ -60,9 +60,10 @@ class Method(NamedTuple):
         held_masses: inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a
             creeps at a h / held_masses. It is no larger, because two edges that both hold rigidly do work against each
             other.
-        held_growth: factor over the step by which it grows where there is no base that holds [1/s]. A joint under a
-            sustained thrust creeps at F / (1.5e8 m) at most, however long the step, m the mass of the blocks. The edge
-            of a wall on a base that holds is put back instead, see `mjrock.engine.sticking`.
+        held_growth: factor by which it grows over the step times the rocking frequency p of the scene, where there is
+            no base that holds [-]. A joint under a sustained thrust creeps at F / (5e7 m p) at most, however long the
+            step, m the mass of the blocks. The edge of a wall on a base that holds is put back instead, see
+            `mjrock.engine.sticking`.
         slides: force that would stop the slip, over what friction can give, from which a contact is taken to slide [-].
         neglected: share of the normal force that the friction row of a contact that slides may add to it [-].
         looks: most looks at a step in which contacts slide.
@@ -105,7 +106,7 @@ class Method(NamedTuple):
     resolved: float = 0.2
     borne: float = 2.0
     held_masses: float = 1e3
-    held_growth: float = 3e5
+    held_growth: float = 1e5
     slides: float = 2.0
     neglected: float = 1e-3
     looks: int = 6

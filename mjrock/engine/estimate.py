@@ -29,6 +29,13 @@ A_BODY, A_LINE = 7e-5, 5e-6
 WORTH_SAYING = 3.0
 """How many times faster explicit steps must be than the middle of what fitted steps may take to be spoken of [-]."""
 
+A_PLAIN_STEP, A_PLAIN_PLACE = 6e-5, 2e-6
+"""Time of a step of a plain model, and what each line adds to it and half of what each body does [s]: a wall takes
+5.4e-5, a column of 32 blocks 1.5e-4, ten dominoes 1.4e-4, 12 blocks that are poured 1e-4, a panel of 102 blocks 7.8e-4,
+a facade of 29 that falls 6.3e-4."""
+MINUTE = 60.0
+"""Time of a run of a plain model from which on it is spoken of [s]."""
+
 
 def explicit_seconds(scene: Scene) -> float:
     """Time of a second by explicit steps [s], from the highest frequency and the strongest dashpot."""
@@ -67,4 +74,21 @@ def warn_if_slow(scene: Scene) -> None:
             f"blocks, and steps that fit the motion in MuJoCo {least:.2g} to {most:.2g} s, the more the blocks slide "
             "and strike: take mr.solve_explicit(case), or a timestep",
             stacklevel=3,
+        )
+
+
+def plain_seconds(scene: Scene, steps: float) -> float:
+    """Time of some steps of a plain model [s]."""
+    return steps * (A_PLAIN_STEP + A_PLAIN_PLACE * (len(scene.contacts.k) + 2 * len(scene.bodies.mass)))
+
+
+def warn_if_plain_is_slow(scene: Scene, duration: float, h: float) -> None:
+    """Warn of a run of a plain model that takes minutes, with what sets its step h [s]."""
+    seconds = plain_seconds(scene, duration / h)
+    if seconds > MINUTE:
+        warnings.warn(
+            f"this plain model would take some {seconds / 60:.2g} minutes, {duration / h:.2g} steps of {h:.2g} s, whose"
+            f" length the stiffest joint sets (omega h = {h * scene.highest_frequency:.2g}); explicit steps would take "
+            f"some {explicit_seconds(scene) * duration / 60:.2g}: take mr.solve_explicit(case), or softer joints",
+            stacklevel=4,
         )

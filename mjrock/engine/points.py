@@ -73,7 +73,7 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
             overdamped=resolved if joints else np.full_like(resolved, method.overdamped),
             resolved=resolved,
             friction=frozen(np.where(scene.contacts.friction > 0, held, 0.0)),
-            growth=0.0 if np.any(scene.contacts.holds) else method.held_growth,
+            growth=0.0 if np.any(scene.contacts.holds) else method.held_growth * scene.rocking_frequency,
         ),
         reach=Reach(scene.bears, scene.limits.reach, scene.limits.overlap),
         rubs=frozen((scene.contacts.friction > 0) & np.logical_not(scene.contacts.holds)),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass
 from typing import Any
 
 from ..method import METHOD, Method
@@ -11,7 +10,7 @@ from ..patience import expect, first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
-from ..quantities import keep, require_flag, require_kind, require_size, require_within
+from ..quantities import require_flag
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.ledger import StepError
@@ -26,8 +25,9 @@ from ..scene.scene import Scene
 from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
+from .options import Options
 from .pace import short_step
-from .plain.run import Wanted, simulate_plain
+from .plain.run import simulate_plain
 from .run import EngineRun, explained
 from .run_warnings import (
     require_still,
@@ -42,78 +42,6 @@ from .stepping import fitted_steps, fixed_steps
 ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
 """Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground, whose rocking
 multiplies what an impact errs by (`scripts/measure/records_accuracy.py`)."""
-SPACING = 1e-3
-"""Distance of samples between fitted steps, where none is asked for [s]."""
-
-
-@dataclass(frozen=True)
-class Options:
-    """How a case is stepped and what is kept of the run, as `simulate` explains them.
-
-    Args:
-        duration: how long the motion is followed [s].
-        timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method: those of `simulate`.
-
-    Raises:
-        TypeError, ValueError: for a value of another type or outside its range, or more samples or steps than fit into
-            memory.
-    """
-
-    duration: float
-    timestep: float | None
-    accuracy: float
-    newmark_beta: float
-    coulomb: bool | None
-    output_step: float | None
-    ledger: bool
-    forces: bool
-    method: Method
-
-    def __post_init__(self) -> None:
-        require_kind("method", self.method, Method)
-        keep(
-            self,
-            accuracy=require_within("accuracy", self.accuracy, 1e-8, 0.1),
-            newmark_beta=require_within("newmark_beta", self.newmark_beta, 0.0, 10.0),
-            ledger=require_flag("ledger", self.ledger),
-            forces=require_flag("forces", self.forces),
-        )
-        if self.coulomb is not None:
-            keep(self, coulomb=require_flag("coulomb", self.coulomb))
-        if self.output_step is not None:
-            keep(self, output_step=require_within("output_step", self.output_step, 1e-9, self.duration, "s"))
-        if self.timestep is None:
-            samples = self.duration / (self.output_step or SPACING)
-            require_size("the samples of this answer", samples, "raise output_step or follow it for less")
-        else:
-            keep(self, timestep=require_within("timestep", self.timestep, 1e-9, min(1.0, self.duration), "s"))
-            steps = self.duration / self.timestep
-            require_size("the steps of this run", steps, "take a longer timestep, or fitted steps")
-
-    @property
-    def slides(self) -> bool:
-        """Whether contacts that slide obey Coulomb's law."""
-        return self.timestep is None if self.coulomb is None else self.coulomb
-
-    @property
-    def spacing(self) -> float | None:
-        """Distance of samples that are interpolated [s]; None at a fixed step, whose steps are the samples."""
-        return (self.output_step or SPACING) if self.timestep is None else None
-
-    @property
-    def apart(self) -> float:
-        """Distance of samples [s]."""
-        return self.spacing or (self.timestep or SPACING) * self.stride
-
-    @property
-    def stride(self) -> int:
-        """Every how many steps there is a sample at a fixed step."""
-        return max(1, round(self.output_step / self.timestep)) if self.output_step and self.timestep else 1
-
-    @property
-    def remedy(self) -> str:
-        """What to change where energy is lost or gained by the steps."""
-        return f"lower accuracy = {self.accuracy:g}" if self.timestep is None else "take a shorter timestep"
 
 
 def simulate(
@@ -197,8 +125,7 @@ def simulate(
     state = None if start is None else required_start(start, case)
     with first_answer(simulate, **given):
         if collisions:
-            wanted = Wanted(timestep, output_step, ledger, forces, state)
-            response = simulate_plain(problem, wanted)
+            response = simulate_plain(problem, options, state)
             response.stats.update(watch.took())
             return response
         scene = problem.scene(method)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.estimate import explicit_seconds, fitted_seconds, warn_if_slow
+from mjrock.engine.estimate import explicit_seconds, fitted_seconds, plain_seconds, warn_if_plain_is_slow, warn_if_slow
 from mjrock.scene.explicit_step import RIGID, RIGID_IN_SPACE, SHARE, SPRUNG, SPRUNG_IN_SPACE
 from scripts.measure.masonry_precision import PULSE, column
 
@@ -75,3 +75,24 @@ def test_a_facade_in_space_is_sent_to_explicit_steps_and_a_column_is_not(k_s):
         warnings.simplefilter("error")
         short = mr.Masonry.column(0.6, 3.0, 3, k_n=1e9)
         warn_if_slow(mr.masonry_scene(mr.MasonryCase(short, 0.001)))
+
+
+def test_a_plain_model_that_would_take_minutes_says_so_with_its_step():
+    scene = mr.masonry_scene(mr.MasonryCase(ARCH, 120.0))
+    h = 1 / scene.highest_frequency
+    minutes = plain_seconds(scene, 120.0 / h) / 60
+    assert minutes > 1
+    with pytest.warns(UserWarning, match=rf"some {minutes:.2g} minutes, .* steps of {h:.2g} s.*omega h = 1\)"):
+        warn_if_plain_is_slow(scene, 120.0, h)
+
+
+def test_a_plain_model_that_takes_seconds_says_nothing():
+    scene = mr.masonry_scene(mr.MasonryCase(ARCH, 1.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_if_plain_is_slow(scene, 1.0, 1 / scene.highest_frequency)
+
+
+def test_the_estimate_of_a_plain_model_knows_how_many_places_may_meet():
+    few, many = (mr.masonry_scene(mr.MasonryCase(mr.Masonry.arch(5.0, 0.75, voussoirs=n), 0.1)) for n in (8, 32))
+    assert 1.2 < plain_seconds(many, 1e4) / plain_seconds(few, 1e4) < 4

@@ -6,20 +6,19 @@ import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import mujoco
 import numpy as np
 
 from ...geometry.frames import PLANE
-from ...patience import expect
 from ...problem.masonry.case import AnyCase
-from ...quantities import Array, require_size, require_within
+from ...quantities import Array, require_size
 from ...result.bodies import Moving
 from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, Gathered, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
-from ...result.motion import SampledMotion, required_spacing
+from ...result.motion import SampledMotion
 from ...result.problem import Problem
 from ...result.reading import BesidePoses
 from ...result.response import End, Response, State
@@ -28,9 +27,10 @@ from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, wa
 from ...scene.course import Course
 from ...scene.scene import Scene
 from ...scene.structure import energies
-from ..estimate import interpreted_seconds
+from ..estimate import warn_if_plain_is_slow
 from ..mjcf import Keyframe
 from ..model import SimulationError, released
+from ..options import SPACING, Options
 from ..run_warnings import require_known, warn_if_sheared
 from .follow import JointForces, PlainEngine, Sample, Work, follow
 from .pairs import Pairs
@@ -194,46 +194,35 @@ class PlainRun:
         return forces_of(case, case.standing.frames, Gathered(self.t, self.pose, loads, held, pulled))
 
 
-class Wanted(NamedTuple):
-    """What is asked of a run, as `simulate` explains it, and the state that it starts from instead of its release."""
-
-    timestep: float | None
-    output_step: float | None
-    ledger: bool
-    forces: bool
-    state: State | None
-
-
-def simulate_plain(problem: Problem, wanted: Wanted) -> Response:
-    """`simulate` with collisions.
+def simulate_plain(problem: Problem, options: Options, state: State | None) -> Response:
+    """`simulate` with collisions, from a state that takes the place of the release where one is given.
 
     Raises:
-        ValueError: for a step or a spacing outside its range, or what no plain model has.
+        ValueError: for more steps or samples than fit into memory, or what no plain model has.
         SimulationError: if MuJoCo warns or the state is not finite.
     """
     case = problem.case
     require_plain(case)
-    spacing = required_spacing(wanted.output_step, case.duration)
+    spacing = options.output_step or min(SPACING, case.duration)
     scene = problem.scene()
     warn_if_sheared(scene)
     course = problem.course(scene)
-    if wanted.state is not None:
-        course = course.continued(*wanted.state)
-    h = plain_timestep(scene, spacing) if wanted.timestep is None else wanted.timestep
-    h = require_within("timestep", h, 1e-9, min(1.0, case.duration), "s")
+    if state is not None:
+        course = course.continued(*state)
+    h = options.timestep or plain_timestep(scene, spacing)
     require_size("the steps of this run", case.duration / h, "take a longer timestep")
     require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
-    expect(interpreted_seconds(scene, course.duration, spacing))
+    warn_if_plain_is_slow(scene, course.duration, h)
     model, watch = PlainModel(problem, scene, course), Stopwatch()
     frames = case.standing.frames
     gathers = JointForces(model.pairs.joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:
-        run = PlainRun(model, follow(model.engine(h), course, steps, stride, gathers if wanted.forces else None))
+        run = PlainRun(model, follow(model.engine(h), course, steps, stride, gathers if options.forces else None))
     except StepError as error:
         raise SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; halve the step") from None
     stats = {"steps": steps, "timestep": h, "resolved": h * scene.highest_frequency, **watch.stepping()}
-    response = response_of_plain(run, stats, wanted)
+    response = response_of_plain(run, stats, options)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     return response
@@ -258,7 +247,7 @@ def require_plain(case: AnyCase) -> None:
             )
 
 
-def response_of_plain(run: PlainRun, settings: dict[str, Any], wanted: Wanted) -> Response:
+def response_of_plain(run: PlainRun, settings: dict[str, Any], options: Options) -> Response:
     """The response of a run."""
     model, motion = run.of, SampledMotion(run.pose, run.velocity, run.energy)
     elsewhere = bool((run.elastic[:, -1] > 0).any())
@@ -284,8 +273,8 @@ def response_of_plain(run: PlainRun, settings: dict[str, Any], wanted: Wanted) -
         rocking=reading.rocking,
         joints=reading.joints,
         plastic=plastic,
-        ledger=account if wanted.ledger else None,
+        ledger=account if options.ledger else None,
         stats=reading.stats | {"overlap": overlap, "mujoco": mujoco.__version__} | settings,
         end=End(run.pose[-1].copy(), run.velocity[-1].copy()),
-        kept_forces=run.forces(plastic) if wanted.forces else None,
+        kept_forces=run.forces(plastic) if options.forces else None,
     )
