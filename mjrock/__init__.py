@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
     from .problem.damping.restitution import Restitution
     from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
-    from .problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, code_spectrum
+    from .problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, code_spectrum
     from .problem.ground.motion import GroundMotion
     from .problem.ground.record_sets import RecordSet, records_in, scaled_together
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
@@ -83,6 +83,7 @@ if TYPE_CHECKING:
     from .study.intensity.fragility import Fragility, fit_fragility
     from .study.intensity.ida import ida, overturning_intensity
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
+    from .study.loading.dynamic import DynamicCheck, dynamic_check
     from .study.loading.limit_analysis import collapse_multiplier
     from .study.loading.mechanism import MechanismCheck, mechanism_check
     from .study.loading.push import Push, push
@@ -98,19 +99,20 @@ __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
     "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "Compound",
     "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "Dry",
-    "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact", "Implausible",
-    "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis",
-    "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening",
-    "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Push",
-    "RecordSet", "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum", "Scene",
-    "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie",
-    "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier",
-    "compare", "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset",
-    "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts", "joint_stiffness",
-    "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry",
-    "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio",
-    "push", "pushover", "records_in", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact",
-    "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
+    "DynamicCheck", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact",
+    "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry",
+    "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck",
+    "Mortar", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum",
+    "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum", "Restitution",
+    "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint",
+    "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep", "calibrate",
+    "campaign", "code_spectrum", "collapse_multiplier", "compare", "contact_for", "contact_parameters",
+    "contact_stiffness", "contacts_for", "crushed_inset", "dynamic_check", "fit_capacities", "fit_fragility",
+    "hertz_stiffness", "ida", "inspect_contacts", "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf",
+    "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
+    "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
+    "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
+    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
     "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_bar", "wall_mjcf",
     "wall_scene", "wall_stiffness",
 ]  # fmt: skip

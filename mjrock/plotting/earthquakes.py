@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum
+from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
@@ -26,7 +26,7 @@ def of_records(name: str, value: object) -> None:
     listed(kind(GroundMotion))(name, value.horizontal if isinstance(value, RecordSet) else value)
 
 
-@picture(motions=of_records, periods=finite_row, target=kind(CodeSpectrum, FloorSpectrum))
+@picture(motions=of_records, periods=finite_row, target=kind(CodeSpectrum, FloorSpectrum, PointSpectrum))
 def spectra(
     ax: Axes,
     motions: Sequence[GroundMotion] | RecordSet,

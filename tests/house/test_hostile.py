@@ -210,7 +210,14 @@ CALLS = OF_NUMBERS | {
         },
     ),
     "push": (mr.push, {"masonry": COLUMN, "driver": 1, "to": -0.01, "inertia": 0.01}),
-    "mechanism_check": (mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35}),
+    "mechanism_check": (
+        mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35, "elastic_period": 0.1},
+    ),
+    "PointSpectrum": (mr.PointSpectrum, {"period": [0.0, 0.5], "acceleration": [2.0, 5.0], "damping": 0.05}),
+    "dynamic_check": (
+        mr.dynamic_check,
+        {"runs": [mr.Analysis(SHORT, "analytical", e=E)], "limit_state": "SLV", "store": None, "natural": True},
+    ),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
@@ -476,7 +483,7 @@ def test_every_public_entry_is_tried():
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
-        "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
+        "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push", "records_in",

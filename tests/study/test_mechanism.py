@@ -113,3 +113,22 @@ def test_ties_that_never_break_are_doubted_where_they_make_the_capacity():
         (row,) = (line for line in drawn_out.table().splitlines() if line.startswith(f"capacity over demand {name}  "))
         assert row.endswith("without tie_0, broken")
     assert "broken" not in endless.table()
+
+
+def test_the_elastic_branch_by_hand():
+    """a = (2 pi / T_0)^2 d up to the curve of the mechanism, which falls from a_0, and T_SLV where it is on the branch.
+
+    T_0 = 3.0 s: the branch reaches 0.4 d_0 = 0.18 m at 0.18 (2 pi / 3)^2 = 0.79 m/s2, above 0.6 a_0 = 0.33: as before.
+    T_0 = 5.0 s: 0.18 (2 pi / 5)^2 = 0.284 m/s2, below it: T_SLV = 1.68 pi sqrt(0.18 / 0.284) = 0.84 T_0 = 4.2 s.
+    """
+    rigid = mr.mechanism_check(CASE, lambda T, xi: 0.1)
+    for T_0 in (3.0, 5.0):
+        found = mr.mechanism_check(CASE, lambda T, xi: 0.1, elastic_period=T_0)
+        least = min(0.6 * rigid.a_0, found.states["SLV"].capacity * (2 * math.pi / T_0) ** 2)
+        T = 1.68 * math.pi * math.sqrt(found.states["SLV"].capacity / least)
+        assert found.states["SLV"].period == pytest.approx(T, rel=0.01)  # the curve is straight within 1 %
+        assert found.d_0 == pytest.approx(rigid.d_0)
+        assert found.a[0] == 0.0
+        assert "C8.7.1.6" in found.table()
+        assert found.alpha_0 == rigid.alpha_0
+    assert found.states["SLV"].period == pytest.approx(0.84 * 5.0, rel=1e-4)

@@ -10,7 +10,21 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, Implausible, Within, require_reals, require_within, spelt, within_ranges
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Implausible,
+    Within,
+    frozen,
+    keep,
+    keep_declared,
+    require_array,
+    require_increasing,
+    require_reals,
+    require_within,
+    spelt,
+    within_ranges,
+)
 from .oscillator import LONGEST, building_modes
 
 LEAST_ETA = 0.55
@@ -128,7 +142,7 @@ class FloorSpectrum:
         motion: gamma_k psi_k of each mode [-], shape (k,).
     """
 
-    ground: CodeSpectrum
+    ground: CodeSpectrum | PointSpectrum
     period: Array
     damping: float
     motion: Array
@@ -158,8 +172,66 @@ class FloorSpectrum:
         return float(self(0.0))
 
 
-SpectrumOfCode = CodeSpectrum | FloorSpectrum
-"""The spectrum of a code, on the ground or on a floor."""
+@dataclass(frozen=True, eq=False)
+class PointSpectrum:
+    """An elastic spectrum given as points, linear between them, constant beyond them. It stands wherever a spectrum of
+    a code does.
+
+    Other damping ratios multiply it by the correction eta of the codes. Its peak acceleration is that at the first
+    period, which is to be 0 or that of a rigid body.
+
+    Args:
+        period: T, increasing [s], 0 to 100, shape (n,).
+        acceleration: S_e at them [m/s2], above 0, shape (n,).
+        damping: damping ratio of the points [-], 0.005 to 0.5.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
+
+    Examples:
+        >>> site = mr.PointSpectrum([0.0, 0.2, 0.6, 4.0], [2.0, 5.0, 5.0, 0.75])
+        >>> round(float(site(0.1)), 2), site.peak
+        (3.5, 2.0)
+    """
+
+    period: Array
+    acceleration: Array
+    damping: Annotated[float, Within(0.005, 0.5)] = 0.05
+
+    def __post_init__(self) -> None:
+        keep_declared(self, "spectrum")
+        period = require_increasing("period", self.period, "period [s]", LONGEST, f"0 to {LONGEST:g} s")
+        acceleration = require_array("acceleration", self.acceleration, (len(period),))
+        for value in acceleration.tolist():
+            require_within("acceleration", value, 1e-6, 1e3, "m/s2")
+        keep(self, period=frozen(period), acceleration=frozen(acceleration))
+
+    def __repr__(self) -> str:
+        return f"<PointSpectrum of {len(self.period)} points up to {self.period[-1]:g} s, peak {self.peak:.3g} m/s2>"
+
+    def __call__(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_e at the periods T [s], 0 to 100 [m/s2]."""
+        factor = 1.0 if damping is None else damping_correction(damping) / damping_correction(self.damping)
+        return np.asarray(factor * np.interp(periods_of(T), self.period, self.acceleration))
+
+    def displacement(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_De at the periods T [s], S_e (T/2 pi)^2 [m]."""
+        return np.asarray(self(T, damping) * (periods_of(T) / (2 * math.pi)) ** 2)
+
+    @property
+    def peak(self) -> float:
+        """Peak acceleration of the ground, S_e at the first period [m/s2]."""
+        return float(self.acceleration[0])
+
+    def at_height(
+        self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
+    ) -> FloorSpectrum:
+        """The spectrum on a floor, as `CodeSpectrum.at_height`."""
+        return FloorSpectrum(self, *building_modes(period, damping, participation, height))
+
+
+SpectrumOfCode = CodeSpectrum | FloorSpectrum | PointSpectrum
+"""The spectrum of a code, on the ground or on a floor, or one given as points."""
 
 
 @within_ranges
@@ -172,6 +244,10 @@ def code_spectrum(
     Tc: Annotated[float | None, Within(0.05, 1, "s")] = None,
     topography: str = "T1",
     damping: Annotated[float, Within(0.005, 0.5)] = 0.05,
+    S: Annotated[float | None, Within(0.5, 5)] = None,
+    TB: Annotated[float | None, Within(0.01, 1, "s")] = None,
+    TC: Annotated[float | None, Within(0.05, 3, "s")] = None,
+    TD: Annotated[float | None, Within(0.5, 10, "s")] = None,
 ) -> CodeSpectrum:
     """The elastic response spectrum of a code for one site.
 
@@ -185,6 +261,10 @@ def code_spectrum(
         Tc: T_C* of the limit state, of NTC 2018 alone [s], 0.05 to 1.
         topography: "T1" to "T4" of NTC 2018, with S_T at the top of the relief. EC8 takes T1 alone.
         damping: damping ratio that is taken where none is given [-], 0.005 to 0.5.
+        S: soil factor of a national annex of EC8 [-], 0.5 to 5; None takes the recommended value, here and below.
+        TB: first corner period of a national annex of EC8 [s], 0.01 to 1, less than TC.
+        TC: second corner period of a national annex of EC8 [s], 0.05 to 3, less than TD.
+        TD: third corner period of a national annex of EC8 [s], 0.5 to 10.
 
     Returns:
         The `CodeSpectrum`: called with a period [s] and a damping ratio [-] it gives the acceleration [m/s2].
@@ -219,8 +299,14 @@ def code_spectrum(
                 raise ValueError(f"{name} = {spelt(value)} is of NTC 2018; {code} takes ag and soil")
         if topography != "T1":
             raise ValueError(f"topography = {topography} is of NTC 2018; multiply ag for {code}")
-        S, TB, TC, TD, TE = SITE_EC8[code][soil]
-        return CodeSpectrum(code, ag, S, 2.5, TB, TC, TD, TE, damping)
+        recommended, national = SITE_EC8[code][soil], (S, TB, TC, TD)
+        own = [given or usual for given, usual in zip(national, recommended, strict=False)]
+        if not own[1] < own[2] < own[3]:
+            raise ValueError(f"TB, TC, TD = {own[1]:g}, {own[2]:g}, {own[3]:g} s do not increase")
+        return CodeSpectrum(code, ag, own[0], 2.5, own[1], own[2], own[3], recommended[4], damping)
+    for name, value in (("S", S), ("TB", TB), ("TC", TC), ("TD", TD)):
+        if value is not None:
+            raise ValueError(f"{name} = {spelt(value)} is of a national annex of EC8; NTC 2018 takes soil, F0 and Tc")
     if F0 is None or Tc is None:
         raise ValueError(f"{'Tc' if F0 else 'F0'} is missing: NTC 2018 takes ag, F0 and Tc of the limit state")
     first, second, least, most, factor, power, TE = SITE_NTC[soil]

@@ -195,6 +195,32 @@ class GroundMotion:
             raise ValueError(f"{self.name} is at rest: no factor gives it peak = {peak:g} m/s2")
         return GroundMotion(peak / self.peak * self.accel, self.dt, f"{self.name} to {peak:g} m/s2", self.header)
 
+    def along(self, other: GroundMotion, azimuth: float) -> GroundMotion:
+        """The component along an azimuth of a record of which this component points north and `other` east.
+
+        Args:
+            other: the eastern component, of the same time step and as many samples.
+            azimuth: of the direction, from north towards east [rad], -2 pi to 2 pi: of a wall the way that its outer
+                face looks, in whose sense the motion is positive then.
+
+        Raises:
+            TypeError, ValueError: for a value outside its range, or components of unlike samples.
+
+        Examples:
+            >>> north, east = mr.GroundMotion([0.0, 3.0], 0.01), mr.GroundMotion([0.0, 4.0], 0.01)
+            >>> round(north.along(east, 0.927295218).peak, 9)
+            5.0
+        """
+        require_kind("other", other, GroundMotion)
+        angle = require_within("azimuth", azimuth, -2 * math.pi, 2 * math.pi, "rad")
+        if (self.dt, len(self.accel)) != (other.dt, len(other.accel)):
+            raise ValueError(
+                f"other has {len(other.accel)} samples at dt = {other.dt:g} s; the valid one has {len(self.accel)} at "
+                f"{self.dt:g} s, as the component that points north"
+            )
+        accel = math.cos(angle) * self.accel + math.sin(angle) * other.accel
+        return GroundMotion(accel, self.dt, f"{self.name} and {other.name} along {angle:.4g} rad", self.header)
+
     def reversed(self) -> GroundMotion:
         """The motion of the other polarity."""
         return GroundMotion(-self.accel, self.dt, f"{self.name}, reversed", self.header)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import Array, require_kind, require_path, require_text, shown, spelt
-from .code_spectrum import CodeSpectrum, FloorSpectrum, SpectrumOfCode
+from .code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, SpectrumOfCode
 from .motion import GroundMotion
 from .spectrum import factor_to_spectrum, response_spectrum
 
@@ -22,6 +22,14 @@ numbers come second, as they tell stations apart too."""
 
 class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     """Records by name: the components of each, the horizontal ones first, a vertical one last where there is one."""
+
+    def __or__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
+        """The records of both; those of the second where both have one of a name."""
+        return RecordSet({**self, **other}) if isinstance(other, Mapping) else NotImplemented
+
+    def __ror__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
+        """The same with the other one first."""
+        return RecordSet({**other, **self}) if isinstance(other, Mapping) else NotImplemented
 
     @property
     def horizontal(self) -> list[GroundMotion]:
@@ -52,7 +60,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         Raises:
             TypeError, ValueError: for a value outside its range, or a set without records.
         """
-        require_kind("spectrum", spectrum, CodeSpectrum, FloorSpectrum)
+        require_kind("spectrum", spectrum, CodeSpectrum, FloorSpectrum, PointSpectrum)
         if not self:
             raise ValueError("the set has no records")
         found = [response_spectrum(motion, periods, damping) for motion in self.horizontal]

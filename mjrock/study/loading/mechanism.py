@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,8 +35,56 @@ BEHAVIOUR = 2.0
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 
+SHORT = 0.05
+"""Period from which on the spectrum of a record is looked at where T_0 is not known [s]."""
+
 Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
+
+
+class Verdict(NamedTuple):
+    """One condition of a check.
+
+    Args:
+        what: which it is.
+        limit_state: "SLV" or "SLC".
+        demand, capacity: in the unit.
+        unit: of both.
+        clause: where it stands in the Circolare.
+        least: a ratio that counts where that of capacity and demand is less [-].
+    """
+
+    what: str
+    limit_state: str
+    demand: float
+    capacity: float
+    unit: str
+    clause: str
+    least: float = 0.0
+
+    @property
+    def ratio(self) -> float:
+        """Capacity over demand [-]."""
+        return max(self.capacity / self.demand if self.demand > 0 else math.inf, self.least)
+
+    @property
+    def holds(self) -> bool:
+        """Whether the capacity is at least the demand."""
+        return self.ratio >= 1
+
+
+def verdicts_of(verdicts: Sequence[Verdict]) -> str:
+    """Conditions as a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
+    rows = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
+    rows += [
+        (
+            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, f"{one.ratio:.2f}"),
+            *("HOLDS" if one.holds else "FAILS", one.clause),
+        )
+        for one in verdicts
+    ]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return "\n".join("  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +122,7 @@ class MechanismCheck:
         states: the limit states SLV and SLC.
         peak: peak acceleration of the demand, where the wall stands [m/s2]; None of a displacement spectrum.
         yielding, breaking: displacement at which each tie yields and breaks [m], by name, of those that do up to d_0.
+        elastic_period: T_0 of the elastic branch [s], None of a rigid start.
     """
 
     alpha_0: float
@@ -86,6 +136,7 @@ class MechanismCheck:
     peak: float | None = None
     yielding: Mapping[str, float] = field(default_factory=dict)
     breaking: Mapping[str, float] = field(default_factory=dict)
+    elastic_period: float | None = None
 
     @property
     def a_0(self) -> float:
@@ -111,6 +162,25 @@ class MechanismCheck:
         capacity = self.linear if self.linear_tied is None else self.linear_tied
         return capacity / self.peak if self.peak > 0 else math.inf
 
+    @property
+    def ground_ratio(self) -> float:
+        """a_g,SLV over a_g [-], C8.7.1.2.1.8: that of the displacements, and at least a_g,SLD over a_g, where the peak
+        acceleration of the demand is known."""
+        least = self.a_0 / self.peak if self.peak else 0.0
+        return max(self.states["SLV"].ratio, least)
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """The linear check of the SLV, where the peak of the demand is known, and the non-linear ones."""
+        slv, slc, found = self.states["SLV"], self.states["SLC"], list[Verdict]()
+        if self.peak is not None:
+            capacity = self.linear if self.linear_tied is None else self.linear_tied
+            found.append(Verdict("linear kinematic", "SLV", self.peak, capacity, "m/s2", "C8.7.1.2.1.7"))
+        nonlinear = "nonlinear kinematic", "C8.7.1.2.1.8"
+        found.append(Verdict(nonlinear[0], "SLV", slv.demand, slv.capacity, "m", nonlinear[1], self.ground_ratio))
+        found.append(Verdict(nonlinear[0], "SLC", slc.demand, slc.capacity, "m", nonlinear[1]))
+        return tuple(found)
+
     def _acceleration(self, multiplier: float) -> float:
         """Spectral acceleration of a multiplier [m/s2], equation C8.7.1.8."""
         return multiplier * GRAVITY / (self.participation * self.confidence_factor)
@@ -130,6 +200,8 @@ class MechanismCheck:
         if self.peak is not None:
             rows.append(("peak of the demand, a_g S or a_Z [g]", f"{self.peak / GRAVITY:.4f}", "C8.7.1.2.1.7"))
             rows.append(("capacity over demand SLV, linear", f"{self.linear_ratio:.2f}", ""))
+        if self.elastic_period is not None:
+            rows.append(("elastic branch up to the curve, T_0 [s]", f"{self.elastic_period:.3f}", "C8.7.1.6"))
         rows.append(("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"))
         rows += [(f"{tie} yields at d [m]", f"{d:.4f}", "") for tie, d in self.yielding.items()]
         rows += [(f"{tie} breaks at d [m]", f"{d:.4f}", "") for tie, d in self.breaking.items()]
@@ -142,6 +214,8 @@ class MechanismCheck:
                 (f"demand, xi = {DAMPING[name]:.0%} [m]", f"{state.demand:.4f}", "C8.7.1.2.1.8"),
                 (f"capacity over demand {name}", f"{state.ratio:.2f}", broken),
             ]
+        if self.ground_ratio > self.states["SLV"].ratio:
+            rows.append(("a_g,SLV / a_g, at least a_g,SLD / a_g", f"{self.ground_ratio:.2f}", "C8.7.1.2.1.8"))
         widths = [max(len(row[i]) for row in rows) for i in range(2)]
         return "\n".join(f"{what:<{widths[0]}}  {value:>{widths[1]}}  {where}".rstrip() for what, value, where in rows)
 
@@ -151,7 +225,11 @@ class MechanismCheck:
 
 
 def mechanism_check(
-    case: Case, demand: Demand | Mapping[str, Demand], *, confidence_factor: float = 1.35
+    case: Case,
+    demand: Demand | Mapping[str, Demand],
+    *,
+    confidence_factor: float = 1.35,
+    elastic_period: float | None = None,
 ) -> MechanismCheck:
     """The kinematic check of a wall as a local mechanism, linear and non-linear, by Circolare 2019 n. 7, C8.7.1.2.1.
 
@@ -172,6 +250,8 @@ def mechanism_check(
             [m] of a spectrum. It is that of both limit states, or a mapping has one for each, "SLV" and "SLC"; the
             linear check then takes that of the SLV.
         confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
+        elastic_period: T_0 of an element that vibrates freely before it opens, such as a parapet [s], 0.001 to 5; its
+            curve begins with an elastic branch, a = (2 pi / T_0)^2 d, C8.7.1.6. None is a rigid start.
 
     Returns:
         The `MechanismCheck`, which prints in a line and as a table.
@@ -192,6 +272,7 @@ def mechanism_check(
     severe = demands["SLV"]
     peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None
     factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
+    T_0 = None if elastic_period is None else require_within("elastic_period", elastic_period, 1e-3, 5.0, "s")
     curve = pushover(case)
     if not math.isfinite(curve.end):
         raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
@@ -202,6 +283,9 @@ def mechanism_check(
     moved = wall.pose(curve.rotation)[:, 0]  # of the control point, the centroid
     d = moved * second / (wall.centroid_height * first)
     a = curve.multiplier * GRAVITY / (participation * factor)
+    if T_0 is not None:
+        fine = np.union1d(d, np.linspace(0.0, float(d[-1]), 4001))
+        d, a = fine, np.minimum(np.interp(fine, d, a), (2 * math.pi / T_0) ** 2 * fine)
     d_0 = float(d[-1])
     alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
     yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
@@ -210,11 +294,11 @@ def mechanism_check(
     for name, share in SHARE.items():
         capacity = share * d_0
         period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
-        states[name] = LimitState(capacity, period, _asked(demands[name], period, DAMPING[name]))
+        states[name] = LimitState(capacity, period, _asked(demands[name], period, DAMPING[name], T_0 or SHORT))
     alpha_0, tied = float(curve.multiplier[0]), None
     if case.pulls:
         tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
-    return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking)
+    return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking, T_0)
 
 
 def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
@@ -254,10 +338,10 @@ def _masses(case: Case) -> tuple[Array, Array]:
     return GRAVITY * np.array(weights), np.array(heights)
 
 
-def _asked(demand: Demand, period: float, damping: float) -> float:
-    """The displacement that is asked for at a period [m]."""
+def _asked(demand: Demand, period: float, damping: float, shortest: float) -> float:
+    """The displacement that is asked for at a period [m], by a record the largest from the shortest period on [s]."""
     if isinstance(demand, GroundMotion):
-        periods = np.geomspace(min(0.05, period), max(period, SHORTEST), PERIODS)
+        periods = np.geomspace(max(min(shortest, period), SHORTEST), max(period, SHORTEST), PERIODS)
         return float(response_spectrum(demand, periods, damping).Sd.max())
     if isinstance(demand, SpectrumOfCode):
         return float(demand.displacement(period, damping))
