@@ -1,7 +1,7 @@
 """What plain models of masonry err by and cost: landings against closed forms, and motions against explicit steps.
 
 A block falls flat, on a corner at 20 degrees and on a corner at 60 degrees, without friction, from heights that differ
-by less than a step: the energy that the landing takes, against that of a mass on a spring and a dashpot that only press.
+by less than a step: the energy that a landing takes, against that of a mass on a spring and a dashpot that only press.
 It is (1 - e^2) of the energy that the corner brings, with the mass that the corner feels and
 e = exp(-zeta omega t), t the time until the force of spring and dashpot is zero. Explicit steps give a side the
 stiffness of its area, so that at 60 degrees, where the long side lands, they have twice the stiffness.
