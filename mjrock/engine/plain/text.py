@@ -222,8 +222,10 @@ def _geom(piece: Piece, **attributes: object) -> str:
         attributes |= {"group": "3"}
     if piece.is_ground:
         return element("geom", type="plane", size=(0, 0, 1), pos=(0, 0, piece.shape.corners[:, 2].max()), **attributes)
-    if piece.shape.box is not None:
-        return element("geom", type="box", size=piece.shape.box[1], pos=piece.middle, **attributes)
+    if piece.box is not None:
+        if piece.shape.box is None:
+            attributes |= {"xyaxes": piece.box.axes[:2].ravel()}
+        return element("geom", type="box", size=piece.box.half, pos=piece.box.middle, **attributes)
     return element("geom", type="mesh", mesh=piece.name, **attributes)
 
 
