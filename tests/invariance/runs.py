@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
@@ -153,7 +154,8 @@ def solve(scene: Scene, **options: Any) -> mr.Response:
     contacts = contacts_of(scene, case) if isinstance(case, mr.Case) else None
     if scene["solver"] == "theory":
         return mr.solve_analytical(case, mr.Restitution.from_geometry(case.wall, case.stop_top), **options)
-    call = mr.simulate if scene["solver"] == "MuJoCo" else mr.solve_explicit
+    calls = {"MuJoCo": mr.simulate, "plain": partial(mr.simulate, collisions=True), "explicit": mr.solve_explicit}
+    call = calls[scene["solver"]]
     return call(case, contacts, scene["timestep"], **options)
 
 
