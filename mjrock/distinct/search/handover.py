@@ -27,8 +27,9 @@ from ...geometry.vectors import (
 from ...problem.masonry.laws.joint_law import depth_of_energy, depth_of_force, normal_force, shear_limit, stored
 from ...quantities import Array, Integers
 from ..contacts.friction import shortened
+from ..contacts.touches import FIRST_OPENING
 from ..rows import POINT, Row, Rows
-from .constants import AS_NEAR, FIRST_OPENING, REGAINED, SAME_NORMAL, SAME_PLACE
+from .constants import AS_NEAR, REGAINED, SAME_NORMAL, SAME_PLACE
 from .finder import Found
 from .solids import Poses, changed
 
@@ -302,8 +303,9 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
             new.depth[i] = pressed_at(new.rows[i], i, found, gone, ends, blocks)
         press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
-            overlap = max(-found.gap[i], 0.0)
-            new.slack[i] = overlap - new.depth[i] if new.depth[i] > 0 else (1 + FIRST_OPENING) * overlap
+            unpressed = FIRST_OPENING * min(blocks.sizes[found.face[i]], blocks.sizes[found.other[i]])
+            pressed = new.depth[i] if new.depth[i] > 0 else -unpressed
+            new.slack[i] = max(-found.gap[i] - pressed, 0.0)
             write_line(new.rows[i], i, new.slack[i], found, blocks)
             put(new.at[i], place_of(new.rows[i], both, blocks).at)
         for j in range(ends[0], ends[1]):
