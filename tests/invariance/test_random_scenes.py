@@ -41,9 +41,17 @@ def test_a_scene(seed):
 @pytest.mark.parametrize("seed", [50243, 50543, 50803, 50941])
 def test_rounding_decides_nothing(seed):
     """Joints as drawn, places that a search finds where nothing presses, and a block that falls turned by 45 degrees
-    move alike 1000 m away, as far as their nudges go."""
+    move alike 1000 m away. What is rounded there, 1e-13 m, grows by less than 1e5."""
     with overheard():
-        assert INVARIANCES["elsewhere"].run(Trial(draw(seed))) < EQUAL
+        assert INVARIANCES["elsewhere"].run(Trial(draw(seed))) < 10 * EQUAL
+
+
+@pytest.mark.parametrize("seed", [50353, 50543, 51160])
+def test_prisms_move_as_blocks_of_the_plane(seed):
+    """Friction past an end of its face, of a line that leaves its face, and of one that is handed over is that of the
+    plane, and so are the points beside each other."""
+    with overheard():
+        assert INVARIANCES["in_space"].run(Trial(draw(seed))) < EQUAL
 
 
 @pytest.mark.slow

@@ -26,7 +26,7 @@ from ...geometry.vectors import (
 )
 from ...problem.masonry.laws.joint_law import depth_of_energy, depth_of_force, normal_force, shear_limit, stored
 from ...quantities import Array, Integers
-from ..contacts.friction import shortened
+from ..contacts.friction import along_face, shortened, turned_along
 from ..contacts.touches import FIRST_OPENING
 from ..rows import POINT, Row, Rows
 from .constants import AS_NEAR, REGAINED, SAME_NORMAL, SAME_PLACE
@@ -237,11 +237,12 @@ def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks) ->
 
 @inlined
 def along_new(along: Vector, old: Place, new: Place) -> Vector:
-    """What a line keeps along its face, along that of another one. In the plane it is a number along the tangent."""
+    """What a line keeps along its face, along that of another one. In the plane it is a number along the tangent. Past
+    an end of its face it is turned back along this first."""
     sense = old.sense * new.sense
     if len(along) == 1:
         return (sense * along[0] * dot(tangent(old.normal), tangent(new.normal)),)
-    return scaled(sense, along)
+    return along_face(new.normal, turned_along(old.normal, scaled(sense, along)))
 
 
 @inlined
