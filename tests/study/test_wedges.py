@@ -136,3 +136,9 @@ def test_a_centroid_behind_the_inner_edge_needs_a_side_stop():
 def test_what_cannot_be(call, complaint):
     with pytest.raises((TypeError, ValueError), match=complaint):
         call()
+
+
+def test_a_gable_alone_overturns_as_a_triangle():
+    gable = mr.Block.from_size(0.4, 3.0, 6.0, gable=mr.Gable(3.0))
+    found = mr.mechanism_check(mr.Case(gable, 0.0, 1.0), lambda T, xi: 0.1)
+    assert found.alpha_0 == pytest.approx(1.5 * 0.4 / 3.0)
