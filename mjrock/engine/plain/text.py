@@ -32,7 +32,7 @@ HEAD = """\
        (d, d).{others} Reset to the keyframe `release` and step. -->
   <compiler angle="radian"/>
   <option timestep="{h}" gravity="0 0 {gravity}" integrator="Euler" cone="elliptic" impratio="{impratio}"
-          solver="Newton" iterations="100" tolerance="1e-10"{rows}><flag island="disable" autoreset="disable"/></option>
+          solver="Newton" iterations="100" tolerance="1e-16"{rows}><flag island="disable"/></option>
 """
 OTHERS = " Any two solids without a joint have the W k and W c of the median joint."
 LOOKS = (
