@@ -55,12 +55,14 @@ if TYPE_CHECKING:
     from .problem.masonry.laws.dry import Dry, Mortar
     from .problem.masonry.limit.collapse import Collapse
     from .problem.masonry.masonry import Masonry
+    from .problem.wall.bending import VerticalBending
     from .problem.wall.block import Block
     from .problem.wall.case import Case
     from .problem.wall.damper import Damper, FrictionDamper
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
     from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie, strengths_of_bar
+    from .problem.wall.wedge import Wedge
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report
@@ -100,21 +102,21 @@ __all__ = [
     "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "Compound",
     "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "Dry",
     "DynamicCheck", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact",
-    "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry",
-    "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck",
-    "Mortar", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum",
-    "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum", "Restitution",
-    "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint",
-    "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep", "calibrate",
-    "campaign", "code_spectrum", "collapse_multiplier", "compare", "contact_for", "contact_parameters",
-    "contact_stiffness", "contacts_for", "crushed_inset", "dynamic_check", "fit_capacities", "fit_fragility",
-    "hertz_stiffness", "ida", "inspect_contacts", "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf",
-    "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
-    "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
-    "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
-    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
-    "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_bar", "wall_mjcf",
-    "wall_scene", "wall_stiffness",
+    "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters",
+    "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact",
+    "MechanismCheck", "Mortar", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan",
+    "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum",
+    "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError",
+    "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__",
+    "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier",
+    "compare", "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset",
+    "dynamic_check", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
+    "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
+    "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of",
+    "overturning_intensity", "paired_ratio", "push", "pushover", "records_in", "reference_frequency", "report",
+    "response_spectrum", "results", "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum",
+    "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical", "solve_compliant",
+    "solve_explicit", "stiffness_range", "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)

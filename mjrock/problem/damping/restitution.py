@@ -87,11 +87,17 @@ class Restitution:
 
         Raises:
             ValueError: if alpha is too large for Eq. 2 to leave any velocity, that is from 54.7 degrees, or the stop
-                does not end on the wall, or is so low that e_side exceeds 1.
+                does not end on the wall, or is so low that e_side exceeds 1, or if the centroid lies behind the inner
+                edge.
         """
         if isinstance(wall, Block):
             if stop_top is not None:
                 stop_top = require_within("top of the side stop", stop_top, 0.01, 2 * wall.h * (1 + 1e-12), "m")
+            if wall.half_base + wall.centroid_offset <= 0:
+                raise ValueError(
+                    f"the centroid of the wall lies {-wall.centroid_offset:g} m behind the middle of the base, behind "
+                    "its inner edge: it lands on a crack or on the stop; give Restitution(base, side)"
+                )
             if wall.inset or not wall.is_plain or (stop_top is not None and stop_top < 2 * wall.h):
                 top = 2 * wall.h if stop_top is None else stop_top
                 base, side = _base(wall), _side(wall, top)

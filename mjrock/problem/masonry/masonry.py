@@ -33,6 +33,7 @@ from ...quantities import (
     shown,
 )
 from ..damping.contacts import AnyLaw, required_law
+from ..wall.bending import VerticalBending
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from ..wall.section import Opening
@@ -45,6 +46,7 @@ from .builders.in_plane import (
     MOST_BLOCKS,
     Ends,
     arch_of,
+    bending_between_floors,
     between_beams,
     bonded_wall,
     curved,
@@ -59,7 +61,7 @@ from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
 from .files.meshes import Mesh, blocks_of, obj_text, read_obj, read_stl
 from .laws.bond import Bond
-from .laws.dry import Properties
+from .laws.dry import Dry, Properties
 from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
@@ -68,6 +70,7 @@ from .laws.joint_table import (
     JointTable,
     OfBond,
     OfCount,
+    OfFloor,
     OfJoint,
     OrElse,
     properties_of,
@@ -594,6 +597,41 @@ class Masonry:
         """
         wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
         return cls(between_beams(wall[1:]), **_halved(halves, options))
+
+    @classmethod
+    def between_floors(
+        cls,
+        wall: Block,
+        load: float,
+        *,
+        bearing: float | None = None,
+        crack: float | None = None,
+        **options: Unpack[JointOptions],
+    ) -> Self:
+        """A wall that cracks between two floors, which hold it sideways, seen along its length.
+
+        The inner face is x = 0. The upper floor is a block with the mass of the load between two smooth guides, so that
+        it may rise and not turn. It is anchored to the wall: its joint has a friction of 10, the largest there is.
+
+        Args:
+            wall, load, bearing, crack: as of `VerticalBending`.
+            options: further arguments of `Masonry`; `friction` is that of the base and the crack. The blocks are
+                "base", "lower", "upper", "floor", "inner_guide" and "outer_guide". All but the two of the wall and the
+                floor are fixed.
+
+        Raises:
+            TypeError, ValueError: as `VerticalBending` or `Masonry` does.
+
+        Examples:
+            >>> strip = mr.Masonry.between_floors(mr.Block.from_size(0.3, 4.0), load=20e3)
+            >>> round(float(mr.collapse_multiplier(strip).multiplier), 2)
+            0.78
+        """
+        blocks = bending_between_floors(VerticalBending(wall, load, bearing, crack))
+        given = one_by_one(options)
+        friction = given["friction"]
+        given["friction"] = OfFloor(Dry.friction if friction is None else friction)
+        return cls(blocks, **given)
 
     @classmethod
     def wallette(

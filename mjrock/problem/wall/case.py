@@ -98,8 +98,6 @@ class Case(Carrying):
     def _require_effects(self) -> None:
         """Check that each effect is on the wall and that the wall stands with them, and keep them as a tuple."""
         self._keep_sequence()
-        if not self.effects:
-            return
         top, b = 2 * self.block.h * (1 + 1e-12), self.block.b * (1 + 1e-12)
         for i, effect in enumerate(self.effects):
             if isinstance(effect, SideStop):
@@ -119,7 +117,8 @@ class Case(Carrying):
                 raise ValueError(
                     f"the loads and thrusts overturn the wall {name} as it stands: their moment about the toe and "
                     f"that of the weight is {self.restoring.towards(side).P:.4g} N m, and no tie makes up for it; the "
-                    "valid range is above 0: lower the thrust, or give a tie that can hold it"
+                    "valid range is above 0: lower the thrust, or give a "
+                    + ("tie that can hold it" if side > 0 else "side stop")
                 )
 
     def __repr__(self) -> str:

@@ -1,7 +1,7 @@
 """The check of a local mechanism on its push-over curve, after the Italian commentary C8.7.1.2.1, clause by clause.
 
-The clauses are those of Circolare 21 gennaio 2019 n. 7. The single rigid block of a case is the mechanism. It stands on
-the ground, or on a floor whose spectrum or motion is the demand, and has no vibration of its own before it opens.
+The clauses are those of Circolare 21 gennaio 2019 n. 7. The mechanism is the single rigid block of a case, which stands
+on the ground or on a floor whose spectrum or motion is the demand, or a wall that bends between two floors.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST
 from ...problem.ground.spectrum import response_spectrum
 from ...problem.masonry.case import require_wall
+from ...problem.wall.bending import VerticalBending
 from ...problem.wall.case import Case
 from ...problem.wall.ties_on_wall import moment_at_strength
 from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, shown, takes
@@ -225,7 +226,7 @@ class MechanismCheck:
 
 
 def mechanism_check(
-    case: Case,
+    case: Case | VerticalBending,
     demand: Demand | Mapping[str, Demand],
     *,
     confidence_factor: float = 1.35,
@@ -245,7 +246,7 @@ def mechanism_check(
     its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known.
 
     Args:
-        case: the wall and its effects; its release and its motion play no part.
+        case: the wall and its effects, whose release and motion play no part, or a wall that bends between floors.
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
             [m] of a spectrum. It is that of both limit states, or a mapping has one for each, "SLV" and "SLC"; the
             linear check then takes that of the SLV.
@@ -267,38 +268,69 @@ def mechanism_check(
         >>> str(check).startswith('<MechanismCheck: starts at 0.1')
         True
     """
-    require_wall("case", case, "collapse_multiplier")
     demands = _by_limit_state(demand)
     severe = demands["SLV"]
     peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None
     factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
     T_0 = None if elastic_period is None else require_within("elastic_period", elastic_period, 1e-3, 5.0, "s")
+    found = _of_bending(case) if isinstance(case, VerticalBending) else _of_wall(case)
+    d, a = found.d, found.multiplier * GRAVITY / (found.participation * factor)
+    if T_0 is not None:
+        fine = np.union1d(d, np.linspace(0.0, float(d[-1]), 4001))
+        d, a = fine, np.minimum(np.interp(fine, d, a), (2 * math.pi / T_0) ** 2 * fine)
+    d_0 = float(d[-1])
+    states = {}
+    for name, share in SHARE.items():
+        capacity = share * d_0
+        period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
+        states[name] = LimitState(capacity, period, _asked(demands[name], period, DAMPING[name], T_0 or SHORT))
+    alpha_0, ties = float(found.multiplier[0]), (found.yielding, found.breaking)
+    return MechanismCheck(alpha_0, found.tied, found.participation, factor, d, a, d_0, states, peak, *ties, T_0)
+
+
+class _Mechanism(NamedTuple):
+    """What the check takes of a mechanism.
+
+    Args:
+        multiplier: along the curve [-], shape (n,).
+        d: spectral displacements [m], shape (n,), C8.7.1.4.
+        participation: e* [-], C8.7.1.5.
+        tied: multiplier that starts it with the ties at their strength [-]; None without ties.
+        yielding, breaking: displacement at which each tie yields and breaks [m], by name.
+    """
+
+    multiplier: Array
+    d: Array
+    participation: float
+    tied: float | None
+    yielding: Mapping[str, float]
+    breaking: Mapping[str, float]
+
+
+def _of_bending(bending: VerticalBending) -> _Mechanism:
+    """A wall between floors. The centroids of both bodies begin to move alike, so that all of the mass takes part."""
+    curve = bending.curve
+    return _Mechanism(curve.multiplier, curve.displacement, 1.0, None, {}, {})
+
+
+def _of_wall(case: Case) -> _Mechanism:
+    """A wall that overturns, with its ties. A ValueError says if they hold it for good."""
+    require_wall("case", case, "collapse_multiplier")
     curve = pushover(case)
     if not math.isfinite(curve.end):
         raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
     wall = case.wall
     weights, heights = _masses(case)
     first, second = float(weights @ heights), float(weights @ heights**2)
-    participation = first**2 / (float(weights.sum()) * second)
     moved = wall.pose(curve.rotation)[:, 0]  # of the control point, the centroid
     d = moved * second / (wall.centroid_height * first)
-    a = curve.multiplier * GRAVITY / (participation * factor)
-    if T_0 is not None:
-        fine = np.union1d(d, np.linspace(0.0, float(d[-1]), 4001))
-        d, a = fine, np.minimum(np.interp(fine, d, a), (2 * math.pi / T_0) ** 2 * fine)
-    d_0 = float(d[-1])
     alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
     yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
-    _warn_of_ties(case, SHARE["SLC"] * d_0, alone, breaking)
-    states = {}
-    for name, share in SHARE.items():
-        capacity = share * d_0
-        period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
-        states[name] = LimitState(capacity, period, _asked(demands[name], period, DAMPING[name], T_0 or SHORT))
-    alpha_0, tied = float(curve.multiplier[0]), None
+    _warn_of_ties(case, SHARE["SLC"] * float(d[-1]), alone, breaking)
+    tied = None
     if case.pulls:
-        tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
-    return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking, T_0)
+        tied = float(curve.multiplier[0]) + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
+    return _Mechanism(curve.multiplier, d, first**2 / (float(weights.sum()) * second), tied, yielding, breaking)
 
 
 def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
@@ -314,7 +346,7 @@ def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[s
             f"d_SLC = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
             f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
             Implausible,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 

@@ -8,7 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ....quantities import Array, require_flag, require_kind, require_whole, require_within, shown
+from ....quantities import GRAVITY, Array, require_flag, require_kind, require_whole, require_within, shown
+from ...wall.bending import VerticalBending
 from ...wall.block import Block
 from ...wall.effects import SideStop
 from ..blocks.compound import Compound, FlatBlock
@@ -218,3 +219,26 @@ def between_beams(units: Sequence[Polygon]) -> list[Polygon]:
     base = rectangle(left - beyond, right + beyond, low - deep, low, 2000.0, thickness, True, "base")
     beam = rectangle(left - beyond, right + beyond, high, high + deep, 2000.0, thickness, True, "beam")
     return [base, *units, beam]
+
+
+def bending_between_floors(bending: VerticalBending) -> list[Polygon]:
+    """The two bodies of a wall between a fixed floor and one that two guides hold sideways, see
+    `Masonry.between_floors`."""
+    wall, crack = bending.wall, bending.crack_height
+    thickness, height, deep = 2 * wall.b, 2 * wall.h, bending.floor_depth
+    left, right = bending.floor_ends
+    density = bending.load / (GRAVITY * wall.length * (right - left) * deep)
+    low, top = height + 0.5 * deep, height + 1.5 * deep
+
+    def part(name: str, sides: tuple[float, float], levels: tuple[float, float], density: float = 2000.0) -> Polygon:
+        fixed = name not in ("lower", "upper", "floor")
+        return rectangle(*sides, *levels, density, wall.length, fixed, name)
+
+    return [
+        part("base", (-2 * thickness, 3 * thickness), (-thickness, 0.0)),
+        part("lower", (0.0, thickness), (0.0, crack), wall.density),
+        part("upper", (0.0, thickness), (crack, height), wall.density),
+        part("floor", (left, right), (height, height + deep), density),
+        part("inner_guide", (left - thickness, left), (low, top)),
+        part("outer_guide", (right, right + thickness), (low, top)),
+    ]

@@ -106,6 +106,22 @@ class ByKind:
 
 
 @dataclass(frozen=True)
+class OfFloor:
+    """Friction of a wall between floors: `held` under the upper floor, none at its guides, another in the wall."""
+
+    wall: OfJoint
+    held: float = 10.0
+
+    def __call__(self, joint: AnyJoint) -> float:
+        """The value of a joint."""
+        if "guide" in joint.name:
+            return 0.0
+        if "floor" in joint.name:
+            return self.held
+        return self.wall(joint) if callable(self.wall) else self.wall
+
+
+@dataclass(frozen=True)
 class ByName:
     """A property of each joint by its name, as pairs of a name and a value.
 

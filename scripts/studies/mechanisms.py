@@ -1,0 +1,133 @@
+"""Local mechanisms as blocks: how each moves, and its multiplier by limit analysis beside the closed form.
+
+python scripts/studies/mechanisms.py --out docs/figures
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+import mjrock as mr
+from mjrock import plotting
+from scripts.shared import cli
+
+THICKNESS, HEIGHT = 0.6, 4.0
+ANGLE = math.radians(30)
+"""Of the cracks of side walls from the vertical."""
+LOAD = 20e3
+Triangle = list[tuple[float, float]]
+
+
+def smooth_cracks(joint: mr.Joint | mr.SpaceJoint) -> float:
+    """Friction of a joint: none on a crack."""
+    return 0.0 if "rest" in joint.name else 0.7
+
+
+def overturning(rests: Sequence[mr.Polygon], body: mr.Polygon | mr.Compound) -> mr.Masonry:
+    """A body on the ground, in the plane, before what stays of the side walls."""
+    corners = [(-0.75 * HEIGHT, -0.4), (HEIGHT, -0.4), (HEIGHT, 0.0), (-0.75 * HEIGHT, 0.0)]
+    ground = mr.Polygon(corners, length=4.0, fixed=True, name="ground")
+    return mr.Masonry([ground, *rests, body], friction=smooth_cracks)
+
+
+def simple() -> tuple[mr.Masonry, float]:
+    """A wall that overturns."""
+    corners = [(0.0, 0.0), (THICKNESS, 0.0), (THICKNESS, HEIGHT), (0.0, HEIGHT)]
+    return overturning([], mr.Polygon(corners, length=4.0, name="wall")), THICKNESS / HEIGHT
+
+
+def composite() -> tuple[mr.Masonry, float]:
+    """The same of 4 m with wedges of two side walls, each half as thick; blocks of one length, the wedges lighter."""
+    p = HEIGHT * math.tan(ANGLE)
+    corners = [(0.0, 0.0), (THICKNESS, 0.0), (THICKNESS, HEIGHT), (0.0, HEIGHT)]
+    share = THICKNESS / 4.0
+    wedge = mr.Polygon([(0.0, 0.0), (0.0, HEIGHT), (-p, HEIGHT)], density=2000.0 * share, length=4.0)
+    rest = mr.Polygon([(0.0, 0.0), (-p, HEIGHT), (-p, 0.0)], length=4.0, fixed=True, name="rest")
+    body = mr.Compound([mr.Polygon(corners, length=4.0), wedge], name="facade")
+    wall, side = THICKNESS * HEIGHT, share * p * HEIGHT / 2
+    alpha_0 = (wall * THICKNESS / 2 + side * (THICKNESS + p / 3)) / (wall * HEIGHT / 2 + side * 2 * HEIGHT / 3)
+    return overturning([rest], body), alpha_0
+
+
+def bending() -> tuple[mr.Masonry, float]:
+    """A wall that bends between floors."""
+    wall = mr.Block.from_size(THICKNESS, HEIGHT)
+    return mr.Masonry.between_floors(wall, LOAD), mr.VerticalBending(wall, LOAD).multiplier
+
+
+def in_space(body: mr.Polyhedron | mr.Compound, rests: Sequence[mr.Polyhedron]) -> mr.Masonry:
+    """A body on the ground in space, before what stays of the walls."""
+    return mr.Masonry([cuboid((-4, 1.5), (-1.5, 4), (-0.3, 0), "ground"), body, *rests], friction=smooth_cracks)
+
+
+def cuboid(x: Sequence[float], y: Sequence[float], z: Sequence[float], fixed: str = "") -> mr.Polyhedron:
+    """A block between two x, y and z [m], fixed where it has a name."""
+    corners = [(i, j, k) for i in x for j in y for k in z]
+    return mr.Polyhedron(corners, fixed=bool(fixed), name=fixed or None)
+
+
+def along_both(triangle: Triangle, fixed: str = "") -> list[mr.Polyhedron]:
+    """A piece of the two walls of a corner, along y and along -x, from their distances from it and heights [m]."""
+    t = THICKNESS
+    sides = (
+        [(x, t + s, z) for x in (-t, 0.0) for s, z in triangle],
+        [(-t - s, y, z) for y in (0.0, t) for s, z in triangle],
+    )
+    return [
+        mr.Polyhedron(corners, fixed=bool(fixed), name=f"{fixed}_{i}" if fixed else None)
+        for i, corners in enumerate(sides)
+    ]
+
+
+def corner() -> tuple[mr.Masonry, float]:
+    """A corner that overturns along the diagonal."""
+    t, h = THICKNESS, 0.75 * HEIGHT
+    p = h * math.tan(ANGLE)
+    post = cuboid((-t, 0.0), (0.0, t), (0.0, h))
+    body = mr.Compound([post, *along_both([(0.0, 0.0), (0.0, h), (p, h)])], name="corner")
+    masonry = in_space(body, along_both([(0.0, 0.0), (p, h), (p + 0.5, h), (p + 0.5, 0.0)], "rest"))
+    behind = (t * t * h * t + t * p * h * (1.5 * t + p / 3)) / math.sqrt(2)
+    return masonry, behind / (t * t * h * h / 2 + t * p * h * 2 * h / 3)
+
+
+def gable() -> tuple[mr.Masonry, float]:
+    """A triangular gable."""
+    h = 0.5 * HEIGHT
+    corners = [(x, y, z) for x in (-THICKNESS, 0.0) for y, z in ((-1.0, 0.0), (3.5, 0.0), (1.25, h))]
+    return in_space(mr.Polyhedron(corners, name="gable"), []), 1.5 * THICKNESS / h
+
+
+MECHANISMS = {
+    "simple overturning": (simple, None),
+    "composite overturning": (composite, None),
+    "vertical bending": (bending, None),
+    "corner": (corner, -math.pi / 4),
+    "gable": (gable, 0.0),
+}
+"""What is built, and the direction of the push in plan where it is in space [rad]."""
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Push and draw them."""
+    out = cli.folder(cli.parser(__doc__, "mechanisms").parse_args(argv).out)
+    figure = Figure(figsize=(14, 3.6), layout="constrained")
+    places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.8, 1.8])
+    lines = []
+    for i, (name, (make, angle)) in enumerate(MECHANISMS.items()):
+        masonry, alpha_0 = make()
+        found = mr.collapse_multiplier(masonry) if angle is None else mr.collapse_multiplier(masonry, angle=angle)
+        lines.append(f"{name}: {found.multiplier:.4f} by limit analysis, {alpha_0:.4f} by the closed form")
+        ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
+        plotting.mechanism(ax, found, share=0.06, forces=False)
+        ax.axis("off")
+        ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
+    plotting.save(figure, out / "mechanisms.png")
+    cli.report(out / "mechanisms", "\n".join(lines))
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

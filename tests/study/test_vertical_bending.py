@@ -1,0 +1,109 @@
+"""Vertical bending between floors: closed form, limit analysis, the check by hand, and runs about the multiplier."""
+
+import math
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+WALL = mr.Block.from_size(0.35, 3.2, 1.5, 1800.0)
+LOAD = 18e3
+
+
+def by_hand(wall, load, at, crack):
+    """Virtual work of a unit rotation of the lower body about the outer edge of the base.
+
+    The upper body turns by psi = z / (h - z) the other way about the inner edge of the crack: the load stays in place
+    sideways.
+    """
+    t, h = 2 * wall.b, 2 * wall.h
+    psi = crack / (h - crack)
+    lower, upper = wall.weight * crack / h, wall.weight * (h - crack) / h
+    rise = lower * t / 2 + upper * (t + psi * t / 2) + load * (t + psi * at)
+    sway = lower * crack / 2 + upper * psi * (h - crack) / 2
+    return rise / sway
+
+
+@pytest.mark.parametrize(("bearing", "crack"), [(None, None), (None, 1.6), (0.15, None), (0.2, 2.4)])
+def test_virtual_work_and_limit_analysis(bearing, crack):
+    bending = mr.VerticalBending(WALL, LOAD, bearing, crack)
+    hand = by_hand(WALL, LOAD, bearing or 0.35, bending.crack_height)
+    assert bending.multiplier == pytest.approx(hand, rel=1e-12)
+    assert bending.curve.multiplier[0] == pytest.approx(hand, rel=1e-12)
+    masonry = mr.Masonry.between_floors(WALL, LOAD, bearing=bearing, crack=crack)
+    found = mr.collapse_multiplier(masonry)
+    assert found.multiplier == pytest.approx(hand, rel=1e-9)
+    assert found.moving == ("lower", "upper", "floor")
+
+
+def test_the_crack_is_where_the_multiplier_is_least():
+    bending = mr.VerticalBending(WALL, LOAD, 0.2)
+    least = 2 * (math.sqrt((WALL.weight + LOAD) * 0.35) + math.sqrt(LOAD * 0.2)) ** 2 / (WALL.weight * 3.2)
+    assert bending.multiplier == pytest.approx(least, rel=1e-12)
+    assert min(by_hand(WALL, LOAD, 0.2, z) for z in np.linspace(0.1, 3.1, 3001)) == pytest.approx(least, rel=1e-6)
+    assert 1.6 < bending.crack_height < 3.2
+
+
+def test_the_curve_ends_where_the_three_hinges_lie_above_each_other():
+    """With the load at the outer face both hinges of the floors are there, and the crack has moved by the thickness.
+
+    The work of the multiplier up to there is the rise of the weights and of the load: each body then stands on its
+    diagonal.
+    """
+    bending = mr.VerticalBending(WALL, LOAD)
+    curve = bending.curve
+    assert curve.displacement[-1] == pytest.approx(0.35 / 2, rel=1e-6)
+    z, t, h = bending.crack_height, 0.35, 3.2
+    long = math.hypot(t, z), math.hypot(t, h - z)
+    lower, upper = WALL.weight * z / h, WALL.weight * (h - z) / h
+    rise = lower * (long[0] - z) / 2 + upper * (long[0] + long[1] / 2 - z - (h - z) / 2)
+    rise += LOAD * (sum(long) - h)
+    work = WALL.weight * np.trapezoid(curve.multiplier, curve.displacement)
+    assert work == pytest.approx(rise, rel=1e-6)
+
+
+def test_the_steps_of_the_check():
+    bending = mr.VerticalBending(WALL, LOAD)
+    found = mr.mechanism_check(bending, lambda T, xi: 0.02, confidence_factor=1.2)
+    assert found.participation == 1.0
+    assert found.a_0 == pytest.approx(bending.multiplier * mr.GRAVITY / 1.2)
+    assert found.d_0 == pytest.approx(0.175, rel=1e-6)
+    slv = found.states["SLV"]
+    assert slv.capacity == pytest.approx(0.07, rel=1e-6)
+    # the curve falls nearly linearly
+    assert slv.period == pytest.approx(1.68 * math.pi * math.sqrt(0.07 / (0.6 * found.a_0)), rel=0.03)
+    assert [one.holds for one in found.verdicts] == [True, True]
+
+
+@pytest.mark.parametrize("solve", [pytest.param(mr.solve_explicit, marks=pytest.mark.slow), mr.simulate])
+def test_it_stands_a_slow_push_below_the_multiplier_and_falls_above(solve):
+    """The push grows over 1.5 s and stays, at 0.95 and 1.05 times the multiplier of rigid bodies."""
+    wall = mr.Block.from_size(0.3, 4.0)
+    masonry = mr.Masonry.between_floors(wall, 20e3, friction=1.0, k_n=2e9)
+    multiplier = mr.VerticalBending(wall, 20e3).multiplier
+    grown = -multiplier * mr.GRAVITY * np.minimum(np.linspace(0.0, 2.0, 301), 1.0)
+    below, above = (
+        solve(mr.MasonryCase(masonry, 3.0, motion=mr.GroundMotion(share * grown, 0.01))) for share in (0.95, 1.05)
+    )
+    assert not below.fallen
+    assert below.opening.max() < 1e-3
+    assert {"lower", "upper"} <= set(above.fallen)
+
+
+@pytest.mark.parametrize(
+    ("call", "complaint"),
+    [
+        (lambda: mr.VerticalBending(WALL, LOAD, bearing=0.4), "bearing = 0.4 m is outside the valid range"),
+        (lambda: mr.VerticalBending(WALL, LOAD, crack=3.2), "crack = 3.2 m is outside the valid range"),
+        (lambda: mr.VerticalBending(WALL, 0.0), "load of the floor = 0"),
+        (lambda: mr.VerticalBending(3, LOAD), "wall = 3 of type int is not a Block"),
+        (
+            lambda: mr.Masonry.between_floors(mr.Block.from_size(0.35, 3.2, inset=0.05), LOAD),
+            "is not a plain rectangle; cut it to the strip",
+        ),
+    ],
+)
+def test_what_cannot_be(call, complaint):
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        call()
