@@ -160,6 +160,7 @@ def _notes(
 ) -> Iterator[str]:
     yield from duplicates(pair)
     yield from row.notes()
+    yield from pose.turned(pair, found.k)
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)
     if met.company.level:

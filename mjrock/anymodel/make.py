@@ -101,7 +101,8 @@ def contact_for(
     Warns:
         ContactWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what
             else holds the bodies, of geoms that MuJoCo keeps apart, of geoms that share the mass, of a keyframe in
-            which the contact stops another mass, and without k of a contact that is soft.
+            which the contact stops another mass, of faces to which a small turn gives more points, and without k of a
+            contact that is soft.
     """
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
@@ -174,7 +175,11 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
         load=pose.load(pair, met.points, points),
-        remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
+        remarks=(
+            *unused(asked.friction, grip),
+            *pose.turned(pair, k),
+            *_remarks(pair, pose, asked, met, k, c, grip.sliding),
+        ),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
     load = contact.load

@@ -35,6 +35,8 @@ SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
 IMMOVABLE = 10.0
 """Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
+TURN = 0.01
+"""Turn about the normal with which the points of two faces are counted again [degrees]."""
 REST = 1e-4
 """Distance within which geoms of a pose at rest touch [m]."""
 MOST_KEYFRAMES = 20
@@ -58,20 +60,26 @@ class Trial:
         for name in ("geom_contype", "geom_conaffinity", "body_contype", "body_conaffinity"):
             getattr(self.model, name)[:] = 0
 
-    def points(self, pair: GeomPair, away: Array, distance: float) -> Array:
-        """The points in which the geoms meet, with the first moved by `distance` against `away`, shape (n, 3)."""
+    def points(self, pair: GeomPair, away: Array, distance: float, turn: float = 0.0) -> Array:
+        """The points in which the geoms meet, with the first moved by `distance` against `away`, and one of them turned
+        about `away` [degrees]; shape (n, 3)."""
         bodies, geoms = list(pair.bodies), list(pair.geoms)
         self._let_meet(geoms, bodies, 1)
         moves = 1 if self.model.geom_type[geoms[0]] in DIRECTIONLESS else 0
-        place = np.array(self.data.geom_xpos[geoms[moves]])
+        place, frame = (np.array(values[geoms[moves]]) for values in (self.data.geom_xpos, self.data.geom_xmat))
         shift = (distance + self.pressed(pair)) * away
+        if turn:
+            turned, matrix = np.zeros(4), np.zeros(9)
+            mujoco.mju_axisAngle2Quat(turned, away, np.radians(turn))
+            mujoco.mju_quat2Mat(matrix, turned)
+            self.data.geom_xmat[geoms[moves]] = (matrix.reshape(3, 3) @ frame.reshape(3, 3)).ravel()
         self.data.geom_xpos[geoms[moves]] += shift if moves else -shift
         try:
             mujoco.mj_collision(self.model, self.data)
             contact = self.data.contact
             met = contact.pos[(np.sort(contact.geom, axis=1) == sorted(geoms)).all(axis=1)]
         finally:
-            self.data.geom_xpos[geoms[moves]] = place
+            self.data.geom_xpos[geoms[moves]], self.data.geom_xmat[geoms[moves]] = place, frame
             self._let_meet(geoms, bodies, 0)
         points = met[:: max(1, len(pair.listed))]
         return points + shift if moves == 0 else points
@@ -288,6 +296,20 @@ class Pose:
                 f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
                 "neither: how they land is not known, nor the mass; give normal, the direction in which the first "
                 "parts from the second, or the pose in which they land"
+            )
+
+    def turned(self, pair: GeomPair, k: float) -> Iterator[str]:
+        """A sentence where a small turn gives the faces of two geoms another number of points, with both stiffnesses of
+        the joint. Each point has the stiffness k [N/m]."""
+        here = self.landing(pair)
+        if not pair.has_two_faces or not pair.can_turn(self.data, here.away):
+            return
+        before, after = len(here.first), len(self.ground.points(pair, here.away, here.distance, TURN))
+        if after > before:
+            yield (
+                f"a turn of {TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
+                f"joint then has {k * after:.3g} N/m for {k * before:.3g} N/m, and as much more "
+                "damping; faces of which one lies within the other, and meshes in place of boxes, keep their points"
             )
 
     def group(self, pair: GeomPair) -> Group:

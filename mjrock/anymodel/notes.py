@@ -57,7 +57,7 @@ JUDGED: dict[mujoco.mjtEnableBit | mujoco.mjtDisableBit, str] = {
 """What each flag of MuJoCo does to a contact in N/m, once it is set; empty where it does nothing."""
 
 SAFE = "; with refsafe it also replaces contacts that the step does not resolve by some without a rebound"
-MOST, SEARCHES = 100, 50
+MOST, LINE_SEARCHES = 100, 50
 """Iterations and line searches with which a solver is taken to converge, MuJoCo's defaults."""
 
 VARIES = re.compile(

@@ -18,7 +18,7 @@ from ..quantities import Array
 from .contact import PairContact
 from .geoms import GeomPair
 from .meeting import Pose, awake
-from .notes import MOST, SEARCHES, SolverNeed
+from .notes import LINE_SEARCHES, MOST, SolverNeed
 
 STEPS = 50
 """Steps of a trial."""
@@ -44,7 +44,7 @@ def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContac
             _put(other, data.qpos, data.qvel)
             other.act[:], other.qacc_warmstart[:] = data.act, data.qacc_warmstart
             mujoco.mj_forward(tried, other)
-            tried.opt.iterations, tried.opt.ls_iterations = max(own[0], MOST), max(own[1], SEARCHES)
+            tried.opt.iterations, tried.opt.ls_iterations = max(own[0], MOST), max(own[1], LINE_SEARCHES)
             mujoco.mj_step(tried, data)
             if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
                 break
@@ -52,7 +52,7 @@ def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContac
             enough &= _alike(other, data)
     if most >= max(own[0], MOST):
         return SolverNeed(*own, converges=False)
-    return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), max(own[1], SEARCHES))
+    return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), max(own[1], LINE_SEARCHES))
 
 
 def _with(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) -> mujoco.MjModel:

@@ -106,7 +106,7 @@ def test_the_cost_of_impratio():
 def _iterations(boxes, impratio):
     bodies = "".join(
         f"""<body pos="0 0 {0.1 + 0.2 * i}"><freejoint/>
-        <geom name="box{i}" type="box" size=".2 .3 .1" mass="2"/></body>"""
+        <geom name="box{i}" type="box" size="{0.2 - 0.001 * i} {0.3 - 0.001 * i} .1" mass="2"/></body>"""
         for i in range(boxes)
     )
     spec = mujoco.MjSpec.from_string(scene(FLOOR, bodies, gravity=9.81, timestep=1e-4))

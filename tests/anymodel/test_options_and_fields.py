@@ -12,7 +12,8 @@ import mjrock as mr
 from mjrock.anymodel.notes import JUDGED, model_spoilers
 
 BOXES = "".join(
-    f'<body pos="0 0 {0.05 + 0.1 * i}"><freejoint/><geom name="box{i}" type="box" size=".1 .07 .05" mass="1.3"/></body>'
+    f'<body pos="0 0 {0.05 + 0.1 * i}"><freejoint/>'
+    f'<geom name="box{i}" type="box" size="{0.1 - 0.001 * i} {0.07 - 0.001 * i} .05" mass="1.3"/></body>'
     for i in range(5)
 )
 NAMES = ["floor", *(f"box{i}" for i in range(5))]
