@@ -32,7 +32,7 @@ from .notes import (
     uneven,
 )
 from .others import Changed, Others, sentence
-from .row_of_model import Mixed
+from .row_of_model import HOLD, Mixed
 
 DEEP = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
@@ -171,7 +171,7 @@ class PairContact:
                 specification get explicit pairs, which their own parameters and filters do not change any more, and
                 existing pairs get other numbers.
             iterations: whether the options `iterations` and `ls_iterations` are raised to what the contact needs, see
-                `needs`. Models for MJX have few.
+                `needs`. Models for MJX have few. A solver that does not converge is given a smaller impratio.
 
         Raises:
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
@@ -327,6 +327,8 @@ def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec
             each.impratio = max([float(each.impratio), *(contact.impratio for contact in contacts)])
         for name in ("iterations", "ls_iterations") if iterations else ():
             setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
+        if iterations:
+            each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
     changed = [] if others is None else list(others.changed())
     if keep_others:
         changed = [each for each in changed if not _keep(model, each)]
@@ -462,7 +464,11 @@ def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     if option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC:
         yield f"the friction cone is pyramidal, which {_pyramidal(pair, contact)}"
     if option.impratio < contact.impratio * (1 - 1e-5):
-        yield f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force"
+        held = HOLD * float(option.impratio) / contact.impratio
+        yield (
+            f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force, and a "
+            f"load F that friction holds creeps at F / ({held:.2g} 1/s m)"
+        )
 
 
 def _pyramidal(pair: GeomPair, contact: PairContact) -> str:
