@@ -183,7 +183,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
     load = contact.load
-    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow(pair).loaded(load), pair.thickness))
+    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow.of(pair).loaded(load), pair.thickness))
     return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
 
 
