@@ -17,7 +17,7 @@ from ..quantities import Array, named, require_whole, require_within, shown, spe
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, Keyframe, PairMeeting, Pose, meeting, other_keyframes
+from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting, other_keyframes
 from .notes import (
     RESOLVED,
     UNSOUND,
@@ -272,6 +272,7 @@ def _remarks(
         return ()
     xi = c / (2 * math.sqrt(k * met.share))
     found = [*pose.unknown(pair)] if asked.at is None else []
+    found += giving_way(pair, pose, met, k, xi, mu, float(asked.speed or 1.0))
     found += holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import itertools
+import math
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
 from .felt import EffectiveMass, JointSprings, PoseConstraints, felt
 from .geoms import FARTHEST, GeomPair, makes
@@ -482,6 +484,42 @@ def company(pair: GeomPair, pose: Pose) -> Company:
         float(differs[late].max(initial=0.0)),
         tuple(group.pairs[i] for i in near[along & ~level]),
     )
+
+
+def giving_way(
+    pair: GeomPair, pose: Pose, met: PairMeeting, k: float, xi: float, friction: float, speed: float
+) -> Iterator[str]:
+    """A sentence where joints give way within a blow, so that the mass at its end is another.
+
+    Args:
+        pair, pose, met: the geoms, the pose, and how they meet in it.
+        k, xi: stiffness of a contact point [N/m] and damping ratio [-].
+        friction: coefficient of friction [-].
+        speed: speed of the approach [m/s].
+
+    A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
+    """
+    if met.felt.yielding:  # what else moves then is said of them
+        return
+    model, here = pair.model, pose.landing(pair)
+    lasts = math.pi / math.sqrt(k / met.share)
+    moved = np.array(pose.data.qpos)
+    mujoco.mj_integratePos(model, moved, met.felt.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
+    later = Pose(model, qpos=moved)
+    before, after = [], []
+    for body, point in zip(pair.bodies, (here.first.mean(axis=0), here.second.mean(axis=0)), strict=True):
+        turned = later.data.xmat[body].reshape(3, 3) @ pose.data.xmat[body].reshape(3, 3).T
+        before.append(point)
+        after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
+    first, last = (
+        felt(pair, each.held, here.away, (points[0], points[1]), friction=friction, k=k * met.points).mass
+        for each, points in ((pose, before), (later, after))
+    )
+    if max(last / first, first / last) > FOREIGN:
+        yield (
+            f"joints give way within a blow of {lasts:.2g} s at {speed:g} m/s, in which a contact of {first:.3g} kg "
+            f"comes to stop {last:.3g} kg, and the restitution is another; a stiffer contact is over sooner"
+        )
 
 
 def other_keyframes(
