@@ -79,8 +79,9 @@ def iterations(seconds: float) -> list[list[str]]:
         bodies = "".join(BOX.format(z=0.05 + 0.1 * i, i=i) for i in range(count))
         spec = mujoco.MjSpec.from_string(model_text(bodies, 5e-4))
         asked = {"k": k, "xi": 0.5, "friction": 0.6}
-        pairs: dict[tuple[str | int, str | int], dict[str, float]]
-        pairs = {("box*", "floor"): asked} | ({("box*", "box*"): asked} if count > 1 else {})
+        pairs: dict[tuple[str | int, str | int], dict[str, float]] = {("box*", "floor"): asked}
+        if count > 1:
+            pairs["box*", "box*"] = asked
         mr.contacts_for(spec, pairs).apply(spec)
         model, heights, most = spec.compile(), [], 0
         for cap in (300, *CAPS):
