@@ -106,6 +106,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/joint_stiffness.py --out docs/figures
 	$(BIN)/python scripts/studies/two_storeys.py --out docs/figures
 	$(BIN)/python scripts/studies/heap.py --out docs/figures
+	$(BIN)/python scripts/studies/plain_masonry.py --out docs/figures
 	$(BIN)/python scripts/studies/plain_models.py --out docs/figures
 	$(BIN)/python scripts/studies/second_opinion.py --out docs/figures
 	$(BIN)/python scripts/studies/in_the_viewer.py --out docs/figures

@@ -14,6 +14,7 @@ from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.scene import Scene
 from .contacts.faces import edges_of, margins
+from .contacts.touches import FIRST_OPENING
 from .kinds.link import put_on_supports
 from .kinds.lists import no_laws
 from .rows import Rows, joined, kinds, rows
@@ -82,6 +83,16 @@ def add_joints(lines: Rows, scene: Scene) -> Rows:
     sprung = np.isfinite(lines["k_s"])
     lines["c_s"][sprung] = lines["c"][sprung] * lines["k_s"][sprung] / lines["k"][sprung]
     return edges
+
+
+def begin_open(lines: Rows, scene: Scene) -> None:
+    """Let the lines of joints as drawn begin a little open, see `touches.FIRST_OPENING`. Those of bonds that pull begin
+    as drawn: they hold both ways."""
+    sizes = np.array([solid.size for solid in scene.standing.solids])
+    smaller = np.array([min(sizes[joint.below], sizes[joint.above]) for joint in scene.standing.joints])
+    pulls = np.array([bond is not None and bond.tension > 0 for bond in scene.contacts.bonds])
+    opening = (FIRST_OPENING * np.where(pulls, 0.0, smaller))[scene.contacts.joint]
+    lines["between"] += opening[:, None] * lines["normal"]
 
 
 def started(system: System, pose: Array, velocity: Array | None = None) -> System:

@@ -19,7 +19,7 @@ from ..scene.course import Course
 from ..scene.explicit_step import STEP_TAKEN
 from ..scene.masonry import masonry_course, masonry_scene
 from ..scene.scene import Scene
-from .assembly import copied, guide, moved_by, started, system_of, take_grips
+from .assembly import begin_open, copied, guide, moved_by, started, system_of, take_grips
 from .kinds.lists import laws_of, links_of
 from .limit import Impacts, longest_step
 from .memory import Memory, memory_of, recalled
@@ -165,4 +165,6 @@ def standing(scene: Scene) -> tuple[System, ContactSearch]:
         pose, drag = scene.found
         take_grips(system.lines, drag)
         started(system, pose)
+    else:
+        begin_open(system.lines, scene)
     return system, ContactSearch(scene, system)

@@ -29,6 +29,8 @@ BROKEN = "stopped: the model has only the contacts of rest"
 """What is said where blocks have come so far from their joints that MuJoCo cannot follow them."""
 TILTED = math.sqrt(0.5)
 """Cosine of the tilt from which a block has fallen, as in `mjrock.result.joint_motion` [-]."""
+LOOKS = 64
+"""Most samples of an answer that the camera is fitted to."""
 BAD = mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC
 QUATERNION = tuple(f"quaternion {part}{{of}} [-]" for part in "wxyz")
 COORDINATES = {
@@ -111,6 +113,23 @@ class Replay:
         """What is shown, in words."""
         return REPLAYED if self.is_replayed else BROKEN if self.is_broken else SIMULATED
 
+    @property
+    def frame(self) -> tuple[Array, float] | None:
+        """Middle of all that is seen to move in the answer [m], shape (3,), and half of its diagonal [m]; None without
+        one."""
+        model, data = self.model, mujoco.MjData(self.model)
+        seen = (model.body_weldid[model.geom_bodyid] > 0) & (model.geom_group < 3)
+        if self.motion is None or not seen.any():
+            return None
+        places, reach = self.motion[1], model.geom_rbound[seen, None]
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        for sample in np.unique(np.linspace(0, len(places) - 1, LOOKS).astype(int)):
+            data.qpos[:] = places[sample]
+            mujoco.mj_kinematics(model, data)
+            at = data.geom_xpos[seen]
+            low, high = np.minimum(low, (at - reach).min(axis=0)), np.maximum(high, (at + reach).max(axis=0))
+        return 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low))
+
     def restart(self) -> None:
         """Go to the first sample, or to the release."""
         key = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_KEY, KEYFRAME)
@@ -164,6 +183,9 @@ def show(replay: Replay, launch: Callable[..., Any], speed: float) -> None:
     with launch(replay.model, replay.data, key_callback=pressed.append, **panels) as window:
         with window.lock():
             mujoco.mjv_defaultFreeCamera(replay.model, window.cam)
+            if replay.frame is not None:
+                window.cam.lookat[:], half = replay.frame
+                window.cam.distance = half / math.sin(math.radians(0.5 * replay.model.vis.global_.fovy))
         while window.is_running():
             while pressed:
                 key = pressed.pop(0)

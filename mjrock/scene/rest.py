@@ -70,7 +70,7 @@ class Search(NamedTuple):
     resumes: bool = False
 
 
-SEARCHES = (
+SEARCHES_FOR_REST = (
     Search(1e3, 20),
     Search(1e3, 20, limited=False),
     Search(1e3, 80, resumes=True),
@@ -153,7 +153,7 @@ def settled(potential: Potential, contacts: ContactPoints) -> tuple[Array, Array
         UnsettledError: if no such pose is found near the undeformed one, or the bodies fall from it.
     """
     start = None
-    for search in SEARCHES:
+    for search in SEARCHES_FOR_REST:
         if search.resumes and start is None:
             continue
         try:

@@ -101,9 +101,10 @@ def test_what_contacts_lose_at_the_end_of_a_face_has_an_account(in_space, k_s):
 
 @pytest.mark.parametrize("in_space", [False, True])
 def test_a_corner_that_slides_off_leaves_what_its_spring_holds(in_space):
-    """A cube falls on its corner on a smooth table, and fast past its end."""
+    """A cube falls on its corner on a smooth table, and fast past its end. One of its two
+    faces there looks down more than the other."""
     masonry = cube_beside_a_table(in_space, k_n=1e6, friction=0.0, xi=0.0)
-    run = thrown(masonry, in_space, (-5.3, 0.5 + np.sqrt(0.5)), np.pi / 4, (6.0, -2.0), duration=0.3)
+    run = thrown(masonry, in_space, (-5.3, 0.5 + np.sqrt(0.5)), np.pi / 4 + 0.02, (6.0, -2.0), duration=0.3)
     assert run.ledger.ends["encounters"][-1] > 1e-3 * run.ledger.kinetic.max()
     assert run.ledger.ends["joints"][-1] == 0
     assert unaccounted(run) < 1e-3  # its force changes from one pose to the next

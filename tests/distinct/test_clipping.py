@@ -76,6 +76,15 @@ def test_the_face_towards_a_direction_has_the_nearest_normal():
     assert clipping.face_towards(solids, 0, (1.0, 1.0, 0.0)) == min(both)  # of two that are as near the first one
 
 
+@pytest.mark.parametrize(("size", "side"), [((2, 2, 1), 1.0), ((2, 2, 2), -1.0)])
+@pytest.mark.parametrize("off", [-1e-12, 0.0, 1e-12])
+def test_rounding_does_not_decide_between_faces_that_are_as_near(size, side, off):
+    """Of two the larger one is taken, and of two that are as large the one that looks up."""
+    solids = solids_about(turned(size, (0.0, 0.0, 0.0)))
+    face = clipping.face_towards(solids, 0, (np.sqrt(0.5) * side + off, 0.0, np.sqrt(0.5)))
+    np.testing.assert_allclose(clipping.normal_of(solids, face), UP, atol=1e-15)
+
+
 SQUARE = [(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 2.0, 0.0), (0.0, 2.0, 0.0)]
 
 

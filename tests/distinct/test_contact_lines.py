@@ -334,7 +334,7 @@ def test_a_line_that_meets_or_leaves_its_face_is_touched(d, was, push, gap, befo
         time = touches.time_closed(twin.lines[1], meet.gap, rate, H)
         drag = friction.sprung_friction(twin.bodies, twin.lines[1], meet.normal, along, expected, time)
     elif expected < 0 < push:
-        drag = np.full(1 if d == 2 else 3, 2.0 * expected / push)
+        drag = np.array(friction.turned_along(meet.normal, (2.0,) if d == 2 else (2.0,) * 3)) * expected / push
     kept, counts = pressed(whole)
     line = whole.lines[1]
     assert line.due == pytest.approx(twin.lines[1].due, rel=1e-9)

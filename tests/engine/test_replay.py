@@ -152,6 +152,22 @@ def test_keys_stop_it_and_begin_again(column):
     assert seconds[15] < seconds[14]
 
 
+def test_the_camera_fits_the_motion(column):
+    """A column that is carried 30 m away is looked at half way, from far enough that both ends are in the picture."""
+    model = load(column[0])
+    t, places = read_motion(model, column[1])
+    shift = np.zeros(model.nq)
+    shift[[model.jnt_qposadr[i] for i in range(model.njnt) if model.joint(i).name.endswith("_x")]] = 30.0
+    away = places + np.linspace(0, 1, len(t))[:, None] * shift
+    window = Window({}, 1)
+    show(Replay(model, (t, away)), window.launch, 1.0)
+    np.testing.assert_allclose(window.cam.lookat, [15, 0, 1], atol=0.2)
+    assert 30 < window.cam.distance * np.tan(np.radians(0.5 * model.vis.global_.fovy)) * 2 < 50
+    still = Window({}, 1)
+    show(Replay(model), still.launch, 1.0)
+    assert still.cam.distance == pytest.approx(1.5 * model.stat.extent)
+
+
 def test_without_a_display_it_says_what_it_needs(column, monkeypatch, capsys):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)

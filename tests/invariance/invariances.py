@@ -31,6 +31,8 @@ SWELLS = 1e-12
 """Relative change of the sizes of blocks, likewise: a hundred times what coordinates of the scene are rounded by."""
 WILD = 1e-5
 """Distance that a nudge brings, over the size of the scene, from which a motion is chaotic [-]."""
+GROWN = 1e-9
+"""Distance from the plane, over the size of the scene, which prisms that leave it by rounding have in a sample [-]."""
 EXACTER = 1e-4
 """What the solver of MuJoCo leaves of a force, over what sweeps of explicit steps do [-]."""
 DEEP = 0.1
@@ -251,7 +253,9 @@ def in_space(trial: Trial) -> float | None:
     """A scene of the plane with its blocks as prisms in space.
 
     Both have the shorter one of their steps, or an eighth of it where such a step puts energy in, and are searched at
-    the same moments. In the plane a thrust acts at its height beside an L too, in space on its block."""
+    the same moments. In the plane a thrust acts at its height beside an L too, in space on its block. Both are compared
+    as long as rounding has not grown out of the plane, and where they start at rest alike: with rigid friction that is
+    at its limit many poses are at rest, and the search for one goes another way in space."""
     scene = trial.scene
     if scene["place"] != "plane" or scene["solver"] != "explicit" or scene["bond"] or pushed_beside(scene):
         return None
@@ -259,18 +263,35 @@ def in_space(trial: Trial) -> float | None:
     with measured_in_the_plane(scene):
         step = min(trial.step, default_step(twin))
 
-    def both(step: float) -> float:
+    def both(step: float) -> float | None:
         with measured_in_the_plane(scene):
-            solid = motion_of(solve(twin | {"timestep": step}, output_step=trial.spacing)).in_the_plane()
+            solid = motion_of(solve(twin | {"timestep": step}, output_step=trial.spacing))
         flat = trial.motion
         if step < trial.step:
             flat = motion_of(solve(scene | {"timestep": step}, output_step=trial.spacing))
-        return apart(flat, solid) / scene["size"]
+        begun = apart(flat.until(1), solid.until(1).in_the_plane()) / scene["size"]
+        if scene["settled"] and trial.answer.stats["friction"] == "rigid" and begun > INVARIANCES["in_space"].floor:
+            return None
+        kept = while_flat(solid.out_of_the_plane() / scene["size"])
+        return apart(flat, solid.until(kept).in_the_plane()) / scene["size"]
 
     try:
         return both(step)
     except RuntimeError:
         return both(0.125 * step)
+
+
+def while_flat(out: np.ndarray) -> int:
+    """Samples of a motion of prisms before it is `WILD` out of the plane, where it grows to that from rounding.
+
+    What leaves the plane from one sample to the next by more than that is compared whole: nothing in a scene of the
+    plane asks for it.
+
+    Args:
+        out: how far it is out of the plane at each sample, over the size of the scene [-], shape (n,).
+    """
+    first = int(np.argmax(out > WILD)) if (out > WILD).any() else len(out)
+    return first if first == len(out) or out[first - 1] > GROWN else len(out)
 
 
 # the same scene in other units of length, time and mass

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
 
 import mjrock as mr
+from mjrock.distinct.search.solids import Solids
 from mjrock.distinct.setup import setup_of_masonry
 from mjrock.geometry.poses import rotations
 from mjrock.problem.masonry.blocks.joints_in_space import SpaceJoint
@@ -153,15 +155,16 @@ def solve(scene: Scene, **options: Any) -> mr.Response:
     contacts = contacts_of(scene, case) if isinstance(case, mr.Case) else None
     if scene["solver"] == "theory":
         return mr.solve_analytical(case, mr.Restitution.from_geometry(case.wall, case.stop_top), **options)
-    call = mr.simulate if scene["solver"] == "MuJoCo" else mr.solve_explicit
+    calls = {"MuJoCo": mr.simulate, "plain": partial(mr.simulate, collisions=True), "explicit": mr.solve_explicit}
+    call = calls[scene["solver"]]
     return call(case, contacts, scene["timestep"], **options)
 
 
 @contextmanager
 def measured_in_the_plane(scene: Scene) -> Iterator[None]:
-    """Prisms of a scene of the plane have the sizes of its blocks and the widths of its joints. The search goes by
-    these when it looks for contacts and hands joints over."""
-    flat, solids = masonry_of(scene), vars(MasonryStanding)["solids"].func
+    """Prisms of a scene of the plane have the sizes of its blocks, the outlines of their faces and the widths of its
+    joints. The search goes by these when it looks for contacts, takes the faces that meet and hands joints over."""
+    flat, solids, about = masonry_of(scene), vars(MasonryStanding)["solids"].func, Solids.about
     sizes = {name: block.size for name, block in zip(flat.names, flat.blocks, strict=True)}
     widths = {(joint.below, joint.above, *np.round(joint.middle, 9)): joint.width for joint in flat.joints}
 
@@ -171,7 +174,11 @@ def measured_in_the_plane(scene: Scene) -> Iterator[None]:
     def width(joint: SpaceJoint) -> float:
         return widths[joint.below, joint.above, *np.round(joint.middle[::2], 9)]
 
+    def outlined(*args: Any, flat: bool) -> Solids:
+        return about(*args, flat=True)
+
     with (
+        patch.object(Solids, "about", outlined),
         patch.object(MasonryStanding, "solids", property(measured)),
         patch.object(SpaceJoint, "width", property(width)),
     ):
@@ -219,6 +226,16 @@ class Motion(NamedTuple):
     def in_the_plane(self) -> Motion:
         """What of a motion in space lies in the plane x, z."""
         return Motion(self.names, self.sizes, self.place[..., ::2], self.turn[..., ::2, ::2])
+
+    def out_of_the_plane(self) -> np.ndarray:
+        """How far a motion in space is out of the plane x, z at each sample [m], shape (n,): the largest displacement
+        across it, and turn out of it times the size of the body."""
+        turn = np.abs(self.turn[..., [0, 2], 1]).max(axis=2) * self.sizes
+        return np.maximum(np.abs(self.place[..., 1]), turn).max(axis=1)
+
+    def until(self, n: int) -> Motion:
+        """The motion to a sample, without it."""
+        return self._replace(place=self.place[:n], turn=self.turn[:n])
 
     def extent(self) -> float:
         """Largest distance of a body from its start [m]."""

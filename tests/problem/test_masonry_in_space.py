@@ -105,6 +105,23 @@ def test_an_overlap_is_refused_by_name_also_across_edges(apart):
             mr.Masonry([*rest, bar, cross])
 
 
+def test_points_of_prisms_beside_each_other_are_on_the_blocks_that_carry_the_lines_of_the_plane():
+    """Two prisms of one distance from the middle, of which one is higher: across them their points make its lines."""
+    middles = {"low": (-0.5, 0.5), "high": (0.5, 0.7)}
+    flat = [mr.Polygon([(-4, -1), (4, -1), (4, 0), (-4, 0)], fixed=True, length=2.0)]
+    solid = [box((8, 2, 1), (0, 0, -0.5), fixed=True)]
+    for name, (x, z) in middles.items():
+        flat.append(mr.Polygon([(x - 0.5, 0), (x + 0.5, 0), (x + 0.5, 2 * z), (x - 0.5, 2 * z)], name=name, length=2.0))
+        solid.append(box((1, 2, 2 * z), (x, 0, z), name=name))
+    found = []
+    for blocks, place in ((flat, slice(0, 2)), (solid, slice(0, 3, 2))):
+        lines, stiffness = mr.Masonry(blocks, k_n=1e9, points=4).lines, {}
+        for body, at, k in zip(lines.body, np.round(lines.at[:, place], 6) + 0.0, lines.k, strict=True):
+            stiffness[int(body), *at.tolist()] = stiffness.get((int(body), *at.tolist()), 0.0) + k
+        found.append(stiffness)
+    assert found[0] == pytest.approx(found[1])
+
+
 def test_contact_points_carry_the_area_of_their_joint():
     for points, count in ((2, 4), (3, 9)):
         masonry = mr.Masonry([GROUND, box((0.6, 0.4, 2.0), (0, 0, 1.0))], k_n=1e8, points=points)

@@ -21,7 +21,7 @@ from ..supports import Supports
 from ..system import Books, System
 from ..turning import in_body, in_world, may_face_away, rotation_change, strike_body
 from .faces import is_beside, pulled_inside
-from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction
+from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction, turned_along
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
 
 GAP_OF_OPEN = 1.0
@@ -195,7 +195,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
         last, drag = read(line.dragged), no_spin(meet.normal)
         if push <= 0:
             if push < 0 and line.push > 0:
-                drag = scaled(push / line.push, last_friction(bodies, line, last))
+                drag = scaled(push / line.push, turned_along(meet.normal, last_friction(bodies, line, last)))
             put(line.grip, no_spin(meet.normal))
         elif line.k_s < math.inf:
             drag = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))

@@ -47,6 +47,8 @@ SETTLED = 1e-3
 [-]."""
 STRIDE = 3
 """Lines from one that a sweep takes to the next."""
+ROUNDED_ALONG = 1e-16
+"""Square of the part of a vector along a normal, over that of the vector, below which it is rounding [-]."""
 COMPLIANCE_OF_GUIDED = 1e-9
 """Least compliance of a body that a guide holds, over that of its mass [-]."""
 
@@ -67,6 +69,19 @@ def as_vector(normal: Vector, a: Vector) -> Vector:
     if len(a) == 1:
         return scaled(a[0], tangent(normal))
     return a
+
+
+@inlined
+def turned_along(normal: Vector, a: Vector) -> Vector:
+    """A vector that lay along a face, along it again after the normal has turned a little: in the plane a number, which
+    stays, in space its part along the face, as long as it was."""
+    if len(a) == 1:
+        return a
+    off = dot(normal, a)
+    along, whole = minus(a, scaled(off, normal)), dot(a, a)
+    if off * off <= ROUNDED_ALONG * whole or off * off >= whole:
+        return along
+    return scaled(math.sqrt(whole / (whole - off * off)), along)
 
 
 @inlined
@@ -92,7 +107,7 @@ def stretched(bodies: Rows, face: int, grip: Array, normal: Vector, way: Vector)
     kept = spin_components(grip, normal)
     if face >= 0:
         kept = in_world(bodies[face], kept)
-    return along_face(normal, plus(kept, way))
+    return plus(turned_along(normal, kept), way)
 
 
 @inlined

@@ -16,7 +16,7 @@ from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
 from ...quantities import Array
 from ..rows import Row, Rows, integers, numbers, vectors
-from .constants import EDGES_ALONG_FACE, ON_EDGE, ONE_PLACE, PARALLEL_EDGES
+from .constants import AS_LARGE, AS_TOWARDS, EDGES_ALONG_FACE, ON_EDGE, ONE_PLACE, PARALLEL_EDGES
 from .solids import Solids, triple
 
 PLACE = np.dtype(
@@ -52,13 +52,24 @@ def length_of(a: Vector) -> float:
 
 @inlined
 def face_towards(solids: Solids, block: int, way: Vector) -> int:
-    """The face of a block whose normal is nearest to a direction."""
+    """The face of a block whose normal is nearest to a direction, of two that are as near the one that `is_before`."""
     best, largest = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
         cosine = dot(normal_of(solids, face), way)
-        if cosine > largest:
+        ahead = cosine - largest
+        if ahead > AS_TOWARDS or (ahead >= -AS_TOWARDS and is_before(solids, face, best)):
             best, largest = face, cosine
     return best
+
+
+@inlined
+def is_before(solids: Solids, face: int, other: int) -> bool:
+    """Whether a face of a block is taken and not another one of it that would do as well: it is larger, or as large and
+    looks further up. So neither the numbers of faces nor the axes decide, where faces differ in this."""
+    longer = solids.extent[face] - solids.extent[other]
+    if abs(longer) > AS_LARGE * solids.extent[other]:
+        return bool(longer > 0)
+    return bool(solids.normals[face, 2] > solids.normals[other, 2] + AS_LARGE)
 
 
 @inlined

@@ -103,9 +103,9 @@ SAME_NORMAL = 0.7
 """Cosine of the angle between the normals of two places that are the same."""
 REGAINED = 1.25
 """Largest factor by which a search raises the force of a place."""
-FIRST_OPENING = 1e-9
-"""Opening at which a place begins that nothing presses at, over its overlap. So it is not rounding that decides whether
-it has touched."""
+AS_TOWARDS = 1e-9
+"""Difference of the cosines of the normals of two faces with a direction up to which they look there alike. So rounding
+does not decide between two faces beside a corner."""
 AS_NEAR = 1 + 1e-6
 """Square of the distance of a place over that of the nearest one up to which it is as near."""
 

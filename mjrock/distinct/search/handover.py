@@ -26,9 +26,10 @@ from ...geometry.vectors import (
 )
 from ...problem.masonry.laws.joint_law import depth_of_energy, depth_of_force, normal_force, shear_limit, stored
 from ...quantities import Array, Integers
-from ..contacts.friction import shortened
+from ..contacts.friction import along_face, shortened, turned_along
+from ..contacts.touches import FIRST_OPENING
 from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
-from .constants import AS_NEAR, FIRST_OPENING, REGAINED, SAME_NORMAL, SAME_PLACE
+from .constants import AS_NEAR, REGAINED, SAME_NORMAL, SAME_PLACE
 from .finder import Found
 from .solids import Poses, changed
 
@@ -241,12 +242,12 @@ def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks) ->
 @inlined
 def along_new(along: Vector, old: Place, new: Place) -> Vector:
     """The force or elongation that a line keeps along its face, in the axes of another face. In the plane it is a
-    number along the tangent.
+    number along the tangent. Past an end of its face it is turned back along this first.
     """
     sense = old.sense * new.sense
     if len(along) == 1:
         return (sense * along[0] * dot(tangent(old.normal), tangent(new.normal)),)
-    return scaled(sense, along)
+    return along_face(new.normal, turned_along(old.normal, scaled(sense, along)))
 
 
 @inlined
@@ -311,8 +312,9 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
             new.depth[i] = pressed_at(new.rows[i], i, found, gone, ends, blocks)
         press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
-            overlap = max(-found.gap[i], 0.0)
-            new.slack[i] = overlap - new.depth[i] if new.depth[i] > 0 else (1 + FIRST_OPENING) * overlap
+            unpressed = FIRST_OPENING * min(blocks.sizes[found.face[i]], blocks.sizes[found.other[i]])
+            pressed = new.depth[i] if new.depth[i] > 0 else -unpressed
+            new.slack[i] = max(-found.gap[i] - pressed, 0.0)
             write_line(new.rows[i], i, new.slack[i], found, blocks)
             put(new.at[i], place_of(new.rows[i], both, blocks).at)
         for j in range(ends[0], ends[1]):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,14 @@ from ...geometry.hull import Convex, hull_of
 from ...problem.wall.standing import Solid
 from ...quantities import Array
 from ...scene.scene import Scene
+
+
+class Cuboid(NamedTuple):
+    """A box: its middle and its half sizes [m], shape (3,) each, and its axes, shape (3, 3)."""
+
+    middle: Array
+    half: Array
+    axes: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +55,26 @@ class Piece:
         """Its smallest extent along the axes, that of the ground without end [m]."""
         return np.inf if self.is_ground else float(np.ptp(self.shape.corners, axis=0).min())
 
+    @cached_property
+    def box(self) -> Cuboid | None:
+        """It as a box, however it is turned; None of any other body."""
+        if self.shape.box is not None:
+            return Cuboid(*self.shape.box, np.eye(3))
+        corners, normals = self.shape.corners, self.shape.normals
+        if len(corners) != 8 or len(normals) != 6:
+            return None
+        first = normals[0]
+        across = normals[np.abs(normals @ first).argmin()]
+        axes = np.stack([first, across, np.cross(first, across)])
+        along = (corners - self.middle) @ axes.T
+        half = np.abs(along).max(axis=0)
+        is_box = np.abs(np.abs(along) - half).max() <= 1e-9 * half.max()
+        return Cuboid(self.middle, half, axes) if is_box else None
+
     @property
     def has_mesh(self) -> bool:
         """Whether it is neither a box nor a plane, which MuJoCo has as shapes of their own."""
-        return not (self.is_ground or self.shape.box)
+        return not (self.is_ground or self.box)
 
     def beside(self, points: Array, normals: Array) -> Array:
         """How far points with normals are from being on its surface, with the normals out of it [m], shape (n,)."""

@@ -88,6 +88,7 @@ class PlainModel:
     def engine(self, timestep: float) -> PlainEngine:
         """The compiled model at its release."""
         model = mujoco.MjModel.from_xml_string(self.text(timestep))
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # what breaks down ends the run
         data = mujoco.MjData(model)
         released(model, data, *self.start)
         return PlainEngine(model, data, self.scene, self.pieces, self.pairs, self.problem.case.supports)

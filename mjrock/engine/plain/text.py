@@ -32,7 +32,7 @@ HEAD = """\
        (d, d).{others} Reset to the keyframe `release` and step. -->
   <compiler angle="radian"/>
   <option timestep="{h}" gravity="0 0 {gravity}" integrator="Euler" cone="elliptic" impratio="{impratio}"
-          solver="Newton" iterations="100" tolerance="1e-10"{rows}><flag island="disable" autoreset="disable"/></option>
+          solver="Newton" iterations="100" tolerance="1e-16"{rows}><flag island="disable"/></option>
 """
 OTHERS = " Any two solids without a joint have the W k and W c of the median joint."
 LOOKS = (
@@ -222,8 +222,10 @@ def _geom(piece: Piece, **attributes: object) -> str:
         attributes |= {"group": "3"}
     if piece.is_ground:
         return element("geom", type="plane", size=(0, 0, 1), pos=(0, 0, piece.shape.corners[:, 2].max()), **attributes)
-    if piece.shape.box is not None:
-        return element("geom", type="box", size=piece.shape.box[1], pos=piece.middle, **attributes)
+    if piece.box is not None:
+        if piece.shape.box is None:
+            attributes |= {"xyaxes": piece.box.axes[:2].ravel()}
+        return element("geom", type="box", size=piece.box.half, pos=piece.box.middle, **attributes)
     return element("geom", type="mesh", mesh=piece.name, **attributes)
 
 

@@ -62,6 +62,22 @@ class Lines(NamedTuple):
         return pairs[:, 0], pairs[:, 1]
 
 
+class Spot(NamedTuple):
+    """A place of a joint.
+
+    Args:
+        at: where [m].
+        stiffness: of its line [N/m].
+        overhangs: whether its corner or edge is that of the block below.
+        on_one: whether it lies on an edge of one face alone. No place of the plane does.
+    """
+
+    at: Array
+    stiffness: float
+    overhangs: bool
+    on_one: bool = False
+
+
 def lines_of(
     blocks: Sequence[AnyBlock],
     joints: Sequence[Joint | SpaceJoint],
@@ -76,9 +92,9 @@ def lines_of(
     The point is on the block above. Where that one overhangs, the corner or edge is that of the block below, and the
     point is on the block below, unless that one is fixed. Lines are `mirrored` where the masonry is: of two blocks
     beside each other the point is on the one that is farther from the middle of the masonry, where both or neither
-    have a corner there. If they are as far, it is on either, with half the stiffness. The stiffness of each joint is
-    k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, of each of them or of all, in space see
-    `geometry.convex.spread`.
+    have a corner or an edge there. If they are as far, it is on either, with half the stiffness. The stiffness of each
+    joint is k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, of each of them or of all, in
+    space see `geometry.convex.spread`.
     Those that are `bonded` have the stiffness k_n I in bending, see `geometry.convex.sectioned`.
     """
     rows, at, normal, k = [], [], [], []
@@ -94,15 +110,15 @@ def lines_of(
             own = _on_face(joint, faces, flat, k_joint * areas)
         below, above = blocks[joint.below], blocks[joint.above]
         beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) < LEVEL and not below.fixed else ()
-        for place, stiffness, overhangs in own:
-            turns: tuple[bool, ...] = (overhangs and not below.fixed,)
-            if beside and _has_corner(below, place) == _has_corner(above, place):
+        for spot in own:
+            turns: tuple[bool, ...] = (spot.overhangs and not below.fixed,)
+            if beside and not spot.on_one and _has_corner(below, spot.at) == _has_corner(above, spot.at):
                 turns = beside
             for turned in turns:
                 rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
-                at.append(place)
+                at.append(spot.at)
                 normal.append(-joint.normal if turned else joint.normal)
-                k.append(stiffness / len(turns))
+                k.append(spot.stiffness / len(turns))
     joint_of, body, face = np.array(rows, dtype=np.int64).T
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
 
@@ -119,8 +135,8 @@ def _has_corner(block: AnyBlock, place: Array) -> bool:
     return bool(np.abs(block.corners - place).max(axis=1).min() < EDGE)
 
 
-def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[tuple[Array, float, bool]]:
-    """Places of the lines of a joint, evenly from end to end, their stiffness, and whether the block above overhangs.
+def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spot]:
+    """Places of the lines of a joint, evenly from end to end.
 
     The outer two have half the tributary width, or in a joint that is `exact` less, see `exact_shares`.
     """
@@ -128,18 +144,21 @@ def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[tup
     widths = joint.width * exact_shares(points) if exact else widths
     for i, (place, width) in enumerate(zip(places, widths.tolist(), strict=True)):
         overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
-        yield joint.middle + place * joint.along, k_n * joint.length * width, overhangs
+        yield Spot(joint.middle + place * joint.along, k_n * joint.length * width, overhangs)
 
 
-def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> Iterator[tuple[Array, float, bool]]:
+def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> Iterator[Spot]:
     """The same of the points of a joint in space, which lie `flat` in its plane, and have the stiffness k [N/m]. Those
     at its corners may be of the block below alone, and those on an edge of the face below that lies within the face
     above are."""
     below, above = ((face - joint.outline[0]) @ joint.axes.T for face in faces)
-    edges = (within(below, flat) < EDGE) & (within(above[::-1], flat) > EDGE)
-    for place, stiffness, on_edge in zip(joint.outline[0] + flat @ joint.axes, k, edges.tolist(), strict=True):
+    of_below, of_above = (within(below, flat) < EDGE).tolist(), (within(above[::-1], flat) < EDGE).tolist()
+    places = joint.outline[0] + flat @ joint.axes
+    for place, stiffness, on_below, on_above in zip(places, k, of_below, of_above, strict=True):
         apart = np.abs(joint.outline - place).max(axis=1)
-        yield place, stiffness, on_edge or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
+        overhangs = on_below and not on_above
+        overhangs = overhangs or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
+        yield Spot(place, stiffness, overhangs, on_below != on_above)
 
 
 def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_array:

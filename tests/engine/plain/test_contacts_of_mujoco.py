@@ -13,8 +13,8 @@ HALF = np.array([0.1, 0.05, 0.05])
 AXES = {"yaw": (0.0, 0.0, 1.0), "tilt": (0.0, 1.0, 0.0)}
 
 
-def found(shape, *, along=0.0, turned="yaw", angle=0.0):
-    """Gaps of the contacts between two blocks [m]."""
+def contacts(shape, *, along=0.0, turned="yaw", angle=0.0):
+    """The contacts between two blocks as MuJoCo lists them."""
     spec = mujoco.MjSpec()
     spec.option.ccd_tolerance = 1e-9
     corners = HALF * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -32,7 +32,12 @@ def found(shape, *, along=0.0, turned="yaw", angle=0.0):
     data.qpos[7] += along
     mujoco.mju_axisAngle2Quat(data.qpos[10:14], np.array(AXES[turned]), angle)
     mujoco.mj_forward(model, data)
-    return data.contact.dist.copy()
+    return data.contact
+
+
+def found(shape, **placed):
+    """Gaps of the contacts between two blocks [m]."""
+    return contacts(shape, **placed).dist.copy()
 
 
 @pytest.mark.parametrize("shape", ["box", "hull"])
@@ -51,6 +56,16 @@ def test_a_box_that_is_turned_in_its_face_has_twice_as_many_points_and_a_hull_ha
 @pytest.mark.parametrize("shape", ["box", "hull"])
 def test_a_block_on_its_edge_meets_at_two_points(shape):
     assert len(found(shape, turned="tilt", angle=1e-3)) == 2
+
+
+@pytest.mark.parametrize(
+    ("shape", "angle", "leans"), [("box", 0.05, 0), ("hull", 0.05, 0.05), ("hull", 0.08, 0.08), ("hull", 0.1, 0)]
+)
+def test_normals_of_hulls_that_nearly_lie_flat_are_those_of_the_second_one(shape, angle, leans):
+    """The upper block, the second one, stands on its edge: the face of the lower one bears, and its normal is right.
+    MuJoCo takes the face of the second hull up to 5.2 degrees."""
+    normal = contacts(shape, turned="tilt", angle=angle).frame[0, :3]
+    assert np.arctan2(abs(normal[0]), abs(normal[2])) == pytest.approx(leans, abs=1e-6)
 
 
 @pytest.mark.parametrize("lever", [0.0, 0.3, 2.0])
