@@ -11,11 +11,11 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import mujoco
-import numpy as np
 
 from ..engine.replay import load
 from ..files import aligned, csv_text, write_text
 from ..quantities import named, require_within
+from .flexes import flex_report
 from .geoms import BODY, GeomPair, label_of, names_of
 from .inspect import InspectedContact, inspect_contacts
 from .notes import VARIES
@@ -168,20 +168,7 @@ def answer(argv: Sequence[str]) -> str:
         header = ["geom1", "geom2", *HEADER[2:]]
         rows = [[*values(contact, args.speed), "; ".join(contact.notes)] for contact in chosen]
         write_text(args.csv, csv_text(header, rows))
-    flexes = flexes_of(model)
+    flexes = flex_report(model)
     if not chosen and (args.geom or args.body or args.pair):
         return "No contact of this model is of these geoms, bodies or pairs." + flexes
     return report(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes
-
-
-def flexes_of(model: mujoco.MjModel) -> str:
-    """A line on the flexes that can meet something; empty without any. Their contacts are not among those of geoms."""
-    meet = np.flatnonzero((model.flex_contype != 0) | (model.flex_conaffinity != 0))
-    if not len(meet):
-        return ""
-    told = named([mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, i) or f"[{i}]" for i in meet.tolist()])
-    points = int(model.flex_vertnum[meet].sum())
-    return (
-        f"\nLeft out: the contacts of {len(meet)} flexes with {points} points ({told}). They mix solref and solimp of "
-        "the flex and the geom, and the stiffness of each grows with the mass of its point."
-    )

@@ -16,7 +16,7 @@ from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text
-from .geoms import GeomPair, compiled_model, kept_apart
+from .geoms import GeomPair, compiled_model, kept_apart, label_of
 from .notes import (
     ENOUGH,
     SCATTER,
@@ -32,7 +32,7 @@ from .notes import (
     uneven,
 )
 from .others import Changed, Others, sentence
-from .row_of_model import Mixed
+from .row_of_model import HOLD, Mixed
 
 DEEP = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
@@ -154,6 +154,7 @@ class PairContact:
         on_geoms: bool = False,
         keep_others: bool = False,
         iterations: bool = False,
+        name_geoms: bool = False,
     ) -> None:
         """Write the contact into a model, with the options that it needs.
 
@@ -171,7 +172,8 @@ class PairContact:
                 specification get explicit pairs, which their own parameters and filters do not change any more, and
                 existing pairs get other numbers.
             iterations: whether the options `iterations` and `ls_iterations` are raised to what the contact needs, see
-                `needs`. Models for MJX have few.
+                `needs`. Models for MJX have few. A solver that does not converge is given a smaller impratio.
+            name_geoms: whether geoms of a specification without a name get one, that of their body with their number.
 
         Raises:
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
@@ -181,7 +183,7 @@ class PairContact:
             ContactWarning: of other contacts that are stiffer or softer now, with k before and after. The elliptic cone
                 makes contacts with friction mu softer by 2 impratio / (mu^2 (1 + mu^2)), or stiffer for mu above 1.
         """
-        write([self], model, Writing(on_geoms, keep_others, iterations))
+        write([self], model, Writing(on_geoms, keep_others, iterations, name_geoms))
 
     def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
@@ -197,6 +199,16 @@ class PairContact:
                 "apply the contact to its MjSpec before compiling, put the text of .xml into the MJCF, or let both "
                 "geoms take it with on_geoms=True"
             )
+
+    def with_names(self, spec: mujoco.MjSpec, whole: mujoco.MjModel) -> PairContact:
+        """The contact with the names of its geoms, which are given to those of a specification that have none."""
+        names = []
+        for name, number in zip((self.geom1, self.geom2), self.ids, strict=True):
+            if not name:
+                geom = next(each for each in spec.geoms if each.id == number)
+                geom.name = geom.name or label_of(whole, number)
+            names.append(name or geom.name)
+        return replace(self, geom1=names[0], geom2=names[1])
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -278,7 +290,8 @@ class PairContact:
         if not (self.geom1 and self.geom2):
             raise ValueError(
                 f"geom1 or geom2 (numbers {self.ids}) has no name, which an explicit <pair> needs; "
-                "name it, or let both geoms of a compiled model take the contact with apply(model, on_geoms=True)"
+                "let apply(spec, name_geoms=True) name it, or both geoms of a compiled model take the contact with "
+                "apply(model, on_geoms=True)"
             )
 
 
@@ -306,12 +319,16 @@ class Writing(NamedTuple):
     on_geoms: bool
     keep_others: bool
     iterations: bool
+    name_geoms: bool
 
 
 def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, how: Writing) -> None:
     """Write contacts of one time step into a model or a specification, and warn of others that this changes."""
     whole = compiled_model(model)
-    on_geoms, keep_others, iterations = (require_flag(name, value) for name, value in how._asdict().items())
+    on_geoms, keep_others, iterations, named = (require_flag(name, value) for name, value in how._asdict().items())
+    if named and isinstance(model, mujoco.MjSpec):
+        contacts = [contact.with_names(model, whole) for contact in contacts]
+        whole = compiled_model(model)
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
     rubs = any(contact.condim > 1 for contact in contacts)
     switches = rubs and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
@@ -327,6 +344,8 @@ def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec
             each.impratio = max([float(each.impratio), *(contact.impratio for contact in contacts)])
         for name in ("iterations", "ls_iterations") if iterations else ():
             setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
+        if iterations:
+            each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
     changed = [] if others is None else list(others.changed())
     if keep_others:
         changed = [each for each in changed if not _keep(model, each)]
@@ -462,7 +481,11 @@ def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     if option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC:
         yield f"the friction cone is pyramidal, which {_pyramidal(pair, contact)}"
     if option.impratio < contact.impratio * (1 - 1e-5):
-        yield f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force"
+        held = HOLD * float(option.impratio) / contact.impratio
+        yield (
+            f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force, and a "
+            f"load F that friction holds creeps at F / ({held:.2g} 1/s m)"
+        )
 
 
 def _pyramidal(pair: GeomPair, contact: PairContact) -> str:

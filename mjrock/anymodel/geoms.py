@@ -25,6 +25,8 @@ FACING = 0.999
 """Cosine from which a direction is the normal of a face [-]; 2.6 degrees."""
 ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 """Geoms that meet any other convex geom in a single point."""
+FACED = (int(mujoco.mjtGeom.mjGEOM_BOX), int(mujoco.mjtGeom.mjGEOM_MESH))
+"""Geoms with faces and corners."""
 UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 """Geoms that are not convex."""
 
@@ -191,9 +193,21 @@ class GeomPair:
         return self.is_uneven or not any(self.model.geom_type[geom] in ONE_POINT for geom in self.geoms)
 
     @property
+    def has_two_faces(self) -> bool:
+        """Whether both geoms have faces and corners, so that MuJoCo clips one face with the other."""
+        return all(self.model.geom_type[geom] in FACED for geom in self.geoms)
+
+    @property
     def is_uneven(self) -> bool:
         """Whether one of the geoms is not convex, so that the number of points changes from place to place."""
         return any(self.model.geom_type[geom] in UNEVEN for geom in self.geoms)
+
+    def can_turn(self, data: mujoco.MjData, axis: Array) -> bool:
+        """Whether the joints let one of the bodies turn against the other about an axis, shape (3,)."""
+        turns = np.zeros((2, 3, self.model.nv))
+        for jacobian, body in zip(turns, self.bodies, strict=True):
+            mujoco.mj_jacBody(self.model, data, None, jacobian, body)
+        return bool(np.abs(axis @ (turns[0] - turns[1])).max(initial=0) > 1e-9)
 
     def centre(self, data: mujoco.MjData, body: int) -> Array:
         """Centre of mass of all bodies that are welded together with this one [m]."""

@@ -133,7 +133,7 @@ def inspect_contacts(
 
 
 def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
-    row = ModelRow(pair)
+    row = ModelRow.of(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
     force = load if load is not None else pose.load(pair, met.points, points)
@@ -160,6 +160,7 @@ def _notes(
 ) -> Iterator[str]:
     yield from duplicates(pair)
     yield from row.notes()
+    yield from pose.turned(pair, found.k)
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)
     if met.company.level:

@@ -17,7 +17,7 @@ from ..quantities import Array, named, require_whole, require_within, shown, spe
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, Keyframe, PairMeeting, Pose, meeting, other_keyframes
+from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting, other_keyframes
 from .notes import (
     RESOLVED,
     UNSOUND,
@@ -101,7 +101,8 @@ def contact_for(
     Warns:
         ContactWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what
             else holds the bodies, of geoms that MuJoCo keeps apart, of geoms that share the mass, of a keyframe in
-            which the contact stops another mass, and without k of a contact that is soft.
+            which the contact stops another mass, of faces to which a small turn gives more points, and without k of a
+            contact that is soft.
     """
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
@@ -174,11 +175,15 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
         load=pose.load(pair, met.points, points),
-        remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
+        remarks=(
+            *unused(asked.friction, grip),
+            *pose.turned(pair, k),
+            *_remarks(pair, pose, asked, met, k, c, grip.sliding),
+        ),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
     load = contact.load
-    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow(pair).loaded(load), pair.thickness))
+    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow.of(pair).loaded(load), pair.thickness))
     return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
 
 
@@ -267,6 +272,7 @@ def _remarks(
         return ()
     xi = c / (2 * math.sqrt(k * met.share))
     found = [*pose.unknown(pair)] if asked.at is None else []
+    found += giving_way(pair, pose, met, k, xi, mu, float(asked.speed or 1.0))
     found += holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points

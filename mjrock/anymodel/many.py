@@ -66,9 +66,10 @@ class PairContacts:
         on_geoms: bool = False,
         keep_others: bool = False,
         iterations: bool = False,
+        name_geoms: bool = False,
     ) -> None:
         """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
-        write(self.contacts, model, Writing(on_geoms, keep_others, iterations))
+        write(self.contacts, model, Writing(on_geoms, keep_others, iterations, name_geoms))
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
         """What in a model keeps the contacts from being what they say, alike sentences once with the geoms that they

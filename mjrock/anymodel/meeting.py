@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import itertools
+import math
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
 from .felt import EffectiveMass, JointSprings, PoseConstraints, felt
 from .geoms import FARTHEST, GeomPair, makes
@@ -35,6 +37,8 @@ SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
 IMMOVABLE = 10.0
 """Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
+TURN = 0.01
+"""Turn about the normal with which the points of two faces are counted again [degrees]."""
 REST = 1e-4
 """Distance within which geoms of a pose at rest touch [m]."""
 MOST_KEYFRAMES = 20
@@ -58,20 +62,26 @@ class Trial:
         for name in ("geom_contype", "geom_conaffinity", "body_contype", "body_conaffinity"):
             getattr(self.model, name)[:] = 0
 
-    def points(self, pair: GeomPair, away: Array, distance: float) -> Array:
-        """The points in which the geoms meet, with the first moved by `distance` against `away`, shape (n, 3)."""
+    def points(self, pair: GeomPair, away: Array, distance: float, turn: float = 0.0) -> Array:
+        """The points in which the geoms meet, with the first moved by `distance` against `away`, and one of them turned
+        about `away` [degrees]; shape (n, 3)."""
         bodies, geoms = list(pair.bodies), list(pair.geoms)
         self._let_meet(geoms, bodies, 1)
         moves = 1 if self.model.geom_type[geoms[0]] in DIRECTIONLESS else 0
-        place = np.array(self.data.geom_xpos[geoms[moves]])
+        place, frame = (np.array(values[geoms[moves]]) for values in (self.data.geom_xpos, self.data.geom_xmat))
         shift = (distance + self.pressed(pair)) * away
+        if turn:
+            turned, matrix = np.zeros(4), np.zeros(9)
+            mujoco.mju_axisAngle2Quat(turned, away, np.radians(turn))
+            mujoco.mju_quat2Mat(matrix, turned)
+            self.data.geom_xmat[geoms[moves]] = (matrix.reshape(3, 3) @ frame.reshape(3, 3)).ravel()
         self.data.geom_xpos[geoms[moves]] += shift if moves else -shift
         try:
             mujoco.mj_collision(self.model, self.data)
             contact = self.data.contact
             met = contact.pos[(np.sort(contact.geom, axis=1) == sorted(geoms)).all(axis=1)]
         finally:
-            self.data.geom_xpos[geoms[moves]] = place
+            self.data.geom_xpos[geoms[moves]], self.data.geom_xmat[geoms[moves]] = place, frame
             self._let_meet(geoms, bodies, 0)
         points = met[:: max(1, len(pair.listed))]
         return points + shift if moves == 0 else points
@@ -290,6 +300,20 @@ class Pose:
                 "parts from the second, or the pose in which they land"
             )
 
+    def turned(self, pair: GeomPair, k: float) -> Iterator[str]:
+        """A sentence where a small turn gives the faces of two geoms another number of points, with both stiffnesses of
+        the joint. Each point has the stiffness k [N/m]."""
+        here = self.landing(pair)
+        if not pair.has_two_faces or not pair.can_turn(self.data, here.away):
+            return
+        before, after = len(here.first), len(self.ground.points(pair, here.away, here.distance, TURN))
+        if after > before:
+            yield (
+                f"a turn of {TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
+                f"joint then has {k * after:.3g} N/m for {k * before:.3g} N/m, and as much more "
+                "damping; faces of which one lies within the other, and meshes in place of boxes, keep their points"
+            )
+
     def group(self, pair: GeomPair) -> Group:
         """The geoms of the two bodies of a pair."""
         bodies = tuple(int(self.model.body_weldid[body]) for body in pair.bodies)
@@ -460,6 +484,42 @@ def company(pair: GeomPair, pose: Pose) -> Company:
         float(differs[late].max(initial=0.0)),
         tuple(group.pairs[i] for i in near[along & ~level]),
     )
+
+
+def giving_way(
+    pair: GeomPair, pose: Pose, met: PairMeeting, k: float, xi: float, friction: float, speed: float
+) -> Iterator[str]:
+    """A sentence where joints give way within a blow, so that the mass at its end is another.
+
+    Args:
+        pair, pose, met: the geoms, the pose, and how they meet in it.
+        k, xi: stiffness of a contact point [N/m] and damping ratio [-].
+        friction: coefficient of friction [-].
+        speed: speed of the approach [m/s].
+
+    A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
+    """
+    if met.felt.yielding:  # what else moves then is said of them
+        return
+    model, here = pair.model, pose.landing(pair)
+    lasts = math.pi / math.sqrt(k / met.share)
+    moved = np.array(pose.data.qpos)
+    mujoco.mj_integratePos(model, moved, met.felt.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
+    later = Pose(model, qpos=moved)
+    before, after = [], []
+    for body, point in zip(pair.bodies, (here.first.mean(axis=0), here.second.mean(axis=0)), strict=True):
+        turned = later.data.xmat[body].reshape(3, 3) @ pose.data.xmat[body].reshape(3, 3).T
+        before.append(point)
+        after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
+    first, last = (
+        felt(pair, each.held, here.away, (points[0], points[1]), friction=friction, k=k * met.points).mass
+        for each, points in ((pose, before), (later, after))
+    )
+    if max(last / first, first / last) > FOREIGN:
+        yield (
+            f"joints give way within a blow of {lasts:.2g} s at {speed:g} m/s, in which a contact of {first:.3g} kg "
+            f"comes to stop {last:.3g} kg, and the restitution is another; a stiffer contact is over sooner"
+        )
 
 
 def other_keyframes(

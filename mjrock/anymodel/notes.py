@@ -57,7 +57,7 @@ JUDGED: dict[mujoco.mjtEnableBit | mujoco.mjtDisableBit, str] = {
 """What each flag of MuJoCo does to a contact in N/m, once it is set; empty where it does nothing."""
 
 SAFE = "; with refsafe it also replaces contacts that the step does not resolve by some without a rebound"
-MOST, SEARCHES = 100, 50
+MOST, LINE_SEARCHES = 100, 50
 """Iterations and line searches with which a solver is taken to converge, MuJoCo's defaults."""
 
 VARIES = re.compile(
@@ -93,11 +93,14 @@ class SolverNeed(NamedTuple):
     Args:
         iterations, ls_iterations: the options of these names that are enough; those of the model if it has enough.
         converges: whether the solver converges in `MOST` iterations.
+        impratio: with which it converges where it does not with that of the contacts; infinity if none is found. A load
+            that friction holds then creeps faster, as much as impratio is smaller.
     """
 
     iterations: int = 1
     ls_iterations: int = 1
     converges: bool = True
+    impratio: float = math.inf
 
 
 ENOUGH = SolverNeed()
@@ -106,16 +109,23 @@ ENOUGH = SolverNeed()
 
 def few_iterations(option: mujoco.MjOption, needs: SolverNeed) -> Iterator[str]:
     """What the solver of a model lacks, as a sentence."""
-    if not needs.converges:
-        solver = mujoco.mjtSolver(option.solver).name.removeprefix("mjSOL_")
-        yield (
-            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST)} "
-            "iterations; take Newton, or a smaller ratio of masses"
-        )
-    elif option.iterations < needs.iterations or option.ls_iterations < needs.ls_iterations:
+    solver = mujoco.mjtSolver(option.solver).name.removeprefix("mjSOL_")
+    few = option.iterations < needs.iterations or option.ls_iterations < needs.ls_iterations
+    if needs.converges and few:
         yield (
             f"the solver needs iterations = {needs.iterations} and ls_iterations = {needs.ls_iterations} for it, and "
             f"the model has {option.iterations} and {option.ls_iterations}; apply(model, iterations=True) writes them"
+        )
+    elif not needs.converges and needs.impratio == math.inf:
+        yield (
+            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST)} "
+            "iterations, and with no smaller impratio; take Newton, or a smaller ratio of masses"
+        )
+    elif not needs.converges and (few or option.impratio > needs.impratio):
+        yield (
+            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST)} "
+            f"iterations; with impratio = {needs.impratio:g} it does in {needs.iterations}, and friction creeps more: "
+            "apply(model, iterations=True) writes both and caveats then says how much; or take Newton"
         )
 
 

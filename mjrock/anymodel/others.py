@@ -38,12 +38,12 @@ class Others:
 
     def __init__(self, model: mujoco.MjModel, written: Collection[frozenset[int]]) -> None:
         pairs = (pair for pair in every_pair(model) if frozenset(pair.geoms) not in written)
-        self.before = [(pair, ModelRow(pair)) for pair in pairs]
+        self.before = [(pair, ModelRow.of(pair)) for pair in pairs]
 
     def changed(self) -> Iterator[Changed]:
         """Those that are stiffer or softer now."""
         for pair, before in self.before:
-            after = ModelRow(pair)
+            after = ModelRow.of(pair)
             if not math.isclose(before.loaded(pair.load), after.loaded(pair.load), rel_tol=SAME):
                 yield Changed(pair, before, after)
 
@@ -66,7 +66,15 @@ class Changed(NamedTuple):
         spring = before.spring * math.sqrt(d * dw / (near * full))
         made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
         load = self.pair.load
-        return made if math.isclose(ModelRow(self.pair, made).loaded(load), before.loaded(load), rel_tol=KEPT) else None
+        return (
+            made
+            if math.isclose(
+                ModelRow(self.pair.model, self.pair.inverse_weight, made).loaded(load),
+                before.loaded(load),
+                rel_tol=KEPT,
+            )
+            else None
+        )
 
     @property
     def stiffness(self) -> tuple[float, float]:

@@ -14,7 +14,7 @@ Under a load at rest the row is a spring of the stiffness K d^2 / ((1 - d) W), w
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ import mujoco
 import numpy as np
 
 from ..engine.solref import IMPEDANCE_RANGE
-from ..quantities import is_iterable, require_within, shown
+from ..quantities import Array, is_iterable, require_within, shown
 from .geoms import GeomPair
 
 HOLD = 1e7
@@ -71,28 +71,37 @@ class Mixed:
                 float(model.pair_gap[i]),
                 float(model.pair_adhesion[i]),
             )
-        geoms = np.array(pair.geoms)
-        priority = model.geom_priority[geoms]
+        return cls.of_sides(model, [("geom", geom) for geom in pair.geoms])
+
+    @classmethod
+    def of_sides(cls, model: mujoco.MjModel, sides: Sequence[tuple[str, int]]) -> Mixed:
+        """The parameters of two sides without an explicit pair, each a geom or a flex with its number."""
+
+        def own(name: str) -> Array:
+            return np.array([getattr(model, f"{kind}_{name}")[number] for kind, number in sides])
+
+        priority = own("priority")
+        deciding = priority == priority.max()
         if priority[0] != priority[1]:
-            weight = (priority > priority.min()).astype(float)
-            deciding = geoms[weight == 1]
+            weight = deciding.astype(float)
         else:
-            solmix = model.geom_solmix[geoms]
+            solmix = own("solmix")
             tiny = solmix < mujoco.mjMINVAL
             weight = np.where(tiny.all(), 0.5, np.where(tiny.any(), ~tiny, solmix / max(solmix.sum(), mujoco.mjMINVAL)))
-            deciding = geoms
-        solref = model.geom_solref[deciding]
-        averaged = weight @ model.geom_solref[geoms]
-        sliding, torsional, rolling = model.geom_friction[deciding].max(axis=0).tolist()
+        solref, averaged = own("solref")[deciding], weight @ own("solref")
+        sliding, torsional, rolling = own("friction")[deciding].max(axis=0).tolist()
+        pulls = [
+            model.geom_adhesion[number] for kind, number in np.array(sides, dtype=object)[deciding] if kind == "geom"
+        ]
         return cls(
             tuple((averaged if (solref[:, 0] > 0).all() else solref.min(axis=0)).tolist()),
-            tuple((weight @ model.geom_solimp[geoms]).tolist()),
+            tuple((weight @ own("solimp")).tolist()),
             (0.0, 0.0),
             (sliding, sliding, torsional, rolling, rolling),
-            int(model.geom_condim[deciding].max()),
-            float(model.geom_margin[geoms].sum()),
-            float(model.geom_gap[geoms].sum()),
-            float(model.geom_adhesion[deciding].sum()),
+            int(own("condim")[deciding].max()),
+            float(own("margin").sum()),
+            float(own("gap").sum()),
+            float(sum(pulls)),
         )
 
     @property
@@ -166,7 +175,7 @@ def unused(given: object, grip: Grip) -> Iterator[str]:
 
 
 class ModelRow:
-    """The row of a contact of two geoms of a model.
+    """The row of a contact of a model, of the inverse weight W of its sides [1/kg] and what it takes from them.
 
     Attributes:
         mixed: what the contact takes from its pair or its geoms.
@@ -181,8 +190,8 @@ class ModelRow:
         elliptic: whether the model has the elliptic cone.
     """
 
-    def __init__(self, pair: GeomPair, mixed: Mixed | None = None) -> None:
-        mixed, option = mixed or Mixed.of(pair), pair.model.opt
+    def __init__(self, model: mujoco.MjModel, inverse_weight: float, mixed: Mixed) -> None:
+        option = model.opt
         if option.enableflags & int(mujoco.mjtEnableBit.mjENBL_OVERRIDE):
             solref, solimp = option.o_solref, option.o_solimp
         else:
@@ -197,12 +206,17 @@ class ModelRow:
         self.mixed, self.impratio, self.impedance = mixed, float(option.impratio), d
         self.elliptic = option.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         cone = mixed.pyramid(self.impratio) if mixed.condim > 1 and not self.elliptic else 1.0
-        self.spring, self.dashpot, self.scale = spring, dashpot, cone / pair.inverse_weight
+        self.spring, self.dashpot, self.scale = spring, dashpot, cone / inverse_weight
         moved = self.scale * d / (1 - d)
         self.k, self.c = moved * d * spring, moved * dashpot
         staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
         self.inertia = moved if staged else max(0.0, moved - 0.5 * h * self.c)
         self.solimp = d, full, *(float(value) for value in solimp[2:5])
+
+    @classmethod
+    def of(cls, pair: GeomPair) -> ModelRow:
+        """The row of two geoms."""
+        return cls(pair.model, pair.inverse_weight, Mixed.of(pair))
 
     def loaded(self, load: float) -> float:
         """The load [N] over the indentation at which the row carries it [N/m]; 0 without a spring."""

@@ -8,6 +8,7 @@ finds other forces, it has too few iterations."""
 from __future__ import annotations
 
 import copy
+import math
 import warnings
 from collections.abc import Sequence
 
@@ -18,7 +19,7 @@ from ..quantities import Array
 from .contact import PairContact
 from .geoms import GeomPair
 from .meeting import Pose, awake
-from .notes import MOST, SEARCHES, SolverNeed
+from .notes import LINE_SEARCHES, MOST, SolverNeed
 
 STEPS = 50
 """Steps of a trial."""
@@ -29,8 +30,28 @@ OTHER = 0.01
 
 
 def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) -> SolverNeed:
-    """What contacts of a compiled model need of its solver, by a trial in a pose."""
+    """What contacts of a compiled model need of its solver, by a trial in a pose.
+
+    Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
+    """
     tried = _with(model, pose, contacts)
+    own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
+    cap, searches = max(own[0], MOST), max(own[1], LINE_SEARCHES)
+    most, enough = _stepped(tried, pose, cap, searches)
+    if most < cap:
+        return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), searches)
+    full = float(tried.opt.impratio) if any(contact.condim > 1 for contact in contacts) else 1.0
+    for power in range(math.ceil(math.log10(full)) - 1, -1, -1):
+        tried.opt.impratio, (tried.opt.iterations, tried.opt.ls_iterations) = 10.0**power, own
+        most, _ = _stepped(tried, pose, cap, searches)
+        if 2 * most <= cap:
+            return SolverNeed(max(2 * most, own[0]), searches, converges=False, impratio=10.0**power)
+    return SolverNeed(*own, converges=False)
+
+
+def _stepped(tried: mujoco.MjModel, pose: Pose, cap: int, searches: int) -> tuple[int, bool]:
+    """The most iterations of a step, of `cap` with so many line searches, and whether those of the model find the same
+    forces."""
     own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
     data, other = mujoco.MjData(tried), mujoco.MjData(tried)
     for each in (data, other):
@@ -44,15 +65,13 @@ def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContac
             _put(other, data.qpos, data.qvel)
             other.act[:], other.qacc_warmstart[:] = data.act, data.qacc_warmstart
             mujoco.mj_forward(tried, other)
-            tried.opt.iterations, tried.opt.ls_iterations = max(own[0], MOST), max(own[1], SEARCHES)
+            tried.opt.iterations, tried.opt.ls_iterations = cap, searches
             mujoco.mj_step(tried, data)
             if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
                 break
             most = max(most, int(data.solver_niter.max(initial=0)))
             enough &= _alike(other, data)
-    if most >= max(own[0], MOST):
-        return SolverNeed(*own, converges=False)
-    return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), max(own[1], SEARCHES))
+    return most, enough
 
 
 def _with(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) -> mujoco.MjModel:

@@ -2,10 +2,13 @@
 
 import csv
 
+import mujoco
+import numpy as np
 import pytest
 from pairs import FLOOR, scene
 
 from mjrock.__main__ import main
+from mjrock.anymodel.flexes import flex_contacts
 
 FEET = "".join(
     f'<body name="leg{i}" pos="{i} 0 1"><freejoint/><geom size=".1" mass="{i + 1}"/></body>' for i in range(9)
@@ -80,11 +83,38 @@ def test_what_cannot_be_is_said(model, tmp_path, capsys):
         main(["inspect"])
 
 
-def test_flexes_are_counted(tmp_path, capsys):
+SOFT = """<mujoco><option timestep="1e-3" integrator="Euler"/><worldbody>
+<geom name="floor" {}/><flexcomp name="soft" type="grid" count="4 4 3" spacing=".05 .05 .05" pos="0 0 .1" dim="3"
+mass="1" radius=".005"><contact selfcollide="none" {}/><elasticity young="2e4" poisson=".2" damping=".01"/></flexcomp>
+</worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("floor", ['type="plane" size="1 1 1"', 'type="box" size="1 1 .1" pos="0 0 -.1"'])
+@pytest.mark.parametrize(
+    "soft", ["", 'solref="-1e3 -5" solimp=".5 .8 .01" priority="1"', 'solref=".05 .5" solmix="3" condim="1"']
+)
+def test_contacts_of_flexes_are_those_of_the_engine(tmp_path, capsys, floor, soft):
+    """k = K d / R and c = B / R of the rows that MuJoCo makes of the vertices at a touch."""
     path = tmp_path / "soft.xml"
-    path.write_text("""<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/><flexcomp name="soft"
-    type="grid"
-    count="3 3 1" spacing=".1 .1 .1" radius=".01" dim="2"><edge equality="true"/></flexcomp></worldbody></mujoco>""")
+    path.write_text(SOFT.format(floor, soft))
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    deep = np.array(data.qpos)
+    deep.reshape(-1, 3)[:, 2] -= 0.045 + 1e-9
+    data.qpos[:] = deep
+    mujoco.mj_forward(model, data)
+    assert data.ncon >= 16
+    rows = [int(address) for address in data.contact.efc_address]
+    edges = 1 if data.contact[0].dim == 1 else 4
+    K, B, d, _ = data.efc_KBIP[rows].T
+    k, c = edges * K * d / data.efc_R[rows], edges * B / data.efc_R[rows]
+    (found,) = flex_contacts(model)
+    for each, (low, high) in ((k, found.k), (c, found.c)):
+        assert low * (1 - 1e-4) <= each.min()
+        assert each.max() <= high * (1 + 1e-4)
+        assert "box" in floor or each.min() == pytest.approx(low, rel=1e-4)
     said = lines_of(capsys, "inspect", path)
     assert said[0] == "This model has no contact of two geoms that can act."
-    assert said[1].startswith("Left out: the contacts of 1 flexes with 9 points (soft).")
+    assert said[2].startswith(f"soft on floor: k = {found.k[0]:.4g}")
+    path.write_text(path.read_text().replace("Euler", "discrete"))
+    assert lines_of(capsys, "inspect", path)[3].startswith("For all of them: the integrator `discrete` takes energy")

@@ -1,8 +1,11 @@
 """The static load of a contact, keyframes of several robots, and specifications that do not compile."""
 
+import math
+import re
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import mujoco
 import pytest
@@ -87,6 +90,18 @@ def test_keyframes_of_nested_robots_are_an_error_and_no_signal(tmp_path):
     assert "model does not compile: Error: repeated name 'b_home' in key" in done.stdout
 
 
+@pytest.mark.slow
+def test_the_fault_that_the_page_reports_is_there():
+    """Once this fails, MuJoCo has mended it: take it from the page."""
+    page = (Path(__file__).parents[2] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
+    code = re.findall(r"```python\n(.*?)```", page, re.DOTALL)[-1]
+    for last, status in (("", True), ("spec.compile()", False)):
+        text = code if not last else code.replace("spec.copy().compile()", last)
+        done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=False)
+        assert (done.returncode < 0) == status
+    assert "ValueError: Error: repeated name 'b_home' in key" in done.stderr
+
+
 GROUNDS = {
     "plane": FLOOR,
     "field": '<geom name="floor" type="hfield" hfield="hf"/>',
@@ -123,3 +138,92 @@ def test_where_the_pose_does_not_show_the_landing_it_says_so():
     for normal, error in (((0, 0, 0), "no direction"), ((0, 1), "normal has the shape")):
         with pytest.raises(ValueError, match=error):
             mr.contact_for(spec, "foot", "floor2", normal=normal, **asked)
+
+
+CUBE = "-.1 -.1 -.1 .1 -.1 -.1 -.1 .1 -.1 .1 .1 -.1 -.1 -.1 .1 .1 -.1 .1 -.1 .1 .1 .1 .1 .1"
+FACES = {"box": 'type="box" size=".1 .1 .1"', "mesh": 'type="mesh" mesh="cube"'}
+
+
+def faces(low, high, joint="<freejoint/>", size=0.1):
+    upper = FACES[high].replace(".1 .1 .1", f"{size} {size} .1")
+    return mujoco.MjSpec.from_string(f"""<mujoco><option timestep="5e-4"/><asset><mesh name="cube" vertex="{CUBE}"/>
+    </asset><worldbody><geom name="low" {FACES[low]} pos="0 0 -.1"/><body pos="0 0 .1">{joint}
+    <geom name="high" {upper} mass="10"/></body></worldbody></mujoco>""")
+
+
+def test_a_turn_that_gives_faces_more_points_is_told_with_both_stiffnesses():
+    """The static depth m g / (k points) of the turned box says that the second number is right."""
+    spec = faces("box", "box")
+    said = (
+        r"a turn of 0.01 degrees about the normal gives the two faces 8 points for 4: .* has 2e\+05 N/m for 1e\+05 N/m"
+    )
+    with pytest.warns(mr.ContactWarning, match=said):
+        contact = mr.contact_for(spec, "high", "low", k=2.5e4, xi=1.0, friction=0.6)
+    contact.apply(spec)
+    (found,) = mr.inspect_contacts(model := spec.compile())
+    assert any(re.search(said, note) for note in found.notes)
+    assert [depth(model, degrees) for degrees in (0, 0.01)] == pytest.approx([9.81e-4, 4.905e-4], rel=1e-3)
+
+
+def depth(model, degrees):
+    """How deep the upper face lies after 1 s, turned [m]."""
+    data = mujoco.MjData(model)
+    mujoco.mju_axisAngle2Quat(data.qpos[3:], [0, 0, 1], math.radians(degrees))
+    mujoco.mj_step(model, data, 2000)
+    return 0.1 - data.qpos[2]
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        faces("mesh", "box"),
+        faces("mesh", "mesh"),
+        faces("box", "box", size=0.09),
+        faces("box", "box", '<joint type="slide" axis="0 0 1"/>'),
+    ],
+)
+def test_faces_that_keep_their_points_are_not_told_of(spec):
+    """MuJoCo gives the faces of a mesh four points at most."""
+    mr.contact_for(spec, "high", "low", k=2.5e4, xi=1.0, friction=0.6)
+
+
+def test_meshes_are_a_tenth_softer_when_they_are_turned():
+    """Four of the eight corners of the common face are kept, and they are not those of a square."""
+    mr.contact_for(spec := faces("mesh", "mesh"), "high", "low", k=2.5e4, xi=1.0, friction=0.6).apply(spec)
+    model = spec.compile()
+    assert [depth(model, degrees) for degrees in (0, 0.01)] == pytest.approx([9.81e-4, 1.08e-3], rel=5e-3)
+
+
+TORUS = """<mujoco><option timestep="1e-4" gravity="0 0 0"/><extension><plugin plugin="mujoco.sdf.torus">
+<instance name="torus"><config key="radius1" value=".35"/><config key="radius2" value=".15"/></instance></plugin>
+</extension><asset><mesh name="torus"><plugin instance="torus"/></mesh></asset><worldbody><geom name="floor" {floor}/>
+<body pos="0 0 .3"><freejoint/><geom name="ring" type="sdf" mesh="torus" mass="3"><plugin instance="torus"/></geom>
+</body></worldbody></mujoco>"""
+
+
+def test_a_ring_of_signed_distances_is_right_on_a_plane_and_uneven_on_a_box():
+    """MuJoCo's own torus: four points on a plane that share the mass, and some that come and go on a box."""
+    mujoco.mj_loadPluginLibrary(next(map(str, Path(mujoco.__file__).parent.joinpath("plugin").glob("*sdf_plugin.*"))))
+    for floor, e in (('type="plane" size="1 1 1"', 0.505), ('type="box" size="1 1 .1" pos="0 0 -.1"', 0.215)):
+        spec = mujoco.MjSpec.from_string(TORUS.format(floor=floor))
+        with pytest.warns(mr.ContactWarning, match="uneven, and the number of contact points changes"):
+            mr.contact_for(spec, "ring", "floor", k=1e5, restitution=0.5, normal=(0, 0, 1), friction=0).apply(spec)
+        data = mujoco.MjData(model := spec.compile())
+        data.qvel[2] = -1
+        while data.qvel[2] < 0 or data.efc_force.max(initial=0) > 0:
+            mujoco.mj_step(model, data)
+        assert data.qvel[2] == pytest.approx(e, abs=0.02)
+
+
+@pytest.mark.parametrize("high", ["box", "mesh"])
+@pytest.mark.parametrize(("degrees", "of_the_face_above"), [(1, True), (5, True), (5.5, False), (8, False)])
+def test_the_normal_of_a_mesh_is_that_of_the_second_face_within_five_degrees(high, degrees, of_the_face_above):
+    """As the page says, of a block on the edge of its base."""
+    model = faces("box", high).compile()
+    data, angle = mujoco.MjData(model), math.radians(degrees)
+    mujoco.mju_axisAngle2Quat(data.qpos[3:], [0, 1, 0], angle)
+    data.qpos[2] = 0.1 * (math.cos(angle) + math.sin(angle)) - 1e-4
+    data.qpos[0] = -0.05
+    mujoco.mj_forward(model, data)
+    slope = math.degrees(math.atan2(abs(data.contact[0].frame[0]), abs(data.contact[0].frame[2])))
+    assert slope == pytest.approx(degrees if high == "mesh" and of_the_face_above else 0, abs=0.01)

@@ -1,6 +1,8 @@
 """What the options of a model and the fields of a pair do to a contact: the solver, flags, margin, gap and adhesion."""
 
 import itertools
+import math
+import re
 import warnings
 
 import mujoco
@@ -9,10 +11,11 @@ import pytest
 from pairs import BALL, FLOOR, scene
 
 import mjrock as mr
-from mjrock.anymodel.notes import JUDGED, model_spoilers
+from mjrock.anymodel.notes import JUDGED, SolverNeed, few_iterations, model_spoilers
 
 BOXES = "".join(
-    f'<body pos="0 0 {0.05 + 0.1 * i}"><freejoint/><geom name="box{i}" type="box" size=".1 .07 .05" mass="1.3"/></body>'
+    f'<body pos="0 0 {0.05 + 0.1 * i}"><freejoint/>'
+    f'<geom name="box{i}" type="box" size="{0.1 - 0.001 * i} {0.07 - 0.001 * i} .05" mass="1.3"/></body>'
     for i in range(5)
 )
 NAMES = ["floor", *(f"box{i}" for i in range(5))]
@@ -46,11 +49,38 @@ def test_a_solver_with_few_iterations_is_told_what_the_contacts_need():
     assert depth == pytest.approx(1.3 * 9.81 * np.arange(5, 0, -1) / 1e5, rel=0.01)  # what is left moves on after 1 s
 
 
-def test_a_single_body_is_content_with_few_iterations_and_some_solvers_never_are():
+def test_a_single_body_is_content_with_few_iterations():
     ball = scene(FLOOR, BALL, timestep=1e-4, gravity=9.81, options='iterations="4"')
     mr.contact_for(mujoco.MjSpec.from_string(ball), "ball", "floor", k=1e5, restitution=0.5)
-    with pytest.warns(mr.ContactWarning, match="the solver PGS does not converge with this contact in 100 iterations"):
-        stacked(few("PGS", 100))
+
+
+@pytest.mark.parametrize("solver", ["PGS", "CG"])
+def test_a_solver_that_does_not_converge_is_given_a_smaller_impratio_and_creeps_as_said(solver):
+    """On a slope of 10 degrees the lowest joint holds g sin(a) of five boxes, and its points have the mass of one."""
+    with pytest.warns(
+        mr.ContactWarning, match=f"the solver {solver} does not converge .* in 100 iterations; with impr"
+    ):
+        contacts = stacked(spec := few(solver, 100))
+    contacts.apply(spec, iterations=True)
+    model = spec.compile()
+    (said,) = contacts.caveats(spec)
+    assert model.opt.impratio == contacts.contacts[0].needs.impratio < contacts.impratio / 10
+    (rate,) = map(float, re.findall(r"creeps at F / \((\S+) 1/s m\)", said))
+    model.opt.gravity[:] = 9.81 * math.sin(math.radians(10)), 0, -9.81 * math.cos(math.radians(10))
+    data, most = mujoco.MjData(model), 0
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+        most = max(most, int(data.solver_niter.max()))
+    assert most < model.opt.iterations
+    assert data.qvel[0] == pytest.approx(5 * 9.81 * math.sin(math.radians(10)) / rate, rel=0.02)  # 2 digits are said
+
+
+def test_a_solver_without_friction_is_given_nothing():
+    sentences = list(few_iterations(few("PGS", 100).compile().opt, SolverNeed(converges=False)))
+    assert sentences == [
+        "the solver PGS does not converge with this contact in 100 iterations, and with no smaller impratio; take "
+        "Newton, or a smaller ratio of masses"
+    ]
 
 
 def test_every_flag_of_mujoco_is_judged():

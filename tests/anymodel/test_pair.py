@@ -55,6 +55,21 @@ def test_a_geom_without_a_name_is_found_by_its_number(unnamed):
     assert (model.geom_solref == contact.solref).all()
 
 
+def test_geoms_of_a_specification_are_named_on_request():
+    text = ON_A_PLANE.replace('<geom name="floor"', "<geom").replace('<geom name="ball"', "<geom")
+    spec = mujoco.MjSpec.from_string(text)
+    contacts = mr.contacts_for(spec, {(0, 1): {"k": 1e5, "restitution": 0.5}})
+    with pytest.raises(ValueError, match=r"has no name, which .* apply\(spec, name_geoms=True\)"):
+        contacts.apply(spec)
+    contacts.apply(spec, name_geoms=True)
+    assert [pair.geomname1 for pair in spec.pairs] == [spec.geoms[0].name] == ["world[0]"]
+    assert contacts.caveats(spec) == ()
+    again = mr.contact_for(spec, "world[0]", spec.geoms[1].name, k=2e5, restitution=0.5)
+    again.apply(spec, name_geoms=True)
+    assert len(spec.pairs) == 1
+    assert rebound(again, spec.compile())[0] == pytest.approx(0.5, abs=0.01)
+
+
 def test_a_specification_keeps_one_pair():
     spec = mujoco.MjSpec.from_string(ON_A_PLANE)
     mr.contact_for(spec, "ball", "floor", k=1e5, restitution=0.2).apply(spec)

@@ -337,3 +337,30 @@ def test_higher_terms_of_a_joint_are_named(attribute):
     <geom name="ball" size=".1" mass="1"/></body>"""
     with pytest.warns(mr.ContactWarning, match="joint lift adds"):
         mr.contact_for(spec_of(scene(FLOOR, slide)), "ball", "floor", k=1e4, restitution=0.5, qpos=[-0.1])
+
+
+@pytest.mark.parametrize(("k", "gives_way"), [(2e3, True), (2e7, False)])
+def test_a_leg_that_buckles_within_a_soft_blow_is_told(k, gives_way):
+    """A leg that is a little bent is stiff at first. Within a soft blow it bends, and the mass at its foot falls."""
+    text = study.LANDINGS["leg, straight"].text()
+    spec = spec_of(text)
+    pose = {"qpos": [0, 0, 0.6, 1, 0, 0, 0, 0.3, -0.6]}
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        contact = mr.contact_for(spec, "foot", "floor", k=k, restitution=0.5, friction=0, timestep=2e-5, **pose)
+    said = any("joints give way within a blow" in str(each.message) for each in caught)
+    contact.apply(spec)
+    data = mujoco.MjData(model := spec.compile())
+    model.opt.gravity[:] = 0
+    data.qpos[:] = pose["qpos"]
+    mujoco.mj_kinematics(model, data)
+    foot = model.geom("foot").id
+    data.qpos[2] -= data.geom_xpos[foot, 2] - 0.02 - 1e-6
+    data.qvel[2] = -1
+    touched, jacobian = False, np.zeros((3, model.nv))
+    while not touched or data.ncon:
+        mujoco.mj_step(model, data)
+        touched |= data.ncon > 0
+    mujoco.mj_jacGeom(model, data, jacobian, None, foot)
+    e = float(jacobian[2] @ data.qvel)
+    assert (said, abs(e - 0.5) > 0.03) == (gives_way, gives_way), e
