@@ -136,6 +136,7 @@ CUBES = """<mujoco><option gravity="0 0 0" timestep="1e-5" cone="elliptic"><flag
 
 
 @pytest.mark.parametrize(("spin", "within"), [(0.0, 2e-4), (1.0, 0.01), (-2.0, 0.015)])
+@pytest.mark.filterwarnings("ignore:a turn of 0.01 degrees about the normal")
 def test_two_blocks_that_collide_in_flight_leave_each_other_as_in_mujoco(spin, within):
     """MuJoCo finds the places by its own collision of boxes, with stiffness and dashpot of the pair on its four places.
     Where a block is turned by a thousandth the two take normals of different blocks."""

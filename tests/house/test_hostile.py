@@ -57,6 +57,8 @@ CALLS = OF_NUMBERS | {
             "masses": (),
         },
     ),
+    "Wedge": (mr.Wedge, {"angle": 0.4, "thickness": 0.5, "height": 4.0, "number": 2, "density": None}),
+    "VerticalBending": (mr.VerticalBending, {"wall": WALL, "load": 2e4, "bearing": None, "crack": None}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
     "Case": (
         mr.Case,

@@ -12,7 +12,7 @@ PAGE = (ROOT.parent / "docs" / "own_effect.md").read_text(encoding="utf-8")
 DEVICE, _, _, LAW = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
 OF_DEVICE = r"FrictionDamper|friction_damper"
 OF_LAW = (
-    r"squeeze(:|\[|\b.*frozen)|\b(law|links|self|ties?|tied|sprung)\.push\b|\bresisting\b|\.bearing\b"
+    r"squeeze(:|\[|\b.*frozen)|\b(law|links|self|ties?|tied|sprung)\.push\b|\bresisting\b|links\.bearing\b"
     r"|class Slider\b|import Slider\b|slider_event|\bpushes = |\"reach\", \"strength\""
 )
 
