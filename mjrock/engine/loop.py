@@ -227,7 +227,7 @@ def fitted_loop(
         before_the_release(memory, setting, state, allowed)
     while n < len(record.t) and not ended:
         at_the_pose(memory, setting, state, t, previous)
-        if closure_changed(openings, state.closed) and previous > pace.short and not no_rate:
+        if closure_changed(points.places, openings, state.closed) and previous > pace.short and not no_rate:
             acceleration_from_engine(memory, setting, state, t)
             allowed, calm_steps, no_rate = pace.short, 0, True
 

@@ -139,7 +139,7 @@ def find_sliding(memory: EngineArrays, points: Points, sliding: Sliding, frames:
         if not points.rubs[i]:
             continue
         meets = where_friction_acts(places, meeting(places, i, frames))
-        if meets.gap > -ROUNDING:
+        if meets.gap > -ROUNDING * places.radius:
             continue
         mu, now = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
         inertia = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])

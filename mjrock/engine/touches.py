@@ -18,8 +18,9 @@ from ..geometry.kinematics import Places, Ties, opening
 from ..quantities import Array, Flags
 from .rows import ContactLaw
 
-ROUNDING = 1e-12
-"""Gap below which a contact has neither opened nor closed [m]. A joint that bears nothing rests at a gap of zero."""
+ROUNDING = 1e-6
+"""Gap below which a contact has neither opened nor closed, over the radius of the contact spheres [-], which goes with
+the size of the bodies: some 1e-12 m. A joint that bears nothing rests at a gap of zero."""
 
 
 class Springs(NamedTuple):
@@ -73,17 +74,17 @@ def follow_openings(places: Places, ties: Ties, frames: Array, v: Array, a: Arra
         openings.linear[i], openings.swept[i] = now.linear, now.swept
         if i >= contacts and ties.squeeze[i - contacts] > 0:
             side = -1.0 if now.value > 0 else 1.0
-            openings.value[i], openings.rate[i] = side * now.value - 2 * ROUNDING, side * now.rate
+            openings.value[i], openings.rate[i] = side * now.value - 2 * ROUNDING * places.radius, side * now.rate
             openings.linear[i], openings.swept[i] = side * now.linear, side * now.swept
 
 
 @inlined
-def closure_changed(openings: Openings, closed: Flags) -> bool:
+def closure_changed(places: Places, openings: Openings, closed: Flags) -> bool:
     """Whether a contact or a tie has opened or closed since `closed` was brought up to date, which is done here."""
     changed = False
     for i in range(len(closed)):
         now = openings.value[i] < 0
-        if now != closed[i] and abs(openings.value[i]) > ROUNDING:
+        if now != closed[i] and abs(openings.value[i]) > ROUNDING * places.radius:
             closed[i] = now
             changed = True
     return changed

@@ -21,6 +21,7 @@ OVERLAP = 0.01
 """Largest share of a block that lies inside another without a warning [-]."""
 UNPAID = 0.01
 """Largest residual of the ledger over its largest part without a warning [-], as `solve_explicit` warns."""
+GIVES_BACK = "gives back"
 GIVEN_BACK = 5e-3
 """Most that an account which can only take gives back, over the largest part of the ledger [-]."""
 BELOW = 0.25
@@ -82,7 +83,7 @@ def complaints_of_ledger(ledger: mr.Ledger, said: list[str]) -> Iterator[str]:
     for name, account in takes.items():
         back = float((np.maximum.accumulate(account) - account).max()) / scale
         if back > GIVEN_BACK:
-            yield f"{name} gives back {back:.1%}"
+            yield f"{name} {GIVES_BACK} {back:.1%}"
 
 
 def below_the_ground(scene: Scene, answer: mr.Response) -> float:

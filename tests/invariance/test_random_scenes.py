@@ -46,6 +46,14 @@ def test_rounding_decides_nothing(seed):
         assert INVARIANCES["elsewhere"].run(Trial(draw(seed))) < 10 * EQUAL
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [40031, 50586])
+def test_no_constant_of_the_steps_in_mujoco_has_a_unit(seed):
+    """Four times as large and twice as slow: what a joint that sticks creeps, and the gap that counts as none."""
+    with overheard():
+        assert INVARIANCES["larger"].run(Trial(draw(seed))) < 1e-6
+
+
 @pytest.mark.parametrize("seed", [50353, 50543, 51160])
 def test_prisms_move_as_blocks_of_the_plane(seed):
     """Friction past an end of its face, of a line that leaves its face, and of one that is handed over is that of the
