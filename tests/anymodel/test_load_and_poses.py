@@ -94,7 +94,7 @@ def test_keyframes_of_nested_robots_are_an_error_and_no_signal(tmp_path):
 def test_the_fault_that_the_page_reports_is_there():
     """Once this fails, MuJoCo has mended it: take it from the page."""
     page = (Path(__file__).parents[2] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
-    code = re.findall(r"```python\n(.*?)```", page, re.DOTALL)[-1]
+    code = re.findall(r"```py\n(.*?)```", page, re.DOTALL)[-1]
     for last, status in (("", True), ("spec.compile()", False)):
         text = code if not last else code.replace("spec.copy().compile()", last)
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=False)
