@@ -152,10 +152,12 @@ def written(rows: Iterable[Sequence[object]]) -> str:
     return text.getvalue()
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows of cells as lines whose columns end below each other."""
+def aligned(rows: Sequence[Sequence[str]], sides: str = ">") -> list[str]:
+    """Rows of cells as lines whose columns end below each other, or begin so where their side is "<"; the last side is
+    that of all further columns."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    formats = [f"{side}{width}" for side, width in zip(sides.ljust(len(widths), sides[-1]), widths, strict=True)]
+    return ["  ".join(f"{cell:{each}}" for cell, each in zip(row, formats, strict=True)) for row in rows]
 
 
 def _cell(value: object) -> object:

@@ -96,7 +96,7 @@ def _body(d: int, s: int) -> Fields:
 
 def _line(d: int, s: int) -> Fields:
     return [
-        *integers("body", "face"),  # the body that carries the point, and that of the face, -1 or POINT where fixed
+        *integers("body", "face"),  # that carries the point, and of the face, -1 or POINT_ON_FIXED_BLOCK where fixed
         *integers("support"),  # the support that moves a fixed block, -1 for none
         *integers("group"),  # number of the account
         *integers("fixed"),  # number of the fixed block of its face among these, -1 where that is a body
@@ -104,7 +104,7 @@ def _line(d: int, s: int) -> Fields:
         *vectors(d, "at"),  # the point from the centroid of its body [m]
         *vectors(d, "origin"),  # a point of the face from the centroid of its body [m]
         *vectors(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
-        *vectors(d, "normal"),  # unit vector out of the face, of a POINT into that of the body
+        *vectors(d, "normal"),  # unit vector out of the face, of a POINT_ON_FIXED_BLOCK into that of the body
         *numbers("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
         *numbers("friction"),  # coefficient [-]
         *numbers("margin"),  # square of the least way from the origin to the end of the face, or infinite [m2]

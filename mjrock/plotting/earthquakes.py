@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import get_args
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
+from ..problem.ground.code_spectrum import SpectrumOfCode
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
@@ -26,12 +27,12 @@ def of_records(name: str, value: object) -> None:
     listed(kind(GroundMotion))(name, value.horizontal if isinstance(value, RecordSet) else value)
 
 
-@picture(motions=of_records, periods=finite_row, target=kind(CodeSpectrum, FloorSpectrum, PointSpectrum))
+@picture(motions=of_records, periods=finite_row, target=kind(*get_args(SpectrumOfCode)))
 def spectra(
     ax: Axes,
     motions: Sequence[GroundMotion] | RecordSet,
     periods: ArrayLike,
-    target: CodeSpectrum | FloorSpectrum | None = None,
+    target: SpectrumOfCode | None = None,
     damping: float = 0.05,
 ) -> Axes:
     """Pseudo-acceleration of each motion over the period, with their mean and the spectrum that they are scaled to.

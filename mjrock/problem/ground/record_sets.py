@@ -6,12 +6,13 @@ import fnmatch
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import Array, require_kind, require_path, require_text, shown, spelt
-from .code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, SpectrumOfCode
+from .code_spectrum import SpectrumOfCode
 from .motion import GroundMotion
 from .spectrum import factor_to_spectrum, response_spectrum
 
@@ -60,7 +61,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         Raises:
             TypeError, ValueError: for a value outside its range, or a set without records.
         """
-        require_kind("spectrum", spectrum, CodeSpectrum, FloorSpectrum, PointSpectrum)
+        require_kind("spectrum", spectrum, *get_args(SpectrumOfCode))
         if not self:
             raise ValueError("the set has no records")
         found = [response_spectrum(motion, periods, damping) for motion in self.horizontal]

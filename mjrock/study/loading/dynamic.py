@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...problem.ground.motion import GroundMotion
+from ...problem.wall.block import Block
 from ...problem.wall.case import Case
 from ...quantities import Implausible, is_iterable, require_kind, shown, spelt
 from ...result.response import Response
@@ -157,24 +158,26 @@ def dynamic_check(
     if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):
         raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
     cases = _cases_of(given)
-    rotations = [share * cases[0].wall.alpha for share in _shares(given, store)]
     wall = cases[0].wall
     outer, inner = cases[0].restoring
     alone = max(outer.alpha if cases[0].side_stop else min(outer.alpha, inner.alpha), 0.0)
-    both = [rotation if math.isinf(rotation) else float(wall.pose([rotation])[0, 0]) for rotation in rotations]
-    numbers = _records(cases)
+    motions, numbers, largest = _motions(cases), _records(cases), _shares(given, store)
     found = tuple(
-        RunMaximum(case.motion.name if case.motion else "", number, run.solver, d)
-        for case, number, run, d in zip(cases, numbers, given, both, strict=True)
+        RunMaximum(motion.name, number, run.solver, _moved(wall, share * wall.alpha))
+        for motion, number, run, share in zip(motions, numbers, given, largest, strict=True)
     )
-    kept = tuple(impact.restitution for run in given if isinstance(run, Response) for impact in run.impacts)
-    lacking = _lacking(cases, numbers, natural)
-    check = DynamicCheck(
-        limit_state, float(wall.pose([alone])[0, 0]), found, tuple(e for e in kept if not math.isnan(e)), lacking
-    )
+    impacts = (impact.restitution for run in given if isinstance(run, Response) for impact in run.impacts)
+    lacking = _lacking(motions, numbers, natural)
+    known = tuple(e for e in impacts if not math.isnan(e))
+    check = DynamicCheck(limit_state, _moved(wall, alone), found, known, lacking)
     if lacking:
         warnings.warn(f"C8.7.1.2.1.9 asks for more: {'; '.join(lacking)}", Implausible, stacklevel=2)
     return check
+
+
+def _moved(wall: Block, rotation: float) -> float:
+    """Displacement of the centroid at a rotation [m], infinite for a wall that has overturned."""
+    return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
 
 
 def _cases_of(runs: Sequence[Response | Analysis]) -> list[Case]:
@@ -228,12 +231,12 @@ def _records(cases: Sequence[Case]) -> list[int]:
     return numbers
 
 
-def _lacking(cases: Sequence[Case], numbers: Sequence[int], natural: bool | None) -> tuple[str, ...]:
+def _lacking(motions: Sequence[GroundMotion], numbers: Sequence[int], natural: bool | None) -> tuple[str, ...]:
     """What the clause asks for and the runs do not have."""
     count, lacking = max(numbers) + 1, list[str]()
     if count < LEAST:
         lacking.append(f"{count} records, and more than the {LEAST - 1} of the global response (NTC 2018, 7.3.5) count")
-    ways = [{motion for i, motion in zip(numbers, _motions(cases), strict=True) if i == n} for n in range(count)]
+    ways = [{motion for i, motion in zip(numbers, motions, strict=True) if i == n} for n in range(count)]
     if single := sum(len(way) < 2 for way in ways):
         lacking.append(f"{single} of {count} records in one polarity alone")
     if not natural:

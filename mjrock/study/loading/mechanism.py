@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...files import aligned
 from ...problem.ground.code_spectrum import SpectrumOfCode
 from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST
@@ -84,8 +85,7 @@ def verdicts_of(verdicts: Sequence[Verdict]) -> str:
         )
         for one in verdicts
     ]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return "\n".join("  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows)
+    return "\n".join(line.rstrip() for line in aligned(rows, "<"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,8 +217,7 @@ class MechanismCheck:
             ]
         if self.ground_ratio > self.states["SLV"].ratio:
             rows.append(("a_g,SLV / a_g, at least a_g,SLD / a_g", f"{self.ground_ratio:.2f}", "C8.7.1.2.1.8"))
-        widths = [max(len(row[i]) for row in rows) for i in range(2)]
-        return "\n".join(f"{what:<{widths[0]}}  {value:>{widths[1]}}  {where}".rstrip() for what, value, where in rows)
+        return "\n".join(line.rstrip() for line in aligned(rows, "<><"))
 
     def __repr__(self) -> str:
         ratios = ", ".join(f"{name} {state.ratio:.2f}" for name, state in self.states.items())
