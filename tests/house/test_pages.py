@@ -20,10 +20,12 @@ DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
-RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md"]
+RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "effects.md", "plain_models.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "theory.md"]
 LONG += ["results.md", "mortar.md", "slow_loading.md"]
 """Pages whose lines run."""
+ELSEWHERE = ["own_effect.md", "stacks_grippers_feet.md"]
+"""Pages whose lines run in tests of their own, since they are parts of files."""
 
 
 def blocks(page: Path) -> list[tuple[str, str | None]]:
@@ -63,6 +65,10 @@ def test_the_lines_of_a_page_run_and_print_what_it_shows(name, tmp_path, monkeyp
     for printed, shown in run(DOCS / name, {}):
         assert (shown is None) == (printed == ""), printed
         assert alike(printed, shown or ""), f"{name} shows\n{shown}\nand its lines print\n{printed}"
+
+
+def test_no_page_has_lines_that_nothing_runs():
+    assert sorted(page.name for page in DOCS.glob("*.md") if blocks(page)) == sorted([*RUNS, *LONG, *ELSEWHERE])
 
 
 def test_numbers_are_compared_to_their_last_digit():
