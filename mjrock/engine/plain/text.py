@@ -122,7 +122,7 @@ def plain_text(
         *section("default", (f"  {line}" for line in _defaults(scene, pairs, rows, laws, mixes=mixes))),
         *section("asset", (f"  {line}" for line in [*LOOKS, *shapes])),
         "<worldbody>",
-        "  " + _sun(in_space(middle), half),
+        "  " + _sun(np.array(in_space(middle)), half),
         "  " + element("camera", name="front", **camera_of(scene, middle, half), fovy="28"),
         *(f"  {line}" for line in _world(scene, pieces, moved)),
         "</worldbody>",
