@@ -36,7 +36,8 @@ def shown_bar(what: str, unit: str, total: float | None, **options: object) -> t
     form = PLAIN if total is None else OF_ALL
     if unit == "s":
         form = form.replace("{n:.0f}", "{n:.2f}")
-    return kind(total=total, desc=what, unit=unit, bar_format=form, disable=False if there else None, **options)
+    options = {"total": total, "desc": what, "unit": unit, "bar_format": form} | options
+    return kind(disable=False if there else None, **options)
 
 
 class Bar:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...bars import shown_bar
+from ...bars import OF_ALL, PLAIN, shown_bar
 from .store import Store
 
 NUMBER = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
@@ -132,7 +132,8 @@ class CampaignProgress:
         self.first: tuple[int, float] | None = None
         if kept:
             self._say(f"{kept} rows in {store} are kept")
-        self.bar = shown_bar("campaign", "cases", total, delay=1)
+        form = (PLAIN if total is None else OF_ALL).replace("<{remaining}", "")  # which counts the start of workers
+        self.bar = shown_bar("campaign", "cases", total, delay=1, bar_format=form)
 
     def show(self, skipped: int, finished: int, failed: int) -> None:
         """Show how many tasks had a row already, how many have got one, and how many of these have failed."""
