@@ -11,6 +11,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
+from ...notebook import html_of
 from ...problem.ground.motion import GroundMotion
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
 from ...problem.masonry.effects import laden
@@ -20,7 +21,7 @@ from ...quantities import Array, Implausible, is_iterable, require_kind, shown, 
 from ...result.response import Response
 from ..analysis import Analysis
 from ..campaign.campaign import results
-from .mechanism import SHARE, MechanismCheck, Verdict, verdicts_of
+from .mechanism import SHARE, MechanismCheck, Verdict, verdict_rows, verdicts_of
 from .push import Push
 
 LEAST = 8
@@ -113,8 +114,13 @@ class DynamicCheck:
         before = () if kinematic is None else kinematic.verdicts
         return "\n".join([*lines, verdicts_of((*before, *self.verdicts))])
 
+    def _repr_html_(self) -> str:
+        runs = [(one.name, f"{one.d:.4f}", f"{one.d / self.d_0:.2f}") for one in self.runs]
+        head = ("run", "displacement [m]", "of d_0")
+        return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
+
     def __repr__(self) -> str:
-        said = "holds" if self.holds else "fails"
+        said = "HOLDS" if self.holds else "FAILS"
         return (
             f"<DynamicCheck {self.limit_state} {said}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
             f"{len(self.exceeded)} of {len(self.runs)} runs beyond d_0 = {self.d_0:.4g} m>"
