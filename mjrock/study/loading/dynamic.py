@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...problem.ground.motion import GroundMotion
+from ...problem.masonry.case import AnyCase
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
 from ...quantities import Implausible, is_iterable, require_kind, shown, spelt
@@ -30,12 +31,14 @@ class RunMaximum(NamedTuple):
     Args:
         name: of its horizontal motion.
         record: number of its record, the same in both polarities.
+        turned: whether its motion is that of the first run of its record, reversed.
         solver: which solver ran it.
         d: largest displacement of the centroid [m], infinite for a wall that has overturned.
     """
 
     name: str
     record: int
+    turned: bool
     solver: str
     d: float
 
@@ -49,14 +52,38 @@ class DynamicCheck:
         d_0: displacement of the centroid at which nothing brings the wall back [m].
         runs: the largest displacement of each run.
         restitution: |e| of all impacts of the responses [-], shape (n,); none is known of rows of a campaign.
-        lacking: what C8.7.1.2.1.9 asks for and the runs do not have, in words.
+        natural: whether the records were recorded; None is not known.
     """
 
     limit_state: str
     d_0: float
     runs: tuple[RunMaximum, ...]
     restitution: tuple[float, ...]
-    lacking: tuple[str, ...]
+    natural: bool | None
+
+    @property
+    def records(self) -> int:
+        """How many records the runs have."""
+        return max(run.record for run in self.runs) + 1
+
+    @property
+    def in_one_polarity(self) -> int:
+        """How many of the records were run in one polarity alone."""
+        return 2 * self.records - len({(run.record, run.turned) for run in self.runs})
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """What C8.7.1.2.1.9 asks for and the runs do not have, in words."""
+        count, lacking = self.records, list[str]()
+        if count < LEAST:
+            more = f"and more than the {LEAST - 1} of the global response (NTC 2018, 7.3.5) count"
+            lacking.append(f"{count} records, {more}")
+        if self.in_one_polarity:
+            lacking.append(f"{self.in_one_polarity} of {count} records in one polarity alone")
+        if not self.natural:
+            made = "are artificial" if self.natural is False else "are not said to be"
+            lacking.append(f"natural records, and these {made}")
+        return tuple(lacking)
 
     @property
     def worse(self) -> tuple[float, ...]:
@@ -161,21 +188,21 @@ def dynamic_check(
     wall = cases[0].wall
     outer, inner = cases[0].restoring
     alone = max(outer.alpha if cases[0].side_stop else min(outer.alpha, inner.alpha), 0.0)
-    motions, numbers, largest = _motions(cases), _records(cases), _shares(given, store)
     found = tuple(
-        RunMaximum(motion.name, number, run.solver, _moved(wall, share * wall.alpha))
-        for motion, number, run, share in zip(motions, numbers, given, largest, strict=True)
+        RunMaximum(motion.name, *signal, run.solver, moved(wall, share * wall.alpha))
+        for motion, signal, run, share in zip(
+            _motions(cases), signals_of(cases), given, _shares(given, store), strict=True
+        )
     )
     impacts = (impact.restitution for run in given if isinstance(run, Response) for impact in run.impacts)
-    lacking = _lacking(motions, numbers, natural)
     known = tuple(e for e in impacts if not math.isnan(e))
-    check = DynamicCheck(limit_state, _moved(wall, alone), found, known, lacking)
-    if lacking:
-        warnings.warn(f"C8.7.1.2.1.9 asks for more: {'; '.join(lacking)}", Implausible, stacklevel=2)
+    check = DynamicCheck(limit_state, moved(wall, alone), found, known, natural)
+    if check.lacking:
+        warnings.warn(f"C8.7.1.2.1.9 asks for more: {'; '.join(check.lacking)}", Implausible, stacklevel=2)
     return check
 
 
-def _moved(wall: Block, rotation: float) -> float:
+def moved(wall: Block, rotation: float) -> float:
     """Displacement of the centroid at a rotation [m], infinite for a wall that has overturned."""
     return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
 
@@ -212,36 +239,23 @@ def _shares(runs: Sequence[Response | Analysis], store: str | Path | None) -> li
     return done
 
 
-def _same(one: Case, other: Case) -> bool:
+def _same(one: AnyCase, other: AnyCase) -> bool:
     """Whether two cases have one record, in either polarity of its horizontal component."""
     if one.vertical != other.vertical or one.motion is None or other.motion is None:
         return False
     return other.motion in one.motion.polarities
 
 
-def _records(cases: Sequence[Case]) -> list[int]:
-    """The number of the record of each case."""
-    firsts: list[Case] = []
-    numbers = []
+def signals_of(cases: Sequence[AnyCase]) -> list[tuple[int, bool]]:
+    """The number of the record of each case, and whether its motion is that of the first such case, reversed."""
+    firsts: list[AnyCase] = []
+    signals = []
     for case in cases:
         number = next((i for i, first in enumerate(firsts) if _same(first, case)), len(firsts))
         if number == len(firsts):
             firsts.append(case)
-        numbers.append(number)
-    return numbers
-
-
-def _lacking(motions: Sequence[GroundMotion], numbers: Sequence[int], natural: bool | None) -> tuple[str, ...]:
-    """What the clause asks for and the runs do not have."""
-    count, lacking = max(numbers) + 1, list[str]()
-    if count < LEAST:
-        lacking.append(f"{count} records, and more than the {LEAST - 1} of the global response (NTC 2018, 7.3.5) count")
-    ways = [{motion for i, motion in zip(numbers, motions, strict=True) if i == n} for n in range(count)]
-    if single := sum(len(way) < 2 for way in ways):
-        lacking.append(f"{single} of {count} records in one polarity alone")
-    if not natural:
-        lacking.append("natural records, and these " + ("are artificial" if natural is False else "are not said to be"))
-    return tuple(lacking)
+        signals.append((number, case.motion != firsts[number].motion))
+    return signals
 
 
 def _motions(cases: Sequence[Case]) -> list[GroundMotion]:
