@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...files import aligned
+from ...notebook import html_of
 from ...problem.ground.code_spectrum import SpectrumOfCode
 from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST
@@ -23,7 +24,7 @@ from ...problem.masonry.case import require_wall
 from ...problem.wall.bending import VerticalBending
 from ...problem.wall.case import Case
 from ...problem.wall.ties_on_wall import moment_at_strength
-from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, shown, takes
+from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, short_repr, shown, takes
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
@@ -105,6 +106,12 @@ class Verdict(NamedTuple):
     clause: str
     least: float = 0.0
 
+    def __repr__(self) -> str:
+        return (
+            f"<{self.what}, {self.limit_state}: {self.capacity:.4g} for {self.demand:.4g} {self.unit}, "
+            f"ratio {self.ratio:.2f} {self.said}, {self.clause}>"
+        )
+
     @property
     def ratio(self) -> float:
         """Capacity over demand [-]."""
@@ -115,18 +122,28 @@ class Verdict(NamedTuple):
         """Whether the capacity is at least the demand."""
         return self.ratio >= 1
 
+    @property
+    def said(self) -> str:
+        """HOLDS or FAILS."""
+        return "HOLDS" if self.holds else "FAILS"
 
-def verdicts_of(verdicts: Sequence[Verdict]) -> str:
-    """Conditions as a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
-    rows = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
+
+def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
+    """Conditions as rows of a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
+    rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
     rows += [
         (
             *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, f"{one.ratio:.2f}"),
-            *("HOLDS" if one.holds else "FAILS", one.clause),
+            *(one.said, one.clause),
         )
         for one in verdicts
     ]
-    return "\n".join(line.rstrip() for line in aligned(rows, "<"))
+    return rows
+
+
+def verdicts_of(verdicts: Sequence[Verdict]) -> str:
+    """Conditions as a table in text, see `verdict_rows`."""
+    return "\n".join(line.rstrip() for line in aligned(verdict_rows(verdicts), "<"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,6 +159,8 @@ class LimitState:
     capacity: float
     period: float
     demand: float
+
+    __repr__ = short_repr
 
     @property
     def ratio(self) -> float:
@@ -264,18 +283,30 @@ class MechanismCheck:
         return [tie for tie, d in self.breaking.items() if d <= self.states[limit_state].capacity]
 
     def table(self) -> str:
-        """The steps with their clauses, as text."""
+        """The steps with their clauses, as text. Capacity over demand is followed by HOLDS or FAILS."""
+        return "\n".join(line.rstrip() for line in aligned(self._rows(), "<><"))
+
+    def _repr_html_(self) -> str:
+        return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), self._rows())
+
+    def _rows(self) -> list[tuple[str, str, str]]:
+        """The steps: what it is, its value, and its clause or its verdict."""
+        *linear, slv, slc = self.verdicts
+        floored = self.ground_ratio > self.states["SLV"].ratio
+        said = {"ratio SLV": "see a_g,SLV" if floored else slv.said, "ratio SLC": slc.said}
+        said |= {"linear_ratio": linear[0].said if linear else "", "ground_ratio": f"{slv.said}, C8.7.1.2.1.8"}
         rows = []
         for step in self.steps:
-            said, digits = SAID[step.key]
-            said = said.format(of=step.of, share=SHARE.get(step.of, 0.0), damping=DAMPING.get(step.of, 0.0))
-            gone = self.broken_before(step.of) if step.key == "ratio" else []
-            note = f"without {', '.join(gone)}, broken" if gone else step.clause
-            rows.append((said + (f" [{step.unit}]" if step.unit else ""), f"{step.value:.{digits}f}", note))
-        return "\n".join(line.rstrip() for line in aligned(rows, "<><"))
+            what, digits = SAID[step.key]
+            what = what.format(of=step.of, share=SHARE.get(step.of, 0.0), damping=DAMPING.get(step.of, 0.0))
+            note = said.get(f"{step.key} {step.of}".strip(), step.clause)
+            if step.key == "ratio" and (gone := self.broken_before(step.of)):
+                note += f", without {', '.join(gone)}, broken"
+            rows.append((what + (f" [{step.unit}]" if step.unit else ""), f"{step.value:.{digits}f}", note))
+        return rows
 
     def __repr__(self) -> str:
-        ratios = ", ".join(f"{name} {state.ratio:.2f}" for name, state in self.states.items())
+        ratios = ", ".join(f"{one.limit_state} {one.ratio:.2f} {one.said}" for one in self.verdicts[-2:])
         return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 
