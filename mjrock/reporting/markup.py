@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import re
+import textwrap
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
@@ -17,6 +18,8 @@ from .texts import MINUS, Words
 
 TOKEN = re.compile(r"\d+(?:[.,]\d+)?|[^\W\d_]+|\S")
 """A number, a name or a sign of a formula."""
+MARGIN = 60
+"""Longest text in the margin of a page."""
 GREEK = {"alpha": "\u03b1"}
 """Letters that a formula spells."""
 TAGS = {"_": "msub", "^": "msup", "/": "mfrac"}
@@ -182,7 +185,8 @@ def page(words: Words, title: str, project: str, version: str, parts: Sequence[M
 
 def _in_style(text: str) -> str:
     """Text within the quotes of a style sheet, in which nothing ends it."""
-    return "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in " ".join(text.split()))
+    short = textwrap.shorten(text, MARGIN, placeholder=" ...")
+    return "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in short)
 
 
 def write_pdf(path: Path, text: str) -> None:

@@ -95,7 +95,7 @@ def report(
     case.require_own_joints(e, contacts)
     whole = reported(case)
     heading = words(f"title_{whole.KIND}") if title is None else require_text("title", title)
-    runs = required_runs(case, responses, labels, whole)
+    runs = required_runs(case, responses, labels, whole, words)
     mechanisms = required_checks(checks, words(f"kind_{whole.KIND}"))
     given = [
         (words(f"kind_{whole.KIND}"), whole.inputs(words)),
@@ -123,7 +123,7 @@ def report(
     return path
 
 
-def required_runs(case: AnyCase, responses: object, labels: object, whole: Reported) -> list[Run]:
+def required_runs(case: AnyCase, responses: object, labels: object, whole: Reported, words: Words) -> list[Run]:
     """The runs of at least one response, each of what the case is of; TypeError or ValueError for others."""
     if isinstance(responses, Mapping) and labels is not None:
         raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
@@ -146,11 +146,20 @@ def required_runs(case: AnyCase, responses: object, labels: object, whole: Repor
     names = records
     if not isinstance(responses, Mapping):
         names = required_labels(answers, labels) or [response.solver for response in answers]
+    if labels is None:
+        names = [in_words(name, response.solver, words) for name, response in zip(names, answers, strict=True)]
     signals = signals_of([response.case for response in answers])
     return [
         Run(response, variant, names[i], signals[i][0], records[i], motions[i] != records[i], whole.largest(response))
         for i, (variant, response) in enumerate(given)
     ]
+
+
+def in_words(name: str, solver: str, words: Words) -> str:
+    """A name that a response has by its solver, in words."""
+    if not name.startswith(solver) or not words.has(f"short_{solver}"):
+        return name
+    return words(f"short_{solver}") + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
 
 
 def require_same(name: str, response: Response, case: AnyCase) -> None:
@@ -228,12 +237,11 @@ def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
 
 def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The runs as pictures."""
-    limits = {}
-    for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
-        limits[words("limit_of_mean", state=words(check.limit_state))] = check.capacity
-    limit = whole.limit()
+    limits, limit = {}, whole.limit()
     if limit is not None:
         limits["d₀"] = limit
+        for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
+            limits[words("limit_of_mean", state=words(check.limit_state))] = check.capacity
     parts = [
         element("h2", words("runs"), kind="page"),
         *[element("p", said) for said in content.solved_with([r.response for r in runs], words)],

@@ -18,7 +18,7 @@ from ..quantities import GRAVITY, Array, named
 from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
-from ..study.loading.dynamic import moved
+from ..study.loading.dynamic import displacements_of
 from .content import Input
 from .pictures import SMALL, WIDE, Run, wall_drawn
 from .texts import DASH, FOUND, Words
@@ -110,24 +110,25 @@ class ReportedWall(Reported):
 
     def largest(self, response: Response) -> float:
         """Of the centroid as the wall turns about its toe, as the dynamic check has it."""
-        wall = response.of_wall[0].wall
-        return moved(wall, response.peak_over_alpha * wall.alpha)
+        return displacements_of(response.of_wall[0], [response.peak_over_alpha])[1][0]
 
     def moved(self, response: Response) -> Array:
         """Of the centroid."""
         return np.asarray(response.pose[:, 0, 0])
 
-    def limit(self) -> float:
-        """Of the wall without its ties."""
-        return moved(self.case.wall, max(self.case.restoring.outer.alpha, 0.0))
+    def limit(self) -> float | None:
+        """Of the wall without its ties; None of one that they alone hold."""
+        return displacements_of(self.case, ())[0] or None
 
     def result(self, response: Response, words: Words) -> list[str]:
         """How it ended, its largest displacement, that over the limit, impacts."""
         largest = self.largest(response)
         if math.isinf(largest):
             return [words("overturned"), DASH, DASH, str(len(response.impacts))]
-        said = words.quantity(largest, "m", FOUND), words.number(largest / self.limit(), FOUND)
-        return [words(f"outcome_{response.outcome.name.lower()}"), *said, str(len(response.impacts))]
+        limit = self.limit()
+        share = words.number(largest / limit, FOUND) if limit else DASH
+        said = words.quantity(largest, "m", FOUND), share, str(len(response.impacts))
+        return [words(f"outcome_{response.outcome.name.lower()}"), *said]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not say."""

@@ -17,6 +17,7 @@ from PIL import Image
 import mjrock as mr
 from mjrock.reporting.markup import formula
 from mjrock.reporting.texts import FOUND, Words, languages, texts
+from mjrock.study.loading.dynamic import RunMaximum
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)])
 E = mr.Restitution.from_geometry(WALL)
@@ -305,6 +306,35 @@ def test_masonry_has_blocks_at_rest_and_as_they_end(tmp_path, language):
     assert text.count("<img") == 4  # at rest, strip, histories, at the end
     assert words("no_check") in html.unescape(text)
     assert words("forces_reaction") not in page_of(tmp_path, case, bare, language=language)
+
+
+def test_the_dynamic_verdict_of_masonry_stands_on_its_first_page(tmp_path):
+    """d_0 is that of the common centroid, and the strip is of the farthest block: it has no line for it."""
+    masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 0.5)] * 2, k_n=1e8)
+    pulses = mr.GroundMotion.synthetic(0.5, 1.0, seed=1).polarities
+    runs = [mr.solve_explicit(mr.MasonryCase(masonry, 1e-3, motion=motion)) for motion in pulses]
+    found = [RunMaximum(motion.name, 0, i > 0, "explicit", 0.02) for i, motion in enumerate(pulses)]
+    check = mr.DynamicCheck("SLV", 0.2, (*found,), (), True)
+    text = page_of(tmp_path, runs[0].case, runs, checks=check)
+    first = read(text[: text.index("<img")])
+    assert first.count("HOLDS") == 3  # both conditions, and the answer
+    assert "explicit steps, reversed" in read(text)
+
+
+def test_a_wall_that_its_tie_alone_holds_has_no_displacement_of_its_own(tmp_path):
+    thrust, tie = mr.Thrust(4.0, 2e4), mr.Tie(height=4.0, stiffness=1e8, strength=1e6)
+    case = mr.Case(WALL, 0.0, 0.2, motion=MOTION, effects=(thrust, tie))
+    assert case.restoring.outer.alpha <= 0
+    text = page_of(tmp_path, case, mr.simulate(case, CONTACTS))
+    assert "at rest" in text or "still moving" in text
+
+
+def test_long_texts_are_cut_in_the_margins_alone(tmp_path):
+    project = "x" * 30 + " " + "y" * 900
+    text = page_of(tmp_path, CASE, answer(), project={"project": project})
+    style = text[: text.index("</style>")]
+    assert project in text
+    assert max(map(len, style.splitlines())) < 400
 
 
 def test_a_pdf_needs_weasyprint_and_says_so(tmp_path, monkeypatch):

@@ -207,7 +207,7 @@ def dynamic_check(
     if responses and store is not None:
         raise ValueError("store is for the tasks of a campaign, and runs are responses; leave it out")
     if curve is None:
-        d_0, maxima = _of_wall(cast(Case, cases[0]), _shares(given, store))
+        d_0, maxima = displacements_of(cast(Case, cases[0]), _shares(given, store))
     else:
         d_0, maxima = curve.d_0, [_along(run, cast(MasonryCase, run.case), curve.way) for run in responses]
     found = tuple(
@@ -222,14 +222,14 @@ def dynamic_check(
     return check
 
 
-def _of_wall(case: Case, shares: Sequence[float]) -> tuple[float, list[float]]:
+def displacements_of(case: Case, shares: Sequence[float]) -> tuple[float, list[float]]:
     """d_0 of a wall and the largest displacements of its centroid [m], from its largest rotations over alpha [-]."""
     outer, inner = case.restoring
     alone = max(outer.alpha if case.side_stop else min(outer.alpha, inner.alpha), 0.0)
-    return moved(case.wall, alone), [moved(case.wall, share * case.wall.alpha) for share in shares]
+    return _moved(case.wall, alone), [_moved(case.wall, share * case.wall.alpha) for share in shares]
 
 
-def moved(wall: Block, rotation: float) -> float:
+def _moved(wall: Block, rotation: float) -> float:
     """Displacement of the centroid at a rotation [m], infinite for a wall that has overturned."""
     return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
 
