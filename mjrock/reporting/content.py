@@ -22,11 +22,11 @@ from ..quantities import GRAVITY, declared
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from .markup import Markup, element, table
-from .texts import FOUND, Words
+from .texts import FOUND, GIVEN, Words, texts
 from .verdicts import REVERSED, effect_name
 
-TOLERANCES = {"accuracy": "", "timestep": "s", "rtol": "", "atol": ""}
-"""What a solver was asked for, and its unit."""
+ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
+"""What is said of a run of a solver, its unit and its digits."""
 
 
 class Input(NamedTuple):
@@ -52,14 +52,14 @@ def of_effects(case: AnyCase, words: Words) -> list[Input]:
 
 def described(effect: Effect, words: Words) -> str:
     """An effect in words: each of its numbers, and what it is called; as it says itself where these are not known."""
-    if not words.has(f"effect_{effect.label}"):
+    if not words.or_else(f"effect_{effect.label}", ""):
         return effect.said.replace("\n", " ")
     kind: Any = type(effect)  # mypy takes a class for a thing without a hash
     units = {name: within.unit for name, (within, _) in declared(kind).items()} | {"strength": "N"}
     said = []
     for field in dataclasses.fields(kind):
         value, key = getattr(effect, field.name), f"field_{field.name}"
-        if value is None or value == math.inf or not words.has(key):
+        if value is None or value == math.inf or key not in texts():
             continue
         if isinstance(value, str):
             said.append(words(key, value=words(f"governed_{value}")))
@@ -78,11 +78,8 @@ def of_contacts(e: Restitution | None, contacts: Contacts | None, words: Words) 
         for name in ("base", "side", "lumped"):
             rows.append(Input(f"e_{name}", words(f"in_e_{name}"), words.number(getattr(e, name), FOUND)))
     if contacts is not None:
-        rows.append(
-            Input(
-                "law", words("in_law"), words(key) if words.has(key := f"law_{contacts.law.lower()}") else contacts.law
-            )
-        )
+        law = words.or_else(f"law_{contacts.law.lower()}", contacts.law)
+        rows.append(Input("law", words("in_law"), law))
         for name, face in (("base", contacts.base), ("side", contacts.side)):
             if face is not None:
                 friction = words("sticks") if face.friction is None else words.number(face.friction)
@@ -110,17 +107,12 @@ def solved_with(responses: Sequence[Response], words: Words) -> list[str]:
     for solver in dict.fromkeys(response.solver for response in responses):
         own = [response.stats for response in responses if response.solver == solver]
         asked = []
-        for name, unit in TOLERANCES.items():
-            values = [stats[name] for stats in own if stats.get(name)]
-            if values:
-                low, high = (words.quantity(value, unit) for value in (min(values), max(values)))
+        for name, shown in ASKED.items():
+            if values := [stats[name] for stats in own if stats.get(name)]:
+                low, high = (words.quantity(value, *shown) for value in (min(values), max(values)))
                 asked.append(words(f"solved_{name}", value=low if low == high else words("range", low=low, high=high)))
-        steps = [stats["steps"] for stats in own if stats.get("steps")]
-        if steps:
-            low, high = (words.number(value, 7) for value in (min(steps), max(steps)))
-            asked.append(words("solved_steps", value=low if low == high else words("range", low=low, high=high)))
-        name = words(f"solver_{solver}") if words.has(f"solver_{solver}") else solver
-        said.append(words("solved", solver=name, count=len(own), how=", ".join(asked)))
+        solved = words.or_else(f"solver_{solver}", solver)
+        said.append(words("solved", solver=solved, count=len(own), how=", ".join(asked)))
     return said
 
 
@@ -128,16 +120,9 @@ def of_fragility(fits: dict[str, Fragility], words: Words) -> Markup:
     """Fragility curves as a table."""
     rows = []
     for name, fit in fits.items():
-        spans = (fit.median, fit.median_interval(0.9)), (fit.dispersion, fit.dispersion_interval(0.9))
-        cells = [
-            words(
-                "interval",
-                value=words.number(value, FOUND),
-                low=words.number(low, FOUND),
-                high=words.number(high, FOUND),
-            )
-            for value, (low, high) in spans
-        ]
+        spans = (fit.median, *fit.median_interval(0.9)), (fit.dispersion, *fit.dispersion_interval(0.9))
+        numbers = [[words.number(value, FOUND) for value in span] for span in spans]
+        cells = [words("interval", value=value, low=low, high=high) for value, low, high in numbers]
         groups = words("independent") if fit.groups is None else str(fit.groups)
         rows.append((name, *cells, str(fit.count), groups))
     heads = [words(f"fragility_{key}") for key in ("name", "median", "dispersion", "runs", "groups")]
@@ -162,15 +147,7 @@ def versions(words: Words) -> list[tuple[str, ...]]:
 
 def code_chapter(solvers: Sequence[str], kinematic: bool, words: Words) -> list[tuple[str, ...]]:
     """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer."""
-    used = [words(f"solver_{solver}") if words.has(f"solver_{solver}") else solver for solver in solvers]
-    if kinematic:
-        used.insert(0, words("kinematic_analysis"))
-    rows = [(words("ntc_kind"), "; ".join(used))]
-    rows += [
-        (words(f"ntc_{key}"), words(f"ntc_{key}_said", version=__version__)) for key in ("origin", "basis", "field")
-    ]
-    return [
-        *rows,
-        (words("ntc_validation"), words("ntc_validation_said")),
-        (words("ntc_results"), words("ntc_results_said")),
-    ]
+    used = [words("kinematic_analysis")] * kinematic + [words.or_else(f"solver_{solver}", solver) for solver in solvers]
+    keys = "origin", "basis", "field", "validation", "results"
+    said = [(words(f"ntc_{key}"), words(f"ntc_{key}_said", version=__version__)) for key in keys]
+    return [(words("ntc_kind"), "; ".join(used)), *said]

@@ -143,9 +143,9 @@ def _item(tokens: list[str]) -> Markup:
     return element("mn" if token[0].isdigit() else "mi" if token[0].isalpha() else "mo", GREEK.get(token, token))
 
 
-def picture(figure: Figure, caption: str, words: Words) -> Markup:
-    """A figure inside the page, its numbers with the decimal mark of the language."""
-    if words.mark != ".":
+def picture(figure: Figure, caption: str, words: Words | None = None) -> Markup:
+    """A figure inside the page, with the decimal mark of a language; as it is without one."""
+    if words is not None and words.mark != ".":
         _marked(figure, words)
     file = BytesIO()
     figure.savefig(file, format="png", dpi=170, metadata={"Software": None})

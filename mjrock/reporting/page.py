@@ -105,9 +105,10 @@ def report(
     rests = required_texts("basis", basis, [row.key for _, rows in given for row in rows])
     block = required_texts("project", project, HEADS)
     parts = [
-        *front(
-            whole, runs, mechanisms, words, [element("h1", heading), title_block(block, words), question(notes, words)]
-        ),
+        element("h1", heading),
+        title_block(block, words),
+        *([element("p", element("b", words("question")), " ", notes)] if notes else []),
+        *answered(whole, runs, mechanisms, words),
         *checked(mechanisms, words),
         *shaken(whole, runs, mechanisms, words),
         *[part for name, pieces in required_sections(sections).items() for part in section(name, pieces, words)],
@@ -143,11 +144,10 @@ def required_runs(case: AnyCase, responses: object, labels: object, whole: Repor
     answers = [response for _, response in given]
     motions = [DASH if (motion := response.case.motion) is None else motion.name for response in answers]
     records = [name.removesuffix(REVERSED) for name in motions]
-    names = records
-    if not isinstance(responses, Mapping):
-        names = required_labels(answers, labels) or [response.solver for response in answers]
-    if labels is None:
-        names = [in_words(name, response.solver, words) for name, response in zip(names, answers, strict=True)]
+    names = records if isinstance(responses, Mapping) else required_labels(answers, labels)
+    if names is None or not (labels or isinstance(responses, Mapping)):
+        own = names or [response.solver for response in answers]
+        names = [in_words(name, response.solver, words) for name, response in zip(own, answers, strict=True)]
     signals = signals_of([response.case for response in answers])
     return [
         Run(response, variant, names[i], signals[i][0], records[i], motions[i] != records[i], whole.largest(response))
@@ -157,9 +157,8 @@ def required_runs(case: AnyCase, responses: object, labels: object, whole: Repor
 
 def in_words(name: str, solver: str, words: Words) -> str:
     """A name that a response has by its solver, in words."""
-    if not name.startswith(solver) or not words.has(f"short_{solver}"):
-        return name
-    return words(f"short_{solver}") + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
+    known = words.or_else(f"short_{solver}", solver)
+    return known + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
 
 
 def require_same(name: str, response: Response, case: AnyCase) -> None:
@@ -194,21 +193,11 @@ def title_block(block: Mapping[str, str], words: Words) -> Markup:
     return table((), [cells[:4], cells[4:]], kind="block")
 
 
-def question(notes: str, words: Words) -> Markup:
-    """The question."""
-    return element("p", element("b", words("question")), " ", notes) if notes else Markup("")
-
-
-def front(
-    whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, head: Sequence[Markup]
-) -> list[Markup]:
-    """The first page: title block, question, answer and drawing."""
-    parts = [*head, element("h2", words("answer"))]
-    if mechanisms:
-        parts += [*verdicts.answers(mechanisms, words), element("p", words("methods"))]
-    else:
-        parts.append(element("p", words("no_check")))
-    parts.append(element("p", outcomes(runs, words)))
+def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The answer and the drawing."""
+    found = verdicts.answers(mechanisms, words) if mechanisms else []
+    said = words("methods" if mechanisms else "no_check"), outcomes(runs, words)
+    parts = [element("h2", words("answer")), *found, *(element("p", one) for one in said)]
     return [*parts, picture(whole.at_rest(words), words(f"drawing_{whole.KIND}"), words)]
 
 
@@ -242,15 +231,10 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
         limits["d₀"] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=words(check.limit_state))] = check.capacity
-    parts = [
-        element("h2", words("runs"), kind="page"),
-        *[element("p", said) for said in content.solved_with([r.response for r in runs], words)],
-    ]
-    parts.append(
-        picture(
-            strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words), words(f"strip_{whole.KIND}"), words
-        )
-    )
+    solved = content.solved_with([run.response for run in runs], words)
+    parts = [element("h2", words("runs"), kind="page"), *[element("p", said) for said in solved]]
+    drawn = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
+    parts.append(picture(drawn, words(f"strip_{whole.KIND}"), words))
     drawn = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
     count = len({run.record for run in runs})
     parts.append(picture(drawn, words("histories_said", count=min(count, PANELS), of=count), words))
@@ -277,7 +261,7 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
     parts = [element("h2", name)]
     for piece in pieces if isinstance(pieces, list | tuple) else [pieces]:
         if isinstance(piece, Figure):
-            parts.append(picture(piece, name, words))
+            parts.append(picture(piece, name))
         elif isinstance(piece, str):
             parts.append(element("p", piece))
         elif isinstance(piece, Fragility):
@@ -314,10 +298,8 @@ def appendix(
     heads = [words(f"input_{key}") for key in ("name", "value", "basis")]
     for name, rows in given:
         if rows:
-            cells = [
-                (row.name, row.value, rests.get(row.key, words("computed" if row.computed else "not_given")))
-                for row in rows
-            ]
+            own = [words("computed" if row.computed else "not_given") for row in rows]
+            cells = [(row.name, row.value, rests.get(row.key, said)) for row, said in zip(rows, own, strict=True)]
             parts += [element("p", element("b", name)), table(heads, cells, kind="inputs")]
     return parts
 
@@ -337,12 +319,9 @@ def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup
         rows.append([*own, *whole.result(run.response, words), *(subject.tied(run.response, words) if ties else [])])
     heads = [words(f"run_{key}") for key in columns]
     left = {columns.index(name) for name in ("variant", "run", "polarity", "outcome", "fallen") if name in columns}
-    parts += [
-        element("h2", words("every_run")),
-        table(heads, rows, right=sorted(set(range(len(columns))) - left), kind="runs"),
-    ]
+    right = sorted(set(range(len(columns))) - left)
+    parts += [element("h2", words("every_run")), table(heads, rows, right=right, kind="runs")]
     if forces := subject.forces_kept(runs, words):
-        parts.append(
-            table([words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")], forces, right=(1, 2))
-        )
+        heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
+        parts.append(table(heads, forces, right=(1, 2)))
     return [*parts, element("h2", words("versions")), table((), content.versions(words), kind="block")]

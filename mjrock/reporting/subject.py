@@ -14,7 +14,7 @@ from ..plotting.masonry import blocks
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, Array, named
+from ..quantities import GRAVITY, NAMED, Array
 from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
@@ -228,11 +228,11 @@ class ReportedMasonry(Reported):
         """How it ended, largest motions, fallen blocks."""
         largest = float(self.moved(response).max())
         ended = "blocks_fell" if response.fallen else f"outcome_{response.outcome.name.lower()}"
-        sizes = [
-            words.quantity(value, "m", FOUND) for value in (largest, response.opening.max(), response.sliding.max())
-        ]
+        moved = largest, response.opening.max(), response.sliding.max()
+        sizes = [words.quantity(value, "m", FOUND) for value in moved]
         fell = [words("falls_at", block=block, t=words.quantity(t, "s", FOUND)) for block, t in response.fallen.items()]
-        return [words(ended), *sizes, named(fell) if fell else DASH]
+        said = ", ".join(fell[:NAMED]) or DASH
+        return [words(ended), *sizes, words("and_more", names=said, count=len(fell) - NAMED) if fell[NAMED:] else said]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not say."""
@@ -254,9 +254,8 @@ class ReportedMasonry(Reported):
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
         """The blocks as the runs with the largest motion end."""
         worst = sorted(runs, key=lambda run: -run.largest)[:ENDS]
-        said = [
-            words("at_time", run=run.label, t=words.quantity(float(run.response.t[-1]), "s", FOUND)) for run in worst
-        ]
+        ends = [words.quantity(float(run.response.t[-1]), "s", FOUND) for run in worst]
+        said = [words("at_time", run=run.label, t=t) for run, t in zip(worst, ends, strict=True)]
         return self._drawn([(run.response, text) for run, text in zip(worst, said, strict=True)])
 
     def _drawn(self, pieces: Sequence[tuple[Masonry | Response, str]]) -> Figure:
@@ -291,15 +290,8 @@ def broken_ties(runs: Sequence[Run], words: Words) -> list[str]:
         broke = [min(tie.broken for tie in run.response.ties.values()) for run in own]
         count = sum(math.isfinite(t) for t in broke)
         if count:
-            said.append(
-                words(
-                    "ties_broke",
-                    name=variant or words("all_runs"),
-                    count=count,
-                    of=len(own),
-                    t=words.quantity(min(broke), "s", FOUND),
-                )
-            )
+            name, first = variant or words("all_runs"), words.quantity(min(broke), "s", FOUND)
+            said.append(words("ties_broke", name=name, count=count, of=len(own), t=first))
     return said
 
 

@@ -68,9 +68,9 @@ class Words:
         """The text of a key, with values in their places."""
         return texts()[key][self.language].format(**values)
 
-    def has(self, key: str) -> bool:
-        """Whether there is a text of this key."""
-        return key in texts()
+    def or_else(self, key: str, other: str) -> str:
+        """The text of a key, or another one where there is none."""
+        return self(key) if key in texts() else other
 
     def marked(self, text: str) -> str:
         """Numbers of a text with the decimal mark of the language."""

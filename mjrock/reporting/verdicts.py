@@ -74,6 +74,8 @@ def required_checks(checks: object, alone: str) -> list[Mechanism]:
         several = [given] if isinstance(given, Check) else given
         if not isinstance(several, Sequence) or isinstance(several, str):
             raise TypeError(f"checks = {shown(given)} is no MechanismCheck or DynamicCheck, nor several of them")
+        if not several:
+            raise ValueError(f"checks[{name!r}] is empty; at least one check is needed")
         for one in several:
             require_kind(f"checks[{name!r}]", one, MechanismCheck, DynamicCheck)
         kinematic = [one for one in several if isinstance(one, MechanismCheck)]
@@ -96,9 +98,8 @@ def answers(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
         name = element("td", element("b", mechanism.name), Markup("<br>"), said, rowspan=str(len(verdicts)))
         for i, verdict in enumerate(verdicts):
             rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
-    lines = [
-        element("p", element("span", words(kind), kind=kind), " ", "; ".join(of)) for kind, of in names.items() if of
-    ]
+    held_by = [(element("span", words(kind), kind=kind), "; ".join(of)) for kind, of in names.items() if of]
+    lines = [element("p", mark, " ", of) for mark, of in held_by]
     return [*lines, table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))]
 
 
@@ -109,18 +110,10 @@ def _conditions(verdict: Verdict, words: Words) -> list[str]:
         said = words("overturned") if math.isinf(value) else words.quantity(value, verdict.unit, FOUND)
         return element("td", said, kind="right")
 
-    mark = element("td", words("fails" if not verdict.holds else "holds"), kind="holds" if verdict.holds else "fails")
-    ratio = element("td", words.ratio(verdict.ratio), kind="right")
-    what = words(verdict.what)
-    return [
-        what,
-        words(verdict.limit_state),
-        amount(verdict.demand),
-        amount(verdict.capacity),
-        ratio,
-        mark,
-        verdict.clause,
-    ]
+    kind = "holds" if verdict.holds else "fails"
+    numbers = amount(verdict.demand), amount(verdict.capacity), element("td", words.ratio(verdict.ratio), kind="right")
+    what = words(verdict.what), words(verdict.limit_state)
+    return [*what, *numbers, element("td", words(kind), kind=kind), verdict.clause]
 
 
 def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
@@ -135,9 +128,8 @@ def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
             record = worst.name.removesuffix(REVERSED)
             record += f" ({words('reversed')})" if record != worst.name else ""
             d = words("overturned") if math.isinf(worst.d) else words.quantity(worst.d, "m", FOUND)
-        rows.append(
-            (mechanism.name, words.ratio(least.ratio), f"{words(least.what)}, {words(least.limit_state)}", record, d)
-        )
+        what = f"{words(least.what)}, {words(least.limit_state)}"
+        rows.append((mechanism.name, words.ratio(least.ratio), what, record, d))
     columns = ("verdict_mechanism", "least_ratio", "verdict_check", "worst_record", "run_largest")
     return table([words(name) for name in columns], rows, right=(1, 4))
 
@@ -145,12 +137,9 @@ def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
 def limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
     """What the kinematic checks do not say."""
     said = [words("limit_seat")] if any(mechanism.kinematic for mechanism in mechanisms) else []
-    for mechanism in mechanisms:
-        if mechanism.kinematic:
-            gone = [state for state in mechanism.kinematic.states if mechanism.kinematic.broken_before(state)]
-            if gone:
-                states = ", ".join(words(state) for state in gone)
-                said.append(words("limit_broken", name=mechanism.name, states=states))
+    for name, check, _ in mechanisms:
+        if check and (gone := [words(state) for state in check.states if check.broken_before(state)]):
+            said.append(words("limit_broken", name=name, states=", ".join(gone)))
     return said
 
 
@@ -202,7 +191,8 @@ def _value(step: Step, words: Words) -> Markup:
 def effect_name(name: str, words: Words) -> str:
     """An effect, such as the second of the ties, in words; a limit state as it is."""
     kind, _, number = name.rpartition("_")
-    return f"{words(f'effect_{kind}')} {int(number) + 1}" if words.has(f"effect_{kind}") else name
+    known = words.or_else(f"effect_{kind}", "")
+    return f"{known} {int(number) + 1}" if known and number.isdigit() else name
 
 
 def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:

@@ -329,6 +329,15 @@ def test_a_wall_that_its_tie_alone_holds_has_no_displacement_of_its_own(tmp_path
     assert "at rest" in text or "still moving" in text
 
 
+def test_a_figure_of_the_user_keeps_its_points(tmp_path):
+    figure = Figure()
+    ax = figure.subplots()
+    ax.plot([0.0, 0.5])
+    page_of(tmp_path, CASE, answer(), language="it", sections={"F": figure})
+    figure.draw_without_rendering()
+    assert "0.1" in [tick.get_text() for tick in ax.get_yticklabels()]
+
+
 def test_long_texts_are_cut_in_the_margins_alone(tmp_path):
     project = "x" * 30 + " " + "y" * 900
     text = page_of(tmp_path, CASE, answer(), project={"project": project})
@@ -385,6 +394,7 @@ def test_a_sketch_names_values_or_arguments():
         ({"responses": {"a": []}, "labels": ["a"]}, "labels are for a sequence"),
         ({"checks": 3}, "checks = 3 of type int is no MechanismCheck"),
         ({"checks": {"a": [3]}}, r"checks\['a'\] = 3"),
+        ({"checks": {"a": []}}, r"checks\['a'\] is empty"),
         ({"checks": {"a": [CHECK, CHECK]}}, r"checks\['a'\] has 2 kinematic checks"),
         ({"project": {"owner": "?"}}, "project has 'owner', which is not one of project, client, author, date"),
         ({"project": "San Rocco"}, "project = 'San Rocco'"),
