@@ -213,12 +213,10 @@ def outcomes(runs: Sequence[Run], words: Words) -> str:
 
 def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The checks, step by step, and their curves."""
-    if not mechanisms:
-        return []
-    parts = [element("h2", words("checks"), kind="page"), element("p", words("checks_said"))]
-    parts += verdicts.kinematic_steps(mechanisms, words)
+    parts: list[Markup] = []
     if (figure := capacity_curves(mechanisms, words)) is not None:
-        parts.append(picture(figure, words("curves_said"), words))
+        parts += [element("h2", words("checks"), kind="page"), element("p", words("checks_said"))]
+        parts += [*verdicts.kinematic_steps(mechanisms, words), picture(figure, words("curves_said"), words)]
     if dynamic := verdicts.dynamic_steps(mechanisms, words):
         parts += [element("h2", words("dynamic")), element("p", words("dynamic_said")), *dynamic]
     return parts

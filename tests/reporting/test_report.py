@@ -319,6 +319,8 @@ def test_the_dynamic_verdict_of_masonry_stands_on_its_first_page(tmp_path):
     first = read(text[: text.index("<img")])
     assert first.count("HOLDS") == 3  # both conditions, and the answer
     assert "explicit steps, reversed" in read(text)
+    assert "The kinematic check" not in read(text)
+    assert "The check by dynamic runs" in read(text)
 
 
 def test_a_wall_that_its_tie_alone_holds_has_no_displacement_of_its_own(tmp_path):
