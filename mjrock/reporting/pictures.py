@@ -30,6 +30,8 @@ TALL = 2.9
 """Height of the drawing of a wall [inch]."""
 PANELS = 12
 """Most records whose motion is drawn."""
+FAR = 2.0
+"""A limit that is farther than the motion by this factor would flatten it."""
 NAMED = 5
 """Most runs of one record that are told apart by their lines."""
 OPENED = 0.06
@@ -191,7 +193,9 @@ def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, 
         len(records), min(2, len(records)), (WIDE / min(2, len(records)), 1.32 if len(records) > 4 else 1.8)
     )
     finite = [float(np.abs(path).max()) for run, path in zip(runs, moved, strict=True) if math.isfinite(run.largest)]
-    top = 1.1e3 * max([*finite, limit or 0.0, 1e-6])
+    top = 1.1e3 * max([*finite, 1e-6]) if finite else 1.1e3 * (limit or 1.0)
+    if limit is not None and 1e3 * limit < FAR * top:
+        top = max(top, 1.1e3 * limit)
     for ax, record in zip(axes.flat, records, strict=False):
         for run, path in zip(runs, moved, strict=True):
             if run.record == record:

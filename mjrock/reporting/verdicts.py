@@ -177,15 +177,17 @@ def _step(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[st
     cells = []
     for check in checks:
         found = [one for one in check.steps if (one.key, one.of) == (step.key, step.of)]
-        cells.append(_value(found[0], words) if found else DASH)
+        cells.append(_value(found[0], check, words) if found else DASH)
     return [words(f"step_{step.key}", of=effect_name(step.of, words)), formula(shape), *cells, step.clause]
 
 
-def _value(step: Step, words: Words) -> Markup:
-    """The cell of a value; a ratio says by its colour whether it holds."""
-    if step.key not in ("ratio", "linear_ratio", "ground_ratio"):
+def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
+    """The cell of a value; a ratio says by its colour whether it holds, if none below takes its place."""
+    if not step.key.endswith("ratio"):
         return element("td", words.quantity(step.value, step.unit, FOUND), kind="right")
-    return element("td", words.ratio(step.value), kind=f"right {'holds' if step.value >= 1 else 'fails'}")
+    counts = step.key != "ratio" or step.of != "SLV" or step.value >= check.ground_ratio
+    kind = f"right {'holds' if step.value >= 1 else 'fails'}" if counts else "right"
+    return element("td", words.ratio(step.value), kind=kind)
 
 
 def effect_name(name: str, words: Words) -> str:

@@ -331,6 +331,20 @@ def test_a_wall_that_its_tie_alone_holds_has_no_displacement_of_its_own(tmp_path
     assert "at rest" in text or "still moving" in text
 
 
+def test_a_ratio_below_one_that_a_floor_takes_the_place_of_is_not_said_to_fail(tmp_path):
+    """A wall between floors: the verdict of the SLV is that of a_g,SLV / a_g (C8.7.1.2.1.8)."""
+    bending = mr.VerticalBending(mr.Block.from_size(0.35, 3.2, 1.0, 1800.0), load=12e3)
+    site = mr.code_spectrum("NTC 2018", ag=2.56, F0=2.36, Tc=0.347, soil="C")
+    check = mr.mechanism_check(bending, site.at_height(0.25, participation=1.2, height=0.4))
+    ratio = check.states["SLV"].ratio
+    assert ratio < 1 < check.ground_ratio
+    text = page_of(tmp_path, CASE, answer(), checks={"bending": check})
+    words = Words("en")
+    assert f'<td class="right">{words.ratio(ratio)}</td>' in text
+    assert f'<td class="right holds">{words.ratio(check.ground_ratio)}</td>' in text
+    assert "FAILS" not in read(text)
+
+
 def test_a_figure_of_the_user_keeps_its_points(tmp_path):
     figure = Figure()
     ax = figure.subplots()
