@@ -57,7 +57,7 @@ class Damper(Anchored):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, c = {self.c / 1e3:g} kN s/m"
 
 
@@ -109,6 +109,6 @@ class FrictionDamper(Anchored):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         said = f"z = {self.height:g} m,\nk = {self.stiffness / 1e6:.4g} kN/mm"
         return f"{said}, slips at {self.slip_force / 1e3:g} kN"

@@ -68,7 +68,7 @@ class Thrust(Effect):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, {self.force / 1e3:g} kN outwards"
 
 
@@ -111,7 +111,7 @@ class Load(Effect):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, x = {self.offset:g} m,\n{self.force / 1e3:g} kN downwards"
 
 
@@ -150,7 +150,7 @@ class AddedMass(Effect):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, x = {self.offset:g} m, {self.mass:g} kg"
 
 

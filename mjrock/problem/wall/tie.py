@@ -170,7 +170,7 @@ class Tie(Anchored):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         said = f"z = {self.height:g} m, {self.length:g} m long,\n"
         said += f"k = {self.stiffness / 1e6:.4g} kN/mm, slack {1e3 * self.slack:g} mm"
         if self.prestress:
