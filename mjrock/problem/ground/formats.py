@@ -33,9 +33,9 @@ from .records import (
     short,
     stated_units,
     step,
-    text_lines,
     value_of,
 )
+from .tables import SPREADSHEETS, Wanted, parse_table, table_lines
 
 AT2_UNIT = re.compile(
     r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
@@ -350,7 +350,7 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     try:
         stream = obspy.read(str(path))
     except Exception as error:
-        raise ValueError(f"ObsPy does not read it: {error}") from error
+        raise ValueError(f"ObsPy does not read it: {short(str(error))}") from error
     if unit is None:
         raise ValueError(
             f"a file of {stream[0].stats._format} states no unit: give unit=, one of {', '.join(UNITS)}, or as a "
@@ -368,7 +368,7 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
                 for name, value in (
                     ("NETWORK", trace.stats.network), ("STATION_CODE", trace.stats.station),
                     ("LOCATION", trace.stats.location), ("STREAM", trace.stats.channel),
-                    ("EVENT_ID", str(trace.stats.starttime)),
+                    ("DATE_TIME_FIRST_SAMPLE", str(trace.stats.starttime)),
                 )
                 if value
             },
@@ -405,17 +405,28 @@ FORMATS = (
 )
 """Formats of text that state their step and unit, in the order in which they are tried."""
 
+UTF_16 = b"\xff\xfe", b"\xfe\xff"
+SEISMOLOGY = re.compile(r"TIMESERIES |WID[12] |BEGIN GSE2")
+"""How texts of seismology begin, which ObsPy reads."""
+
 
 def recognised(path: Path, unit: str | float | None) -> list[Trace]:
-    """The traces of a file of any format, which its first lines tell; any other by ObsPy."""
+    """The traces of a file of any format, which its first lines tell; of a table whose header states its step and unit;
+    and of a file of seismology by ObsPy."""
     start = path.read_bytes()[:4096]
-    if binary_kind(start) and not start.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if path.suffix.lower() not in SPREADSHEETS and binary_kind(start) and not start.startswith(UTF_16):
         return seismograms(path, unit)
-    lines = text_lines(path)
+    lines = table_lines(path)
     for one in FORMATS:
         if any(one.signs.match(line) for line in lines[:SMC_HEAD]):
             return one.parse(lines)
-    raise ValueError(
-        f"line 1 is {short(lines[0])}: none of the formats {', '.join(one.name for one in FORMATS)}, SAC, miniSEED; a "
-        "table of numbers is read by from_csv(path, unit, dt=, columns=, skip=)"
-    )
+    if SEISMOLOGY.match(lines[0]):
+        return seismograms(path, unit)
+    try:
+        return parse_table(lines, Wanted(unit))
+    except ValueError as error:
+        names = ", ".join(one.name for one in FORMATS)
+        raise ValueError(
+            f"none of the formats {names}, SAC, miniSEED; as a table, which from_csv and components_in read with "
+            f"unit=, dt=, columns= and skip=: {error}"
+        ) from error

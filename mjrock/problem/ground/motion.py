@@ -32,6 +32,7 @@ from ...quantities import (
     spelt,
     within_ranges,
 )
+from .correction import integral, within_band, without_baseline
 from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
 from .oscillator import acceleration, building_modes, steps_of
 from .records import COARSEST, FINEST, Parse, Trace, checked, read, text_lines
@@ -124,8 +125,13 @@ class GroundMotion:
     @cached_property
     def velocities(self) -> Array:
         """Velocity of the ground at each sample [m/s], shape (n,)."""
-        means = 0.5 * (self.accel[1:] + self.accel[:-1])
-        return np.concatenate(([0.0], np.cumsum(self.dt * means)))
+        return integral(self.accel, self.dt)
+
+    @cached_property
+    def displacements(self) -> Array:
+        """Displacement of the ground at each sample [m], shape (n,)."""
+        within = self.dt * (2 * self.accel[:-1] + self.accel[1:]) / 6
+        return np.concatenate(([0.0], np.cumsum(self.dt * (self.velocities[:-1] + within))))
 
     @property
     def duration(self) -> float:
@@ -153,8 +159,7 @@ class GroundMotion:
     @property
     def residual_displacement(self) -> float:
         """Displacement at the last sample [m]."""
-        within = self.dt * (2 * self.accel[:-1] + self.accel[1:]) / 6
-        return float(self.dt * (self.velocities[:-1] + within).sum())
+        return float(self.displacements[-1])
 
     @property
     def arias_intensity(self) -> float:
@@ -237,6 +242,35 @@ class GroundMotion:
             low_pass = scipy.signal.butter(8, 0.7 * self.dt / new, output="sos")
             accel = scipy.signal.sosfiltfilt(low_pass, accel, padlen=min(last, math.ceil(10 * new / self.dt)))
         return GroundMotion(np.interp(new * np.arange(steps + 1), self._times, accel), new, name, self.header)
+
+    def corrected(self, baseline: str | None = None, band: Sequence[float | None] | None = None) -> GroundMotion:
+        """The motion without a baseline and within a band of frequencies, as long as before.
+
+        With both, the baseline is taken off before the filter and again after it, which leaves some of its own where
+        its zeros before and after the record are cut off.
+
+        `residual_velocity` and `residual_displacement` of both say what it has done, and `mr.plotting.record` draws
+        them beside each other.
+
+        Args:
+            baseline: "constant", "linear" or "quadratic", the polynomial of accelerations that is taken off: that whose
+                integral is closest to the velocity. None leaves it.
+            band: lower and upper corner of a Butterworth filter [Hz], of fourth order, forwards and backwards, such as
+                (0.1, 25.0); one of them may be None. A corner keeps half of the amplitude.
+
+        Raises:
+            TypeError, ValueError: for neither of both, another baseline, or corners outside 0.001 Hz to 0.49 / dt.
+        """
+        if baseline is None and band is None:
+            raise ValueError("corrected takes a baseline, a band, or both")
+        accel = self.accel if baseline is None else without_baseline(self.accel, self.dt, baseline)
+        if band is not None:
+            accel = within_band(accel, self.dt, band)
+            accel = accel if baseline is None else without_baseline(accel, self.dt, baseline)
+        done = [] if baseline is None else [f"without {baseline} baseline"]
+        if band is not None:
+            done += [f"{side} {corner:g} Hz" for side, corner in zip(("above", "below"), band, strict=True) if corner]
+        return GroundMotion(accel, self.dt, ", ".join([self.name, *done]), self.header)
 
     def through_building(
         self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
@@ -400,13 +434,14 @@ class GroundMotion:
     ) -> GroundMotion:
         """A component of a file of any format that states its time step, which its first lines tell.
 
-        PEER AT2, ESM and ITACA, K-NET and KiK-net, GeoNet V1A and V2A, SMC, CSMIP and COSMOS V1 and V2; SAC, miniSEED
-        and more by ObsPy (the extra `obspy`), which know no unit. `components_in` gives all components of a file.
+        PEER AT2, ESM and ITACA, K-NET and KiK-net, GeoNet V1A and V2A, SMC, CSMIP and COSMOS V1 and V2; a table whose
+        header states step and unit; SAC, miniSEED and more by ObsPy (the extra `obspy`), which know no unit.
+        `components_in` gives all components of a file.
 
         Args:
             path: the file.
             component: which one, as the file names it in STREAM, such as "360", "UP", "NS"; None for the only one.
-            unit: of a file of ObsPy: "m/s2", "cm/s2", "mm/s2", "g", "ft/s2", or how many m/s2 a count is.
+            unit: of a file that states none: "m/s2", "cm/s2", "mm/s2", "g", "ft/s2", or how many m/s2 a count is.
 
         Raises:
             OSError: if the file cannot be read.
@@ -529,7 +564,8 @@ def motion_of(trace: Trace, path: str | PathLike[str], stacklevel: int = 3) -> G
     """The motion of a trace, named after its header or its file, with what makes one doubt its unit or baseline."""
     header = trace.header
     named = [header[field] for field in NAMING if header.get(field)] if header.get("STATION_CODE") else []
-    motion = GroundMotion(trace.accel, trace.dt, name := " ".join(named) or Path(path).stem, header)
+    named += [] if named else [Path(path).stem, *(header.values() if list(header) == ["STREAM"] else ())]
+    motion = GroundMotion(trace.accel, trace.dt, name := " ".join(named), header)
     peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
     if peak < FAINT:
         doubt = "" if "UNITS" in header else "; is its unit right?"

@@ -7,7 +7,7 @@ import fnmatch
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,7 @@ from .formats import recognised
 from .motion import GroundMotion, motion_of
 from .records import read
 from .spectrum import factor_to_spectrum, response_spectrum
-from .tables import SPREADSHEETS, Wanted, parse_table, table_lines
+from .tables import Wanted, parse_table, table_lines
 
 MOST_SHOWN = 8
 """Most records that `repr` of a set names."""
@@ -32,11 +32,9 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     `repr` says which components each record has, and by what `records_in` found that they go together, in `by`.
     """
 
-    def __init__(
-        self, records: Mapping[str, tuple[GroundMotion, ...]] | None = None, by: Mapping[str, str] | None = None
-    ) -> None:
-        super().__init__(records or {})
-        self.by = dict(by or {})
+    def __init__(self, *records: Any, **named: tuple[GroundMotion, ...]) -> None:
+        super().__init__(*records, **named)
+        self.by: dict[str, str] = {}
 
     def __repr__(self) -> str:
         lines = [f"<RecordSet of {len(self)} records>"]
@@ -77,7 +75,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         if alone := [name for name, components in self.items() if not _level(components)]:
             raise ValueError(f"{named(alone)}: no horizontal component; del records[{alone[0]!r}] leaves it out")
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
-        return RecordSet(scaled, self.by)
+        return _found(scaled, self.by)
 
     def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
         """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
@@ -103,7 +101,7 @@ def components_in(
 ) -> tuple[GroundMotion, ...]:
     """All components of the record in one file: of any format that `GroundMotion.from_file` reads, or of a table.
 
-    A file is a table where its columns, or their step, are given. Horizontal components come first.
+    A file is read as a table where `dt`, `columns` or `skip` are given. Horizontal components come first.
 
     Args:
         path: the file.
@@ -116,7 +114,7 @@ def components_in(
         ValueError: as `GroundMotion.from_file` and `GroundMotion.from_csv`.
     """
     wanted = Wanted(unit, time_unit, dt, columns, skip)
-    if (dt, columns, skip) == (None, None, None) and require_path("path", path).suffix.lower() not in SPREADSHEETS:
+    if (dt, columns, skip) == (None, None, None):
         traces = read(path, lambda file: recognised(file, unit))
     else:
         traces = read(path, lambda file: parse_table(table_lines(file), wanted))
@@ -170,7 +168,7 @@ def records_in(
         unused = key if key not in found else next(iter(tokens))
         found[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
         found.by |= {unused: by} if len(tokens) > 1 else {}
-    return RecordSet(dict(sorted(found.items())), found.by)
+    return _found(dict(sorted(found.items())), found.by)
 
 
 def _directed(motion: GroundMotion, token: str) -> GroundMotion:
@@ -187,9 +185,16 @@ def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
     return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
 
 
+def _found(records: Mapping[str, tuple[GroundMotion, ...]], by: Mapping[str, str]) -> RecordSet:
+    """A set of records that something told to go together."""
+    made = RecordSet(records)
+    made.by.update(by)
+    return made
+
+
 def _joined(one: Mapping[str, tuple[GroundMotion, ...]], other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:
     """The records of two sets; those of the second where both have one of a name."""
-    return RecordSet({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
+    return _found({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
 
 
 def scaled_together(

@@ -147,11 +147,11 @@ class Table:
         """A row, by the number of its line and its words."""
         return f"line {self.places[line]} is {' '.join(f'{x:g}' for x in self.values[line])}"
 
-    @property
-    def choice(self) -> str:
+    def choice(self, timed: bool) -> str:
         """The columns and how one chooses among them, in words."""
         named = f": {', '.join(f'{i} {short(name)}' for i, name in enumerate(self.names))}" if self.names else ""
-        return f"{self.width} columns{named}; choose with columns=, such as columns=(0, 1) for times and accelerations"
+        such = "(0, 1) for times and accelerations" if timed else "0 for one of accelerations"
+        return f"{self.width} columns{named}; choose with columns=, such as columns={such}"
 
 
 def table_lines(path: Path) -> list[str]:
@@ -207,8 +207,10 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
     if wanted.skip is None:
         found, stated = _without_header(found, dt, stated)
     timed = wanted.columns != ROWS and found.width > 1 and _is_grid(scale * found.column(0), found.decimals, scale)
-    if stated and FINEST <= stated.value <= COARSEST:
-        _agree("dt", dt, stated)
+    if stated and not FINEST <= stated.value <= COARSEST:
+        stated = None
+    if stated:
+        _agree("dt, which was given,", dt, stated)
         dt = stated.value if dt is None and not timed else dt
     if wanted.columns == ROWS or (wanted.columns is None and dt is not None and not timed and _in_rows(found)):
         if dt is None:
@@ -216,11 +218,12 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
         columns = {0: np.array([x for row in found.values for x in row])}
     else:
         columns, dt = _columns_of(found, wanted, dt)
+        _agree("the step of the times", dt, stated)
     count = found.stated(HEAD_COUNT)
     if count and count.value != (n := len(next(iter(columns.values())))):
         raise ValueError(f"{n} samples; the header states {count.value:g} in line {count.place}; skip= leaves it out")
     return [
-        Trace(_factor(found, wanted.unit, i) * values, dt, {"STREAM": name} if name and len(columns) > 1 else {})
+        Trace(_factor(found, wanted.unit, i) * values, dt, {"STREAM": name or f"{i}"} if len(columns) > 1 else {})
         for (i, values), name in zip(columns.items(), [found.bare(i) for i in columns], strict=True)
     ]
 
@@ -304,7 +307,8 @@ def _without_header(found: Table, dt: float | None, stated: Stated | None) -> tu
         lead, rest = [x for row in found.values[:rows] for x in row], found.values[rows:]
         if len(lead) > MOST_HEADS or len(rest) < 10:
             break
-        if set(lead) & {float(len(rest)), float(sum(map(len, rest)))}:
+        counts = {float(len(rest))} | ({float(sum(map(len, rest)))} if found.width > 2 else set())
+        if set(lead) & counts:
             steps = [x for x in lead if FINEST <= x < COARSEST]
             return found.without(rows), Stated(steps[0], found.places[0]) if len(steps) == 1 else stated
     first, *others = found.values
@@ -340,10 +344,11 @@ def _columns_of(found: Table, wanted: Wanted, dt: float | None) -> tuple[dict[in
             raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}")
     scale = TIME_UNITS[wanted.time_unit]
     time = scale * found.column(picked[0])
-    timed = len(picked) > 1 and (dt is None or _is_grid(time, found.decimals, scale))
+    grid = _is_grid(time, found.decimals, scale)
+    timed = len(picked) > 1 and (dt is None or grid)
     if wanted.columns is None and (len(picked) > 2 or (len(picked) == 2 and not timed)):
-        rows = "" if timed else f", or {'' if dt else 'dt= and '}columns='rows' for samples in rows"
-        raise ValueError(f"line {found.places[0]} has {found.choice}{rows}")
+        rows = "" if grid else f", or {'' if dt else 'dt= and '}columns='rows' for samples in rows"
+        raise ValueError(f"line {found.places[0]} has {found.choice(timed)}{rows}")
     if not timed:
         if dt is None:
             raise ValueError(f"line {found.places[0]} has one column of accelerations; give its time step dt")
@@ -410,11 +415,11 @@ def _step_of(time: Array, found: Table, scale: float, given: float | None) -> fl
     return dt
 
 
-def _agree(name: str, given: float | None, stated: Stated) -> None:
-    """Raise a ValueError with both readings where a caller and a header say different things."""
-    if given is not None and abs(given - stated.value) > UNEVEN * stated.value:
+def _agree(name: str, given: float | None, stated: Stated | None) -> None:
+    """Raise a ValueError with both readings where a step is another than the one that a header states."""
+    if given is not None and stated is not None and abs(given - stated.value) > UNEVEN * stated.value:
         raise ValueError(
-            f"{name} = {given:g} s was given, and line {stated.place} states {stated.value:g} s; skip= leaves it out"
+            f"{name} is {given:g} s, and line {stated.place} states {stated.value:g} s; skip= leaves it out"
         )
 
 
