@@ -93,7 +93,7 @@ WRITES = {
     "fragility_coverage": {"fragility_coverage.txt"},
     "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},
     "sketch": {"sketch.png"},
-    "first_pictures": {"effects.png", "tutorial.png"},
+    "first_pictures": {"effects.png", "tutorial.png", "record.png"},
     "speed": {"speed.txt"},
     "step_cost": {f"step_cost.{ending}" for ending in ("png", "csv", "txt")},
     "step_vectors": {f"step_vectors.{ending}" for ending in ("csv", "txt")},
