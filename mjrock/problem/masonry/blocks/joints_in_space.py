@@ -128,7 +128,7 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
 
 
 def joints_in_space(blocks: Sequence[Shape], tolerance: float) -> tuple[SpaceJoint, ...]:
-    """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
+    """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
 
     Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
     which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
@@ -138,13 +138,16 @@ def joints_in_space(blocks: Sequence[Shape], tolerance: float) -> tuple[SpaceJoi
     normals = [np.array([face.normal for face in of_block]) for of_block in faces]
     solids = [block.solids for block in blocks]
     joints: list[SpaceJoint] = []
+    overlaps: list[tuple[float, int, int]] = []
     for i, j in neighbours(blocks, tolerance).tolist():
         deep = max(_depth(part, other, tolerance) for part in solids[i] for other in solids[j])
         if deep < -tolerance:
             continue
-        require_apart(names[i], names[j], deep, tolerance)
+        if deep > tolerance:
+            overlaps.append((deep, i, j))
         for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
             joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), (side, other), names, tolerance)
+    require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
 
 
