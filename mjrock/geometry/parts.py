@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations, pairwise
+from itertools import chain, combinations, pairwise
 
 import numpy as np
 
 from ..quantities import Array
 from .hull import Hull, area_vector, bulk_of, hull_of
 
-ON_PLANE = 1e-5
+ON_PLANE = 1e-6
 """Distance from a plane below which a corner lies on it, over the extent of the body [-]."""
 ONE_PART = 1e-6
 """Difference of the volume of the hull of two parts from that of both below which they are one, over their sum [-]."""
@@ -27,7 +27,8 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
 
     Args:
         corners: of the body [m], shape (n, 3).
-        faces: numbers of the corners of each, all counterclockwise as seen from outside, or all clockwise.
+        faces: numbers of the corners of each, all counterclockwise as seen from outside, or all clockwise. One that is
+            not plane is taken as the triangles with its first corner.
         most: parts at most.
 
     Raises:
@@ -35,8 +36,11 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
     """
     origin, extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
     about = (corners - origin) / extent
-    triangles = about[[(face[0], i, j) for face in faces for i, j in pairwise(face[1:])]]
-    open_cells = [(about, [about[list(face)] for face in faces])]
+    fans = [about[[(face[0], i, j) for i, j in pairwise(face[1:])]] for face in faces]
+    triangles = np.concatenate(fans)
+    plane = [np.ptp(about[list(face)] @ _normal(about[list(face)])) <= ON_PLANE for face in faces]
+    sides = [[about[list(face)]] if flat else [*fan] for face, fan, flat in zip(faces, fans, plane, strict=True)]
+    open_cells = [(about, list(chain.from_iterable(sides)))]
     whole: list[Array] = []
     count = 0
     while open_cells:
@@ -63,6 +67,12 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
     if len(whole) > most:
         raise ValueError(f"its faces cut it into {len(whole)} parts, and {most} is the most")
     return [origin + extent * part for part in whole]
+
+
+def _normal(ring: Array) -> Array:
+    """Unit normal of a polygon."""
+    normal = area_vector(ring)
+    return normal / max(float(np.linalg.norm(normal)), ON_PLANE * ON_PLANE)
 
 
 def _largest(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None:

@@ -338,3 +338,43 @@ def test_damaged_files_are_read_or_refused_with_their_path(tmp_path, form):
             except ValueError as error:
                 unnamed += [str(error)] if str(path) not in str(error) else []
     assert unnamed == []
+
+
+def test_a_warped_face_is_cut_as_its_triangles():
+    """One upper corner of a cube is 0.2 m lower: the first diagonal of the upper face goes up, the other one down."""
+    vertices, faces = cuboid((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    vertices[7, 2] = 0.8
+    for up, volume in (((1, 3, 7, 5), 1 - 0.2 / 6), ((3, 7, 5, 1), 1 - 0.2 / 3)):
+        others = [face for face in faces if set(face) != {1, 3, 7, 5}]
+        mesh = {"stone": (vertices, [*others, up])}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            whole = mr.Masonry.from_meshes(mesh, ground=True, convex="hull")
+        cut = mr.Masonry.from_meshes(mesh, ground=True, convex="parts")
+        assert cut.blocks[1].mass == pytest.approx(2000 * volume, rel=1e-6)
+        assert whole.blocks[1].mass == pytest.approx(2000 * (1 - 0.2 / 6), rel=1e-6)
+
+
+def test_a_body_whose_faces_cross_is_not_cut():
+    """A prism over a figure of eight encloses 1 m3 once forwards and once backwards."""
+    mesh = {"eight": prism([(0, 0), (2, 1), (2, 0), (0, 1.5)], 1.0)}
+    with pytest.raises(ValueError, match=r"body eight is not convex, and cannot be cut into parts: .*faces cross"):
+        mr.Masonry.from_meshes(mesh, ground=True, convex="parts")
+
+
+def test_bodies_that_are_drawn_twice_are_read_once(tmp_path):
+    meshes = bricks(count=3)
+    with pytest.warns(UserWarning, match="1 bodies are drawn twice, and read once: again"):
+        read = mr.Masonry.from_meshes(meshes | {"again": meshes["b1"]}, ground=True)
+    assert read.names == ("ground", "b0", "b1", "b2")
+    vertices, faces = meshes["b0"]
+    with pytest.warns(UserWarning, match="1 bodies are drawn twice"):
+        assert mr.Masonry.from_meshes({"b": (vertices, faces + faces[::-1])}, ground=True).names == ("ground", "b")
+
+
+def test_a_refusal_says_that_the_sizes_are_odd():
+    """Bricks in mm with a gap of 20 mm."""
+    meshes = bricks(1000.0)
+    meshes["b7"] = (meshes["b7"][0] + [0, 0, 20.0], meshes["b7"][1])
+    with pytest.raises(ValueError, match=r"b7 touch no other block .* 20 m.* A file takes unit='mm'"):
+        mr.Masonry.from_meshes(meshes, ground=True)

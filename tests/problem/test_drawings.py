@@ -235,3 +235,35 @@ def test_an_elevation_in_the_plane_x_z_and_a_unit_other_than_that_of_the_header(
     np.testing.assert_allclose(masonry.blocks[1].corners, [(0, 0), (0.4, 0), (0.4, 0.9), (0, 0.9)], atol=1e-12)
     own = mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, up="z")
     assert own.blocks[1].area == pytest.approx(0.36 * 2.54**2)
+
+
+def test_inserts_without_a_scale_along_z_and_drawings_of_lines(tmp_path):
+    """Plane drawings of some programs insert blocks with a scale of nought along z."""
+    document = ezdxf.new(units=units.M)
+    document.blocks.new("s").add_lwpolyline(box(0, 1, 0, 2), close=True)
+    document.modelspace().add_blockref("s", (5, 0), dxfattribs={"zscale": 0.0})
+    document.saveas(tmp_path / "a.dxf")
+    assert mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True).blocks[1].area == pytest.approx(2.0)
+    document = ezdxf.new()
+    for start, end in (((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 0))):
+        document.modelspace().add_line(start, end)
+    document.saveas(tmp_path / "b.dxf")
+    with pytest.raises(ValueError, match="there is 3 LINE; join its lines to closed polylines"):
+        mr.Masonry.from_dxf(tmp_path / "b.dxf", ground=True)
+
+
+def test_outlines_that_are_not_convex_are_cut_or_filled(tmp_path):
+    """An L of 4 m2 is two parts of a unit; its hull has 5 m2. It keeps its place among the blocks."""
+    shape = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
+    path = drawing(tmp_path / "a.dxf", ("L", shape), ("stone", box(2, 3, 0, 1)))
+    with pytest.raises(ValueError, match=r"block L_0, .* points inwards; a block is convex; convex='parts' cuts it"):
+        mr.Masonry.from_dxf(path, ground=True)
+    cut = mr.Masonry.from_dxf(path, ground=True, convex="parts", density={"L": 1000.0, "stone": 2000.0}, length=0.5)
+    assert isinstance(cut.blocks[1], mr.Compound)
+    assert cut.names == ("ground", "L_0", "stone_0")
+    assert [block.mass for block in cut.blocks[1:]] == pytest.approx([2000.0, 1000.0])
+    assert len(cut.joints) == 3
+    with pytest.warns(UserWarning, match=r"convex='hull' adds volume to 1 bodies: L_0 25.00%"):
+        filled = mr.Masonry.from_dxf(path, ["L"], convex="hull")
+    assert filled.blocks[0].area == pytest.approx(5.0)
+    assert [block.fixed for block in filled.blocks] == [True, False]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -74,9 +74,10 @@ def odd_frequency(xi: float, frequency: float, lowest: float) -> str:
     )
 
 
-def odd_sizes(blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:
-    """What is odd about the sizes of the free blocks, in words, empty where nothing is."""
-    sizes = {name: 2 * block.size for block, name in zip(blocks, names, strict=True) if not block.fixed}
+def odd_sizes(sizes: Mapping[str, float]) -> str:
+    """What is odd about the sizes of free blocks by their names [m], in words, empty where nothing is."""
+    if not sizes:
+        return ""
     ordered = sorted(sizes, key=sizes.__getitem__)
     median = sizes[ordered[len(ordered) // 2]]
     if sizes[ordered[0]] > LARGEST:
@@ -94,6 +95,20 @@ def odd_sizes(blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:
     return (
         f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in {asked}? A file takes unit={likely[0]!r}"
     )
+
+
+def with_sizes(error: ValueError, drawn: Mapping[str, Array], turn: Array) -> ValueError:
+    """What is wrong with a file, and what is odd about the sizes of its bodies.
+
+    Args:
+        error: what is wrong.
+        drawn: vertices of the bodies by name, in the units and axes of the file, shape (n, 3).
+        turn: what takes these to m with z upwards, shape (3, 3).
+    """
+    turned = {name: np.abs(turn) @ np.ptp(places, axis=0) for name, places in drawn.items() if len(places)}
+    sizes = {name: float(np.linalg.norm(extents)) for name, extents in turned.items()}
+    odd = odd_sizes({name: size for name, size in sizes.items() if 0 < size < np.inf})
+    return ValueError(f"{error}; {odd}" if odd else str(error))
 
 
 def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: bool) -> str:
@@ -133,9 +148,9 @@ def remedy(deepest: float, joints_within: Finder, blocks: Sequence[AnyBlock]) ->
         return f"no tolerance up to {WIDEST:g} m takes them"
     joints = joints_within(tolerance)
     touching = {i for joint in joints for i in (joint.below, joint.above)}
-    loose = sum(i not in touching and not block.fixed for i, block in enumerate(blocks))
-    left = f", and leaves {loose} blocks without one" if loose else ""
-    return f"tolerance = {tolerance:g} m takes them: it finds {len(joints)} joints{left}"
+    if loose := sum(i not in touching and not block.fixed for i, block in enumerate(blocks)):
+        return f"with tolerance = {tolerance:g} m, which takes them, {loose} blocks have no joint: mend the file"
+    return f"tolerance = {tolerance:g} m takes them: it finds {len(joints)} joints"
 
 
 def rounded_up(value: float) -> float:

@@ -67,6 +67,7 @@ from .drawing import (
     remedy,
     said_of,
     split_faces,
+    with_sizes,
 )
 from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
 from .files.compas import compas_text, read_compas
@@ -358,7 +359,8 @@ class Masonry:
             i = int(np.where(own, -1.0, xi / frequency).argmax())
             lowest = self._lowest_frequency if xi[i] else 0.0
             odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
-        sizes, faces = odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)
+        free = {self.names[i]: 2 * self.blocks[i].size for i in self.free}
+        sizes, faces = odd_sizes(free), split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
         alone = f"without a joint {said_of(touches, self.names)}" if touches else ""
         return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
@@ -971,6 +973,7 @@ class Masonry:
         scale: Scale = None,
         unit: str | None = None,
         up: str | None = None,
+        convex: str | None = None,
         layers: Sequence[str] | None = None,
         **options: Unpack[JointOptions],
     ) -> Self:
@@ -987,6 +990,7 @@ class Masonry:
             length: out of the plane [m], 1e-3 to 1000, or one for each layer.
             scale, unit: of the drawing, as of `from_obj`; None takes what its header says, or m.
             up: axis of the drawing that points upwards; None is "y". With "z" an elevation is drawn in the plane x, z.
+            convex: what becomes of an outline that is not convex, as of `from_obj`.
             layers: those that are read; None reads all.
             options: further arguments of `Masonry`.
 
@@ -1000,7 +1004,7 @@ class Masonry:
             UserWarning: if the drawing is damaged and was repaired while it was read, or holds splines, hatches or
                 other areas, which are left out.
         """
-        given = Given(fixed, ground, scale, unit, up).checked()
+        given = Given(fixed, ground, scale, unit, up, convex).checked()
         drawing = read_dxf(require_path("path", path), None if layers is None else names_of_list("layers", layers))
         try:
             blocks = polygons_of(drawing, given, density, length)
@@ -1008,7 +1012,8 @@ class Masonry:
                 blocks.insert(0, ground_below_all(blocks))
             return cls(blocks, **options)._touching()
         except ValueError as error:
-            raise ValueError(f"path = {path}: {error}") from None
+            drawn = {outline.name: outline.corners for outline in drawing.outlines}
+            raise ValueError(f"path = {path}: {with_sizes(error, drawn, given.matrix(drawing.unit or 1.0))}") from None
 
     def to_obj(self, path: AnyPath) -> Path:
         """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
@@ -1047,11 +1052,14 @@ class Masonry:
     def _of_meshes(cls, meshes: Sequence[Mesh], density: float, given: Given, options: JointOptions) -> Self:
         """Masonry of meshes."""
         given = given.checked()
-        blocks = blocks_of(meshes, density, given)
-        if given.ground:
-            corners = np.concatenate([block.corners for block in blocks])
-            blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
-        masonry = cls(blocks, **options)._touching()
+        try:
+            blocks = blocks_of(meshes, density, given)
+            if given.ground:
+                corners = np.concatenate([block.corners for block in blocks])
+                blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
+            masonry = cls(blocks, **options)._touching()
+        except ValueError as error:
+            raise with_sizes(error, {mesh.name: mesh.vertices for mesh in meshes}, given.matrix()) from None
         if given.up is None and (odd := odd_axis(masonry.blocks, masonry.space_joints, given.ground)):
             warnings.warn(odd, Implausible, stacklevel=5)
         return masonry

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from itertools import pairwise
 from operator import index
 from typing import Annotated, NamedTuple
@@ -149,7 +150,7 @@ def used(vertices: Array, faces: MeshFaces) -> tuple[Array, MeshFaces]:
 
 
 def bodies_of(mesh: Mesh) -> list[Mesh]:
-    """The closed bodies of a mesh, and plane plates that are open; those of one mesh are numbered.
+    """The closed bodies of a mesh, and plane plates that are open.
 
     Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
     touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
@@ -177,7 +178,26 @@ def bodies_of(mesh: Mesh) -> list[Mesh]:
         raise ValueError(f"body {mesh.name} has no faces")
     if open_edges and not all(is_plate(body) or not _open_edges(body) for body in bodies):
         raise ValueError(f"body {mesh.name} is open: {len(open_edges)} of its edges belong to one face alone")
-    return bodies if len(bodies) == 1 else [body._replace(name=f"{mesh.name}_{i}") for i, body in enumerate(bodies)]
+    return bodies
+
+
+def _all_bodies(meshes: Sequence[Mesh]) -> list[Mesh]:
+    """The bodies of all meshes with names of their own. It warns of those with the vertices of one before them, which
+    are left out."""
+    seen: set[bytes] = set()
+    again, bodies = list[Mesh](), list[Mesh]()
+    for mesh in meshes:
+        own = list[Mesh]()
+        for body in bodies_of(mesh):
+            places = np.unique(body.vertices, axis=0).tobytes()
+            (again if places in seen else own).append(body)
+            seen.add(places)
+        bodies += own if len(own) == 1 else [body._replace(name=f"{mesh.name}_{i}") for i, body in enumerate(own)]
+    if again:
+        said = named([body.name for body in again])
+        warnings.warn(f"{len(again)} bodies are drawn twice, and read once: {said}", stacklevel=6)
+    count = Counter(body.name for body in bodies)
+    return [body if count[body.name] == 1 else body._replace(name=f"{body.name}_{i}") for i, body in enumerate(bodies)]
 
 
 def _apart(places: Array, faces: MeshFaces, parts: list[int]) -> list[tuple[Array, MeshFaces]]:
@@ -237,8 +257,12 @@ def oriented(body: Mesh) -> Mesh:
 
 def enclosed_by(body: Mesh) -> float:
     """Volume that the faces of a closed body enclose, negative where they are clockwise as seen from outside [m3]."""
-    triangles = np.array([(face[0], i, j) for face in body.faces for i, j in pairwise(face[1:])])
-    return float(np.linalg.det(body.vertices[triangles] - body.vertices.mean(axis=0)).sum()) / 6
+    return float(np.linalg.det(triangles_of(body) - body.vertices.mean(axis=0)).sum()) / 6
+
+
+def triangles_of(body: Mesh) -> Array:
+    """The triangles of the faces of a body with their first vertices [m], shape (n, 3, 3)."""
+    return np.asarray(body.vertices[[(face[0], i, j) for face in body.faces for i, j in pairwise(face[1:])]])
 
 
 class Bound(NamedTuple):
@@ -266,13 +290,13 @@ class Bound(NamedTuple):
 
     @property
     def is_convex(self) -> bool:
-        """Whether the faces enclose what the hull does, and each lies on a face of the hull."""
+        """Whether the faces enclose what the hull does, and each of their triangles lies on a face of the hull."""
         if abs(self.enclosed / self.of_hull - 1) > SAME_VOLUME:
             return False
         places, extent = self.body.vertices, float(np.ptp(self.body.vertices, axis=0).max())
         on = places[[self.hull.corners[face[0]] for face in self.hull.faces]]
         offsets = (on * self.hull.normals).sum(axis=1)
-        off = (np.abs(places[list(face)] @ self.hull.normals.T - offsets).max(axis=0).min() for face in self.body.faces)
+        off = (np.abs(ring @ self.hull.normals.T - offsets).max(axis=0).min() for ring in triangles_of(self.body))
         return bool(max(off) <= SAME_PLANE * extent)
 
 
@@ -291,17 +315,14 @@ def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[Soli
     turn, fixed, convex = given.matrix(), given.fixed, given.convex
     with np.errstate(invalid="ignore"):  # an infinite coordinate is named below
         meshes = [mesh._replace(vertices=mesh.vertices @ turn.T) for mesh in meshes]
-    bodies = [body for mesh in meshes for body in bodies_of(mesh)]
-    count = Counter(body.name for body in bodies)
-    numbered = [body.name if count[body.name] == 1 else f"{body.name}_{i}" for i, body in enumerate(bodies)]
+    bodies = _all_bodies(meshes)
+    names = [body.name for body in bodies]
     for name, times in Counter(fixed).items():
         if times > 1:
             raise ValueError(f"fixed has {name!r} {times} times; each body is named once")
-        if name not in numbered:
-            raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(numbered[:10])}")
-    bodies = [
-        body._replace(name=name, fixed=body.fixed or name in fixed) for body, name in zip(bodies, numbered, strict=True)
-    ]
+        if name not in names:
+            raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(names[:10])}")
+    bodies = [body._replace(fixed=body.fixed or body.name in fixed) for body in bodies]
     for body in bodies:
         if not (np.abs(body.vertices) <= FARTHEST).all():  # a NaN is not
             raise ValueError(
@@ -359,18 +380,18 @@ def _whole(bound: Bound, density: float) -> Polyhedron:
         raise ValueError(f"body {body.name}: {error}") from None
 
 
-def _cut(bound: Bound, density: float) -> Compound:
+def _cut(bound: Bound, density: float) -> SolidBlock:
     """A body that is not convex as a unit of convex parts, which fill it."""
     body = bound.body
     try:
-        parts = [
-            Polyhedron(part, density if body.density is None else body.density)
-            for part in convex_parts(body.vertices, body.faces, MOST_PARTS)
-        ]
+        parts = []
+        for part in convex_parts(body.vertices, body.faces, MOST_PARTS):
+            with suppress(ValueError):  # what is too thin for a block is missed by the volume
+                parts.append(Polyhedron(part, density if body.density is None else body.density))
         filled = sum(part.volume for part in parts)
         if abs(filled / bound.enclosed - 1) > SAME_VOLUME:
-            raise ValueError(f"parts fill {filled:.4g} m3 of {bound.enclosed:.4g} m3")
-        return Compound(parts, body.fixed, body.name)
+            raise ValueError(f"parts fill {filled:.4g} m3 of {bound.enclosed:.4g} m3; do its faces cross?")
+        return Compound(parts, body.fixed, body.name) if len(parts) > 1 else _whole(bound, density)
     except (ValueError, TypeError) as error:
         raise ValueError(
             f"body {body.name} is not convex, and cannot be cut into parts: {error}; convex='hull' takes its hull, "

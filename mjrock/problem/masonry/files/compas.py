@@ -57,23 +57,28 @@ def read_compas(path: Path) -> list[Mesh]:
 
 
 def _inside(thing: Any) -> Any:
-    """What a part of a file holds: under `data` since COMPAS 2, under `value` before, where it may have both."""
-    while isinstance(thing, dict) and ("dtype" in thing or "datatype" in thing or set(thing) == {"data"}):
-        thing = thing["data"] if "data" in thing else thing["value"]
-    return thing
+    """What a part of a file holds: under `data` since COMPAS 2, under `value` before, and at times in a list of one."""
+    while True:
+        if isinstance(thing, list) and len(thing) == 1:
+            thing = thing[0]
+        elif isinstance(thing, dict) and ("dtype" in thing or "datatype" in thing or set(thing) == {"data"}):
+            thing = thing["data"] if "data" in thing else thing["value"]
+        else:
+            return thing
 
 
 def _parts(content: Any) -> list[tuple[object, Any]]:
-    """The blocks of a model, an assembly or a list with their keys.
+    """The blocks of a model, an assembly or a list with their keys, or the only one.
 
     Assemblies are graphs whose nodes hold the blocks. Those of COMPAS 0 are blocks beside a network, which says what
     is a support.
     """
     if isinstance(content, list):
-        parts = [part[0] if isinstance(part, list) and len(part) == 1 else part for part in content]
-        if not all(isinstance(part, dict) for part in parts):
+        if not all(isinstance(_inside(part), dict) for part in content):
             raise TypeError
-        return list(enumerate(parts))
+        return list(enumerate(content))
+    if "vertex" in content and "face" in content:
+        return [(0, content)]
     if "elements" in content:
         parts = content["elements"]
         return list(parts.items() if isinstance(parts, dict) else enumerate(parts))

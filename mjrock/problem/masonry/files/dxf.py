@@ -5,15 +5,18 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ....geometry.hull import prism
 from ....quantities import Array, named, shown
-from ..blocks.polygon import Polygon
+from ..blocks.compound import Compound, FlatBlock, SolidBlock
+from ..blocks.polygon import InwardsError, Polygon
 from ..builders.in_plane import MOST_BLOCKS
-from .bodies import Given, plain
+from .bodies import Given, Mesh, blocks_of, plain
 from .meshes import bytes_of
 
 SHORT = 1e-9
@@ -111,7 +114,8 @@ def _outlines(path: Path, entities: Sequence[Any]) -> tuple[list[Outline], Count
         outlines.append(Outline(f"{plain(layer, 'layer')}_{counts[layer]}", layer, corners))
         counts[layer] += 1
     if not outlines:
-        raise ValueError(f"path = {path} has no closed polyline; there is {_counted(others) or 'nothing'}")
+        join = "; join its lines to closed polylines" if others["LINE"] > 2 else ""
+        raise ValueError(f"path = {path} has no closed polyline; there is {_counted(others) or 'nothing'}{join}")
     return outlines, others
 
 
@@ -190,7 +194,10 @@ def _inserted(entities: Iterable[Any]) -> Iterator[Any]:
     for entity in entities:
         if entity.dxftype() != "INSERT":
             yield entity
-        elif entity.mcount > 1:
+            continue
+        if entity.dxf.zscale == 0.0:  # as some programs write it into plane drawings, and the library cannot turn it
+            entity.dxf.zscale = 1.0
+        if entity.mcount > 1:
             yield from _inserted(entity.multi_insert())
         else:
             yield from _inserted(entity.virtual_entities())
@@ -215,7 +222,7 @@ def _corners(polyline: Any) -> Array:
     return places
 
 
-def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLayer) -> list[Polygon]:
+def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
     """The blocks of a drawing, in m with z upwards.
 
     Args:
@@ -241,16 +248,38 @@ def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLaye
             raise ValueError(f"{what} = {shown(value)} has nothing for the layer {layer!r}")
         return value[layer]
 
-    polygons = []
+    polygons: dict[str, FlatBlock] = {}
+    dented: dict[str, tuple[Mesh, dict[str, Any]]] = {}
     for outline in drawing.outlines:
-        held = outline.layer in fixed or outline.name in fixed
-        numbers = of("density", density, outline.layer), of("length", length, outline.layer)
+        held, layer = outline.layer in fixed or outline.name in fixed, outline.layer
+        numbers = {"density": of("density", density, layer), "length": of("length", length, layer)}
         corners = outline.corners @ turn.T
         begins = f"block {outline.name}, which begins at {corners[0, 0]:g}, {corners[0, 2]:g} m"
         if np.ptp(corners[:, 1]) > SHORT * np.ptp(corners, axis=0).max():
             raise ValueError(f"{begins}: it is not in the plane of the drawing; up='z' takes one in the plane x, z")
+        ring = corners[:, [0, 2]]
         try:
-            polygons.append(Polygon(corners[:, [0, 2]], *numbers, held, outline.name))
+            polygons[outline.name] = Polygon(ring, **numbers, fixed=held, name=outline.name)
+        except InwardsError as error:
+            if given.convex is None:
+                raise ValueError(f"{begins}: {error}; convex='parts' cuts it, and convex='hull' fills it") from None
+            places, faces = prism(ring, 1.0)
+            dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
         except (ValueError, TypeError) as error:
             raise ValueError(f"{begins}: {error}") from None
-    return polygons
+    meshes = [mesh for mesh, _ in dented.values()]
+    for block in blocks_of(meshes, 2000.0, Given((), False, None, None, None, given.convex)) if meshes else ():
+        polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])
+    return [polygons[outline.name] for outline in drawing.outlines]
+
+
+def _flat(block: SolidBlock, numbers: dict[str, Any]) -> FlatBlock:
+    """A prism along y as a block of the plane, with its density and length."""
+    polygons = []
+    for part in block.parts:
+        front = part.corners[part.corners[:, 1] < 0][:, [0, 2]]
+        about = front - front.mean(axis=0)
+        polygons.append(Polygon(front[np.argsort(np.arctan2(about[:, 1], about[:, 0]))], **numbers))
+    if len(polygons) > 1:
+        return Compound(polygons, block.fixed, block.name)
+    return replace(polygons[0], fixed=block.fixed, name=block.name)
