@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.hull import Convex
-from ...quantities import Array, named
+from ...quantities import Array, Integers, named
 from .blocks.compound import AnyBlock
 from .blocks.joints import SHORTEST, Joint, neighbours
 from .blocks.joints_in_space import BLUNT, SpaceJoint
@@ -159,17 +159,20 @@ def rounded_up(value: float) -> float:
     return float(f"{digit * math.ceil(value / digit):.2g}")
 
 
-def nearly(joints: Sequence[Joint | SpaceJoint], joints_within: Finder, tolerance: float) -> str:
-    """What is odd about blocks of a file whose faces lie a little farther apart than the tolerance [m], in words."""
-    wider = min(NEARLY * tolerance, WIDEST)
-    near = {(joint.below, joint.above): joint.name for joint in joints_within(wider)}
-    for joint in joints:
-        near.pop((joint.below, joint.above), None)
-    if not near:
+def not_joined(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], tolerance: float) -> Integers:
+    """Pairs of blocks whose bounds touch within a tolerance [m] and that have no joint, shape (pairs, 2)."""
+    joined = {tuple(sorted((joint.below, joint.above))) for joint in joints}
+    pairs = neighbours(blocks, tolerance)
+    return pairs[[tuple(pair) not in joined for pair in pairs.tolist()]]
+
+
+def nearly(names: Sequence[str], wider: float) -> str:
+    """What is odd about joints of a file that only a wider tolerance finds [m], in words, empty where none are."""
+    if not names:
         return ""
     return (
-        f"{len(near)} pairs of blocks have no joint and lie less than {wider:g} m apart, such as "
-        f"{named(list(near.values()))}; tolerance = {wider:g} m joins them"
+        f"{len(names)} pairs of blocks have no joint and lie less than {wider:g} m apart, such as {named(names)}; "
+        f"tolerance = {wider:g} m joins them"
     )
 
 
@@ -179,14 +182,12 @@ def along_lines(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint]
     The planes between them all have one normal then. Blocks that meet edge on edge, as bricks across a corner do, have
     several, and press on each other in none.
     """
-    joined = {tuple(sorted((joint.below, joint.above))) for joint in joints}
     touches = []
-    for i, j in neighbours(blocks, tolerance).tolist():
-        if (i, j) not in joined:
-            for one, other in product(blocks[i].solids, blocks[j].solids):
-                if where := _touch(one, other, tolerance, blocks[i].in_space):
-                    touches.append(Touch(i, j, where))
-                    break
+    for i, j in not_joined(blocks, joints, tolerance).tolist():
+        for one, other in product(blocks[i].solids, blocks[j].solids):
+            if where := _touch(one, other, tolerance, blocks[i].in_space):
+                touches.append(Touch(i, j, where))
+                break
     return touches
 
 

@@ -56,10 +56,12 @@ from .builders.in_plane import (
 from .builders.in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import (
+    NEARLY,
     WIDEST,
     along_lines,
     gaps,
     nearly,
+    not_joined,
     odd_axis,
     odd_damping,
     odd_frequency,
@@ -279,11 +281,11 @@ class Masonry:
         except OverlapError as error:
             raise ValueError(f"{error}; {remedy(error.deepest, self._joints_within, self.blocks)}") from None
 
-    def _joints_within(self, tolerance: float) -> tuple[Joint | SpaceJoint, ...]:
-        """The joints of another tolerance [m]."""
+    def _joints_within(self, tolerance: float, pairs: Integers | None = None) -> tuple[Joint | SpaceJoint, ...]:
+        """The joints of another tolerance [m], of all blocks or of some pairs."""
         if self.in_space:
-            return joints_in_space(self.polyhedra, tolerance)
-        return joints_in_plane(self.polygons, tolerance)
+            return joints_in_space(self.polyhedra, tolerance, pairs)
+        return joints_in_plane(self.polygons, tolerance, pairs)
 
     @cached_property
     def table(self) -> JointTable:
@@ -1085,7 +1087,9 @@ class Masonry:
                 f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
                 f"{self.tolerance:g} m; {gaps(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
             )
-        if odd := nearly(self.joints, self._joints_within, self.tolerance):
+        wider = min(NEARLY * self.tolerance, WIDEST)
+        apart = not_joined(self.blocks, self.joints, wider)
+        if odd := nearly([joint.name for joint in self._joints_within(wider, apart)], wider):
             warnings.warn(odd, Implausible, stacklevel=6)
         return self
 

@@ -175,13 +175,15 @@ class Meetings(NamedTuple):
     travel: Array
 
 
-def joints_in_plane(blocks: Sequence[Flat], tolerance: float) -> tuple[Joint, ...]:
+def joints_in_plane(blocks: Sequence[Flat], tolerance: float, pairs: Integers | None = None) -> tuple[Joint, ...]:
     """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
 
     Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance [m], which
-    is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
+    is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none. Pairs are the
+    numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
-    names, edges, pairs = names_of(blocks), Edges.of(blocks), neighbours(blocks, tolerance)
+    names, edges = names_of(blocks), Edges.of(blocks)
+    pairs = neighbours(blocks, tolerance) if pairs is None else pairs
     first, number = numbered_parts(blocks)
     of_parts = edges if number.max() == 1 else Edges.of(list(chain.from_iterable(block.parts for block in blocks)))
     joints: list[Joint] = []

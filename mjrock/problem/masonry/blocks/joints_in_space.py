@@ -11,7 +11,7 @@ import numpy as np
 
 from ....geometry import convex
 from ....geometry.hull import Convex, Side
-from ....quantities import Array, frozen
+from ....quantities import Array, Integers, frozen
 from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart, unlike_named
 from .polyhedron import Vertices
 from .shape import Shape
@@ -127,11 +127,12 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     return first, np.cross(normals, first)
 
 
-def joints_in_space(blocks: Sequence[Shape], tolerance: float) -> tuple[SpaceJoint, ...]:
+def joints_in_space(blocks: Sequence[Shape], tolerance: float, pairs: Integers | None = None) -> tuple[SpaceJoint, ...]:
     """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
 
     Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
-    which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
+    which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none. Pairs
+    are the numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
     names = names_of(blocks)
     faces = [facing(block.sides) for block in blocks]
@@ -139,7 +140,7 @@ def joints_in_space(blocks: Sequence[Shape], tolerance: float) -> tuple[SpaceJoi
     solids = [block.solids for block in blocks]
     joints: list[SpaceJoint] = []
     overlaps: list[tuple[float, int, int]] = []
-    for i, j in neighbours(blocks, tolerance).tolist():
+    for i, j in (neighbours(blocks, tolerance) if pairs is None else pairs).tolist():
         deep = max(_depth(part, other, tolerance) for part in solids[i] for other in solids[j])
         if deep < -tolerance:
             continue
