@@ -20,10 +20,13 @@ DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
-RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md"]
+RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "effects.md", "plain_models.md"]
+RUNS += ["notebook.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "theory.md"]
 LONG += ["results.md", "mortar.md", "slow_loading.md"]
 """Pages whose lines run."""
+ELSEWHERE = ["own_effect.md", "stacks_grippers_feet.md"]
+"""Pages whose lines run in tests of their own, since they are parts of files."""
 
 
 def blocks(page: Path) -> list[tuple[str, str | None]]:
@@ -63,6 +66,27 @@ def test_the_lines_of_a_page_run_and_print_what_it_shows(name, tmp_path, monkeyp
     for printed, shown in run(DOCS / name, {}):
         assert (shown is None) == (printed == ""), printed
         assert alike(printed, shown or ""), f"{name} shows\n{shown}\nand its lines print\n{printed}"
+
+
+def test_no_page_has_lines_that_nothing_runs():
+    assert sorted(page.name for page in DOCS.glob("*.md") if blocks(page)) == sorted([*RUNS, *LONG, *ELSEWHERE])
+
+
+@pytest.mark.slow
+def test_the_cells_of_the_page_of_notebooks_show_what_it_says(tmp_path):
+    """In a kernel of Jupyter: pictures, a table, and text where a cell ends in what has neither; no word of magic."""
+    nbclient = pytest.importorskip("nbclient", reason="the extra test is not installed")
+    pytest.importorskip("ipykernel", reason="the extra test is not installed")
+    nbformat = pytest.importorskip("nbformat")
+    page = blocks(DOCS / "notebook.md")
+    cells = [nbformat.v4.new_code_cell(code) for code, _ in page]
+    run_in = nbclient.NotebookClient(nbformat.v4.new_notebook(cells=cells), timeout=300)
+    run_in.execute(cwd=str(tmp_path), env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])})
+    shown = [next(one for one in cell.outputs if one.output_type == "execute_result").data for cell in cells]
+    richest = [next(kind for kind in ("text/html", "image/png", "text/plain") if kind in data) for data in shown]
+    table = ["image/png", "text/html", *5 * ["image/png"], "text/plain"]
+    assert richest == table
+    assert not [out for cell in cells for out in cell.outputs if "Warning" in str(out.get("text"))]
 
 
 def test_numbers_are_compared_to_their_last_digit():

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...files import write_text
+from ...notebook import Drawn
 from ...quantities import (
     Array,
     Density,
@@ -99,7 +100,7 @@ AnyPath = str | PathLike[str]
 
 @keywords_checked
 @dataclass(frozen=True, repr=False, init=False)
-class Masonry:
+class Masonry(Drawn):
     """Rigid blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
