@@ -14,15 +14,15 @@ ON_PLANE = 1e-6
 """Distance from a plane below which a corner lies on it, over the extent of the body [-]."""
 ONE_PART = 1e-6
 """Difference of the volume of the hull of two parts from that of both below which they are one, over their sum [-]."""
-CELLS_A_PART = 8
+CELLS_A_PART = 3
 """How many cells are cut at most, for each part that may come of them."""
 
 
 def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) -> list[Array]:
     """The corners of convex parts that fill a closed body, shape (n, 3) each.
 
-    The hull of the body is cut by the plane of the largest face that goes through it, each piece by the largest face
-    within that piece, and so on. A piece that no face goes through is whole or empty, which the winding number about
+    The hull of the body is cut by the plane of the largest face that goes through it, each piece by that of the largest
+    face within it, and so on. A piece that no face goes through is whole or empty, which the winding number about
     its centroid says. Neighbours whose union is convex are then put together.
 
     Args:
@@ -50,7 +50,7 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
         except ValueError:  # what is cut off is thinner than a part can be
             continue
         cell = cell[list(hull.corners)]
-        cut = _largest(cell, polygons)
+        cut = _plane(cell, polygons)
         if cut is None:
             if abs(_winding(bulk_of(cell, hull.faces).centroid, triangles)) > 0.5:
                 whole.append(cell)
@@ -75,20 +75,16 @@ def _normal(ring: Array) -> Array:
     return normal / max(float(np.linalg.norm(normal)), ON_PLANE * ON_PLANE)
 
 
-def _largest(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None:
+def _plane(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None:
     """The plane of the largest polygon that goes through a cell, its unit normal and offset, or None."""
-    largest, plane = 0.0, None
-    for polygon in polygons:
-        normal = area_vector(polygon)
-        area = float(np.linalg.norm(normal))
-        if area <= max(largest, ON_PLANE * ON_PLANE):
-            continue
-        normal = normal / area
-        offset = float((polygon @ normal).mean())
+    areas = np.array([np.linalg.norm(area_vector(polygon)) for polygon in polygons])
+    for i in np.argsort(-areas, kind="stable").tolist():
+        normal = _normal(polygons[i])
+        offset = float((polygons[i] @ normal).mean())
         beyond = cell @ normal - offset
         if beyond.min() < -ON_PLANE and beyond.max() > ON_PLANE:
-            largest, plane = area, (normal, offset)
-    return plane
+            return normal, offset
+    return None
 
 
 def _kept(polygon: Array, normal: Array, offset: float) -> Array:

@@ -358,7 +358,7 @@ def test_a_warped_face_is_cut_as_its_triangles():
 def test_a_body_whose_faces_cross_is_not_cut():
     """A prism over a figure of eight encloses 1 m3 once forwards and once backwards."""
     mesh = {"eight": prism([(0, 0), (2, 1), (2, 0), (0, 1.5)], 1.0)}
-    with pytest.raises(ValueError, match=r"body eight is not convex, and cannot be cut into parts: .*faces cross"):
+    with pytest.raises(ValueError, match=r"body eight is not convex, and cannot be cut .* do its faces cross"):
         mr.Masonry.from_meshes(mesh, ground=True, convex="parts")
 
 
@@ -378,3 +378,14 @@ def test_a_refusal_says_that_the_sizes_are_odd():
     meshes["b7"] = (meshes["b7"][0] + [0, 0, 20.0], meshes["b7"][1])
     with pytest.raises(ValueError, match=r"b7 touch no other block .* 20 m.* A file takes unit='mm'"):
         mr.Masonry.from_meshes(meshes, ground=True)
+
+
+def test_a_body_of_many_hollow_faces_is_not_cut(monkeypatch):
+    """As scans are; a comb of 9 teeth is 17 parts along its flanks."""
+    tooth = ((0.0, 1.0), (0.1, 1.0), (0.1, 0.5), (0.2, 0.5))
+    comb = [(0.0, 0.0), (1.7, 0.0), *((1.7 - 0.2 * i - x, z) for i in range(9) for x, z in tooth)]
+    mesh = {"comb": prism(comb[:-2], 0.5)}
+    assert len(mr.Masonry.from_meshes(mesh, ground=True, convex="parts").blocks[1].parts) == 17
+    monkeypatch.setattr("mjrock.problem.masonry.files.bodies.MOST_CUTS", 3)
+    with pytest.raises(ValueError, match=r"body comb is not convex, .* its faces cut it into .* parts.* hull"):
+        mr.Masonry.from_meshes(mesh, ground=True, convex="parts")

@@ -232,9 +232,11 @@ def gaps(
     apart[np.arange(len(loose)), loose] = np.inf
     one, other = divmod(int(apart.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
-    if touches := [t for t in along_lines(blocks, (), tolerance) if t.block in loose or t.other in loose]:
-        return said_of(touches, names)
-    said = f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
+    touches = [touch for touch in along_lines(blocks, (), tolerance) if {touch.block, touch.other} & set(loose)]
+    said = f"{said_of(touches, names)}; " if touches else ""
+    if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
+        return said.removesuffix("; ")
+    said += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
     needed = needed_tolerance(loose, joints_within, tolerance)
     if needed is None:
         return f"{said}, and no tolerance up to {WIDEST:g} m joins all of them"

@@ -17,7 +17,7 @@ from ....geometry.graph import components
 from ....geometry.hull import THINNEST, Hull, bulk_of, hull_of
 from ....geometry.parts import convex_parts
 from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown
-from ..blocks.compound import MOST_PARTS, Compound, SolidBlock
+from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import FARTHEST, MOST_VERTICES
 from ..blocks.polyhedron import Polyhedron
 from ..builders.in_plane import MOST_BLOCKS
@@ -26,6 +26,10 @@ SAME_VOLUME = 1e-3
 """Largest difference of the volume of a body from that of its hull, over the latter [-]."""
 SAME_PLANE = 1e-2
 """Largest distance of a face of a body from a face of its hull, over the extent of the body [-]."""
+SPLINTER = 1e-4
+"""Volume of a part below which it is left out, over that of the body [-]."""
+MOST_CUTS = 64
+"""Most parts that a body is cut into."""
 PLATE = 0.1
 """Thickness of a support that is drawn as an open plate, over its extent [-]."""
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
@@ -382,12 +386,12 @@ def _whole(bound: Bound, density: float) -> Polyhedron:
 
 def _cut(bound: Bound, density: float) -> SolidBlock:
     """A body that is not convex as a unit of convex parts, which fill it."""
-    body = bound.body
+    body, parts = bound.body, list[Polyhedron]()
     try:
-        parts = []
-        for part in convex_parts(body.vertices, body.faces, MOST_PARTS):
+        for part in convex_parts(body.vertices, body.faces, MOST_CUTS):
             with suppress(ValueError):  # what is too thin for a block is missed by the volume
                 parts.append(Polyhedron(part, density if body.density is None else body.density))
+        parts = [part for part in parts if part.volume > SPLINTER * bound.enclosed]
         filled = sum(part.volume for part in parts)
         if abs(filled / bound.enclosed - 1) > SAME_VOLUME:
             raise ValueError(f"parts fill {filled:.4g} m3 of {bound.enclosed:.4g} m3; do its faces cross?")
