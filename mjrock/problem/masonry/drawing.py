@@ -83,7 +83,7 @@ def odd_sizes(sizes: Mapping[str, float]) -> str:
     if sizes[ordered[0]] > LARGEST:
         name = ordered[0]
     elif sizes[ordered[-1]] < SMALLEST:
-        name = ordered[-1]
+        return f"{ordered[-1]} is {sizes[ordered[-1]]:.4g} m across: is the unit too small? A file takes unit='m'"
     elif len(sizes) >= MANY and median > LARGE:
         name = ordered[len(ordered) // 2]
     else:

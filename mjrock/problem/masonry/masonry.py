@@ -354,6 +354,11 @@ class Masonry(Drawn):
         along = self.table.k_s[self.lines.joint] * self.areas_of(self.lines.k, self.lines.joint)
         return lowest_frequency(self.blocks, self.lines, self.table.friction, along)
 
+    @cached_property
+    def _odd_sizes(self) -> str:
+        """What is odd about the sizes of its free blocks, in words, empty where nothing is."""
+        return odd_sizes({self.names[i]: 2 * self.blocks[i].size for i in self.free})
+
     def _doubts(self) -> list[str]:
         """What is odd about it, in words, empty where nothing is. Its table is made, and so checked, for that."""
         xi, frequency = self.table.xi, self.table.frequency
@@ -362,8 +367,7 @@ class Masonry(Drawn):
             i = int(np.where(own, -1.0, xi / frequency).argmax())
             lowest = self._lowest_frequency if xi[i] else 0.0
             odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
-        free = {self.names[i]: 2 * self.blocks[i].size for i in self.free}
-        sizes, faces = odd_sizes(free), split_faces(self.joints, self.blocks, self.names)
+        sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
         alone = f"without a joint {said_of(touches, self.names)}" if touches else ""
         return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
@@ -1013,10 +1017,15 @@ class Masonry(Drawn):
             blocks = polygons_of(drawing, given, density, length)
             if given.ground:
                 blocks.insert(0, ground_below_all(blocks))
-            return cls(blocks, **options)._touching()
+            masonry = cls(blocks, **options)._touching()
         except ValueError as error:
             drawn = {outline.name: outline.corners for outline in drawing.outlines}
             raise ValueError(f"path = {path}: {with_sizes(error, drawn, given.matrix(drawing.unit or 1.0))}") from None
+        if drawing.unit not in (None, 1.0) and given.unit is given.scale is None and masonry._odd_sizes:
+            warnings.warn(
+                f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another", stacklevel=4
+            )
+        return masonry
 
     def to_obj(self, path: AnyPath) -> Path:
         """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
