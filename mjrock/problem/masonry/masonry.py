@@ -1021,7 +1021,7 @@ class Masonry(Drawn):
         except ValueError as error:
             drawn = {outline.name: outline.corners for outline in drawing.outlines}
             raise ValueError(f"path = {path}: {with_sizes(error, drawn, given.matrix(drawing.unit or 1.0))}") from None
-        if drawing.unit not in (None, 1.0) and given.unit is given.scale is None and masonry._odd_sizes:
+        if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
             warnings.warn(
                 f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another", stacklevel=4
             )
