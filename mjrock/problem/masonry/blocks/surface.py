@@ -143,7 +143,7 @@ def _merged(sides: list[Side], close: float) -> list[Side]:
     sides = list(sides)
     while True:
         normals = np.array([side.normal for side in sides])
-        for i, j in np.argwhere(np.triu(normals @ normals.T > LIKE - WITHIN, 1)).tolist():
+        for i, j in np.argwhere(np.triu(normals @ normals.T > LIKE - 1e-12, 1)).tolist():
             if (both := _both(sides[i], sides[j], close)) is not None:
                 sides = [both, *(side for k, side in enumerate(sides) if k not in (i, j))]
                 break

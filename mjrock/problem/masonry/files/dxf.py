@@ -249,17 +249,17 @@ def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLaye
         return value[layer]
 
     polygons: dict[str, FlatBlock] = {}
-    dented: dict[str, tuple[Mesh, dict[str, Any]]] = {}
+    dented: dict[str, tuple[Mesh, tuple[float, float]]] = {}
     for outline in drawing.outlines:
         held, layer = outline.layer in fixed or outline.name in fixed, outline.layer
-        numbers = {"density": of("density", density, layer), "length": of("length", length, layer)}
+        numbers = of("density", density, layer), of("length", length, layer)
         corners = outline.corners @ turn.T
         begins = f"block {outline.name}, which begins at {corners[0, 0]:g}, {corners[0, 2]:g} m"
         if np.ptp(corners[:, 1]) > SHORT * np.ptp(corners, axis=0).max():
             raise ValueError(f"{begins}: it is not in the plane of the drawing; up='z' takes one in the plane x, z")
         ring = corners[:, [0, 2]]
         try:
-            polygons[outline.name] = Polygon(ring, **numbers, fixed=held, name=outline.name)
+            polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
         except InwardsError as error:
             if given.convex is None:
                 raise ValueError(f"{begins}: {error}; convex='parts' cuts it, and convex='hull' fills it") from None
@@ -273,13 +273,13 @@ def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLaye
     return [polygons[outline.name] for outline in drawing.outlines]
 
 
-def _flat(block: SolidBlock, numbers: dict[str, Any]) -> FlatBlock:
+def _flat(block: SolidBlock, numbers: tuple[float, float]) -> FlatBlock:
     """A prism along y as a block of the plane, with its density and length."""
     polygons = []
     for part in block.parts:
         front = part.corners[part.corners[:, 1] < 0][:, [0, 2]]
         about = front - front.mean(axis=0)
-        polygons.append(Polygon(front[np.argsort(np.arctan2(about[:, 1], about[:, 0]))], **numbers))
+        polygons.append(Polygon(front[np.argsort(np.arctan2(about[:, 1], about[:, 0]))], *numbers))
     if len(polygons) > 1:
         return Compound(polygons, block.fixed, block.name)
     return replace(polygons[0], fixed=block.fixed, name=block.name)

@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from itertools import takewhile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -126,7 +125,7 @@ def read_ply(path: Path) -> list[Mesh]:
     try:
         order = PLY_ORDER[next(line[1] for line in lines if line[:1] == ["format"])]
         take = _words(body) if not order else _numbers(body[body.index(b"\n") + 1 :], order)
-        rows: dict[str, list[dict[str, Any]]] = {}
+        rows: dict[str, list[dict[str, list[float]]]] = {}
         for line in lines:
             if line[:1] == ["element"]:
                 name, count, kinds = line[1], int(line[2]), list[tuple[str, list[str]]]()
@@ -135,12 +134,12 @@ def read_ply(path: Path) -> list[Mesh]:
                 rows[name], kinds = [], [(p[-1], p[1:-1]) for p in _properties(lines, name)]
                 for _ in range(count):
                     rows[name].append({each: _value(take, kind) for each, kind in kinds})
-        places = np.array([[float(row[axis]) for axis in "xyz"] for row in rows["vertex"]])
+        places = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]])
         key = "vertex_indices" if "vertex_indices" in rows["face"][0] else "vertex_index"
         faces = [tuple(map(int, row[key])) for row in rows["face"]]
         if not all(len(face) > 2 and min(face) >= 0 and max(face) < len(places) for face in faces):
             raise ValueError("a face is not three or more of the vertices")
-    except (KeyError, IndexError, ValueError, TypeError, StopIteration, struct.error) as error:
+    except (KeyError, IndexError, ValueError, TypeError, OverflowError, StopIteration, struct.error) as error:
         raise ValueError(
             f"path = {path} is not a PLY file of vertices and faces, or is cut short: {type(error).__name__} {error}"
         ) from None
@@ -154,10 +153,10 @@ def _properties(lines: Sequence[list[str]], element: str) -> list[list[str]]:
     return list(takewhile(lambda line: line[:1] == ["property"], rest))
 
 
-def _value(take: Callable[[str], float], kind: Sequence[str]) -> float | list[float]:
-    """A property of a row of a PLY file: a number, or a list with its length before it."""
+def _value(take: Callable[[str], float], kind: Sequence[str]) -> list[float]:
+    """A property of a row of a PLY file: one number, or a list with its length before it."""
     if kind[0] != "list":
-        return take(kind[0])
+        return [take(kind[0])]
     return [take(kind[2]) for _ in range(int(take(kind[1])))]
 
 
