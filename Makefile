@@ -119,6 +119,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/dome.py --out docs/figures
 	$(BIN)/python scripts/studies/vaults.py --out docs/figures
 	$(BIN)/python scripts/studies/mechanisms.py --out docs/figures
+	$(BIN)/python scripts/studies/your_geometry.py --out docs/figures
 	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
 	$(BIN)/python scripts/studies/opened_in_vtk.py --out docs/figures
 	$(BIN)/python scripts/studies/drawn_in_space.py --out docs/figures

@@ -83,6 +83,7 @@ WRITES = {
     "facade": {"facade.png", "facade.txt"},
     "vaults": {"vaults.png", "vaults.txt"},
     "mechanisms": {"mechanisms.png", "mechanisms.txt"},
+    "your_geometry": {"your_geometry.png", "your_geometry.txt"},
     "throughput": {"throughput.txt"},
     "first_minute": {"first_minute.csv", "first_minute.txt"},
     "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
