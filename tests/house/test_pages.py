@@ -22,7 +22,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DO
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
 RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "notebook.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "theory.md"]
-LONG += ["results.md", "mortar.md", "slow_loading.md"]
+LONG += ["results.md", "mortar.md", "slow_loading.md", "town.md"]
 """Pages whose lines run."""
 
 

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import warnings
 
 import pytest
 from campaign_tasks import Square
@@ -57,3 +58,18 @@ def test_the_command_line(tmp_path):
     assert asked("status", "none.sqlite").returncode == 2
     assert "invalid choice: 'stat'" in asked("stat").stderr
     assert asked().returncode == 2
+
+
+def test_reading_rows_does_not_warn_again_of_what_the_run_has_warned_of(tmp_path):
+    """A grid makes its tasks anew, and a weak record is doubted as its case is made."""
+
+    def build(peak):
+        motion = mr.GroundMotion.sine(peak, 0.5)
+        return mr.Analysis(mr.Case(WALL, 0.0, 1.0, motion=motion), "analytical", e=E)
+
+    grid = mr.Grid(build, peak=[0.05, 3.0])
+    mr.campaign(grid, tmp_path / "walls.sqlite", workers=1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rows = mr.results(grid, tmp_path / "walls.sqlite")
+    assert [row["peak"] for row in rows] == [0.05, 3.0]
