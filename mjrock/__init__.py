@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from . import plotting as plotting
     from .anymodel.contact import PairContact
     from .anymodel.coulomb import CoulombFriction
+    from .anymodel.flexes import FlexContact, inspect_flexes
     from .anymodel.inspect import InspectedContact, inspect_contacts
     from .anymodel.make import contact_for
     from .anymodel.many import PairContacts, contacts_for
@@ -101,16 +102,16 @@ __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
     "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "Compound",
     "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "Dry",
-    "DynamicCheck", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact",
-    "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters",
+    "DynamicCheck", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion",
+    "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters",
     "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact",
     "MechanismCheck", "Mortar", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan",
     "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum",
     "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError",
     "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__",
-    "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier",
-    "compare", "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset",
-    "dynamic_check", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
+    "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare",
+    "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "dynamic_check",
+    "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes",
     "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
     "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of",
     "overturning_intensity", "paired_ratio", "push", "pushover", "records_in", "reference_frequency", "report",

@@ -7,18 +7,19 @@ plane it is one vertex. The contacts of all vertices are therefore between the s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from ..quantities import Array
-from .geoms import label_of
+from .geoms import compiled_model, label_of
 from .notes import model_spoilers
 from .row_of_model import Mixed, ModelRow
 
 
-class FlexContact(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class FlexContact:
     """The contacts of a flex with a geom.
 
     Args:
@@ -39,8 +40,20 @@ class FlexContact(NamedTuple):
         return f"{self.flex} on {self.geom}: k = {k} N/m, c = {c} N s/m at each of up to {self.points} points"
 
 
-def flex_contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
-    """The contacts of every flex with every geom that it can meet."""
+def inspect_flexes(model: mujoco.MjModel | mujoco.MjSpec) -> tuple[FlexContact, ...]:
+    """Every contact that a flex of a model can make with a geom, in physical units; those of flexes alone are left out.
+
+    Args:
+        model: a compiled model or a specification; it is not changed.
+
+    Raises:
+        TypeError: unless it is a model.
+        ValueError: if the specification does not compile.
+    """
+    return tuple(_contacts(compiled_model(model)))
+
+
+def _contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
     for flex in range(model.nflex):
         start = int(model.flex_vertadr[flex])
         bodies = model.flex_vertbodyid[start : start + int(model.flex_vertnum[flex])]
@@ -62,7 +75,7 @@ def flex_contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
 
 def flex_report(model: mujoco.MjModel) -> str:
     """A line for each flex and geom that can meet, and what the options of the model do; empty without any."""
-    found = [str(contact) for contact in flex_contacts(model)]
+    found = [str(contact) for contact in inspect_flexes(model)]
     if not found:
         return ""
     said = [f"For all of them: {sentence}." for sentence in model_spoilers(model)]

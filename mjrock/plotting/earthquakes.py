@@ -14,7 +14,7 @@ from ..problem.ground.code_spectrum import SpectrumOfCode
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
-from ..quantities import GRAVITY
+from ..quantities import GRAVITY, require_kind
 from ..study.intensity.fragility import Fragility
 from .arguments import equal_rows, finite_row, kind, listed, picture
 from .style import STYLES, folded
@@ -105,8 +105,10 @@ def fragility(
         unit: of the accelerations, for axis and label.
 
     Raises:
+        TypeError: unless the solver is a text.
         ValueError: for levels and shares of different lengths, or one without the other.
     """
+    require_kind("solver", solver, str, type(None))
     if (levels is None) != (shares is None):
         raise ValueError("levels and shares go together: give both, or neither")
     style = STYLES.get(solver or "", {})

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from pairs import FLOOR, scene
 
+import mjrock as mr
 from mjrock.__main__ import main
-from mjrock.anymodel.flexes import flex_contacts
 
 FEET = "".join(
     f'<body name="leg{i}" pos="{i} 0 1"><freejoint/><geom size=".1" mass="{i + 1}"/></body>' for i in range(9)
@@ -108,7 +108,7 @@ def test_contacts_of_flexes_are_those_of_the_engine(tmp_path, capsys, floor, sof
     edges = 1 if data.contact[0].dim == 1 else 4
     K, B, d, _ = data.efc_KBIP[rows].T
     k, c = edges * K * d / data.efc_R[rows], edges * B / data.efc_R[rows]
-    (found,) = flex_contacts(model)
+    (found,) = mr.inspect_flexes(model)
     for each, (low, high) in ((k, found.k), (c, found.c)):
         assert low * (1 - 1e-4) <= each.min()
         assert each.max() <= high * (1 + 1e-4)

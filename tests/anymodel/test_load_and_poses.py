@@ -129,6 +129,22 @@ def test_a_foot_lands_on_whatever_lies_below(ground, kind, points, x):
         assert {contact.contacts for contact in contacts} == {points}
 
 
+def test_a_foot_across_a_seam_of_tiles_is_twice_as_stiff():
+    """It has the points of both tiles, as docs/contacts_in_your_model.md says."""
+    depths = []
+    for x in (0.0, 0.5):
+        foot = FOOT.format(x=x, name="foot", kind="box")
+        spec = mujoco.MjSpec.from_string(scene(GROUNDS["tiles"], foot, timestep=1e-4, gravity=9.81))
+        asked = {"k": 1e5, "xi": 1.0, "friction": 0, "normal": (0, 0, 1)}
+        mr.contacts_for(spec, {("foot", "floor*"): asked}).apply(spec)
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        data.qpos[1] = -0.3499  # just above the tiles
+        mujoco.mj_step(model, data, 4000)
+        depths.append(0.05 - data.geom("foot").xpos[2])
+    assert depths == pytest.approx([9.81 * 10 / 4e5, 9.81 * 10 / 8e5], rel=1e-3)
+
+
 def test_where_the_pose_does_not_show_the_landing_it_says_so():
     spec = mujoco.MjSpec.from_string(scene(GROUNDS["tiles"], FOOT.format(x=0.2, name="foot", kind="sphere")))
     asked = {"k": 1e5, "restitution": 0.5, "friction": 0}

@@ -135,6 +135,7 @@ CALLS = OF_NUMBERS | {
         mr.inspect_contacts,
         {"model": BALL, "candidates": True, "contacts": 1, "keyframe": None, "qpos": None, "load": 3.0},
     ),
+    "inspect_flexes": (mr.inspect_flexes, {"model": BALL}),
     "automatic_timestep": (mr.automatic_timestep, {"wall": WALL, "contacts": CONTACTS, "side_stop": True}),
     "simulate": (
         mr.simulate,
@@ -487,7 +488,7 @@ def test_every_public_entry_is_tried():
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
         "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
-        "ContactWarning", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
+        "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push", "records_in",
         "RecordSet",
     }  # fmt: skip

@@ -20,10 +20,13 @@ DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
-RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "notebook.md"]
+RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "effects.md", "plain_models.md"]
+RUNS += ["notebook.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "theory.md"]
 LONG += ["results.md", "mortar.md", "slow_loading.md", "town.md"]
 """Pages whose lines run."""
+ELSEWHERE = ["own_effect.md", "stacks_grippers_feet.md"]
+"""Pages whose lines run in tests of their own, since they are parts of files."""
 
 
 def blocks(page: Path) -> list[tuple[str, str | None]]:
@@ -63,6 +66,10 @@ def test_the_lines_of_a_page_run_and_print_what_it_shows(name, tmp_path, monkeyp
     for printed, shown in run(DOCS / name, {}):
         assert (shown is None) == (printed == ""), printed
         assert alike(printed, shown or ""), f"{name} shows\n{shown}\nand its lines print\n{printed}"
+
+
+def test_no_page_has_lines_that_nothing_runs():
+    assert sorted(page.name for page in DOCS.glob("*.md") if blocks(page)) == sorted([*RUNS, *LONG, *ELSEWHERE])
 
 
 @pytest.mark.slow
@@ -195,6 +202,7 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     assert examples <= {page.stem for page in pages}
     assert (tmp_path / "html" / "arch_view.html").stat().st_size > 1e6
     assert '<iframe src="arch_view.html"' in (tmp_path / "html" / "results.html").read_text(encoding="utf-8")
+    assert (tmp_path / "html" / "theory.html").read_text(encoding="utf-8").count('display="block"') > 5
     for page in pages:
         text = page.read_text(encoding="utf-8")
         assert not re.search(r"<(?:script|img)[^>]+src=.https?:|<link[^>]+href=.https?:", text), page

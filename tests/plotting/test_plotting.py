@@ -56,6 +56,8 @@ def test_a_fragility_curve_needs_no_levels():
         plotting.fragility(fits[0], [0.5, 0.6], [0.3])
     with pytest.raises(ValueError, match="levels and shares go together: give both, or neither"):
         plotting.fragility(fits[0], levels=[0.5])
+    with pytest.raises(TypeError, match="solver = 3 of type int is not a str or None"):
+        plotting.fragility(fits[0], solver=3)
 
 
 def test_push_over_curves_beside_closed_forms(one_sided, contacts):

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..._version import __version__
 from ...geometry.frames import PLANE
@@ -36,8 +37,18 @@ HEAD = """\
 """
 OTHERS = " Any two solids without a joint have the W k and W c of the median joint."
 LOOKS = (
-    """<texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.62 0.7 0.8" width="16" height="96"/>"""
+    '<texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.62 0.7 0.8" width="16" height="96"/>',
+    '<texture name="edges" type="cube" builtin="flat" mark="edge" markrgb="0.2 0.15 0.12" rgb1="1 1 1" rgb2="1 1 1" '
+    'width="128" height="128"/>',
+    '<material name="edges" texture="edges" specular="0.1"/>',
 )
+"""The sky, and the edges of boxes: a texture that is stretched over each face and dark along its border."""
+SUN = (-0.2, 0.6, -0.9)
+VISUAL = (
+    '<visual><global azimuth="110" elevation="-12" offwidth="1280" offheight="960"/><map shadowclip="2" zfar="20"/>'
+    '<headlight ambient="0.25 0.25 0.27" diffuse="0.25 0.25 0.25" specular="0 0 0"/></visual>'
+)
+"""Half the width of what casts shadows and the depth of what is seen, over half the extent."""
 BRICK, PLASTER = (0.7, 0.33, 0.23, 1), (0.85, 0.82, 0.76, 1)
 """Colours of what moves and of what stands fixed."""
 SUPPORT_MASS = 1e12
@@ -107,11 +118,11 @@ def plain_text(
     body = [
         *memory,
         element("statistic", center=in_space(middle), extent=2 * half),
-        '<visual><global azimuth="110" elevation="-12" offwidth="1280" offheight="960"/></visual>',
+        VISUAL,
         *section("default", (f"  {line}" for line in _defaults(scene, pairs, rows, laws, mixes=mixes))),
-        *section("asset", (f"  {line}" for line in [LOOKS, *shapes])),
+        *section("asset", (f"  {line}" for line in [*LOOKS, *shapes])),
         "<worldbody>",
-        '  <light name="sun" directional="true" dir="-0.4 0.5 -0.8"/>',
+        "  " + _sun(np.array(in_space(middle)), half),
         "  " + element("camera", name="front", **camera_of(scene, middle, half), fovy="28"),
         *(f"  {line}" for line in _world(scene, pieces, moved)),
         "</worldbody>",
@@ -121,6 +132,13 @@ def plain_text(
         *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
+
+
+def _sun(middle: NDArray[np.float64], half: float) -> str:
+    """A light from far above, whose shadows end beyond what stands around the middle."""
+    place = np.round(middle - 6 * half * np.array(SUN), 1)
+    colours = {"ambient": np.full(3, 0.15), "diffuse": (0.6, 0.6, 0.57)}
+    return element("light", name="sun", directional="true", pos=place, dir=SUN, **colours)
 
 
 def _meets_others(pieces: list[Piece], pairs: Pairs) -> bool:
@@ -225,7 +243,7 @@ def _geom(piece: Piece, **attributes: object) -> str:
     if piece.box is not None:
         if piece.shape.box is None:
             attributes |= {"xyaxes": piece.box.axes[:2].ravel()}
-        return element("geom", type="box", size=piece.box.half, pos=piece.box.middle, **attributes)
+        return element("geom", type="box", size=piece.box.half, pos=piece.box.middle, material="edges", **attributes)
     return element("geom", type="mesh", mesh=piece.name, **attributes)
 
 

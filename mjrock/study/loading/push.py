@@ -93,6 +93,22 @@ class Push(Drawn):
         return float(np.abs(self.force[self._peak_at]))
 
     @property
+    def way(self) -> Array:
+        """The direction, a unit vector along x or in space along x, y and z, shape (2,) or (3,)."""
+        driver = self.answer.case.effects[-1]
+        assert isinstance(driver, Actuator)
+        return driver.way
+
+    @property
+    def d_0(self) -> float:
+        """Displacement beyond the peak at which nothing is borne any more [m]; NaN where the curve ends before it."""
+        after = self._peak_at + int(np.argmax(self.force[self._peak_at :] <= 0))
+        if self.force[after] > 0:
+            return math.nan
+        (d, e), (borne, none) = self.displacement[after - 1 : after + 1], self.force[after - 1 : after + 1]
+        return float(d + (e - d) * borne / (borne - none))
+
+    @property
     def inertia_share(self) -> float:
         """Root mean square of the forces of inertia over the whole curve, over the peak [-]."""
         return float(np.sqrt(np.mean(self.inertia**2)) / self.peak)

@@ -11,6 +11,7 @@ from wheels import rolling
 
 import mjrock as mr
 from scripts.studies.plain_masonry import closed_form, landing, lost
+from scripts.studies.second_opinion import facade
 
 PLAIN = {"collisions": True, "ledger": True, "forces": True}
 SLAB = mr.Polyhedron.box((4.0, 4.0, 0.5), centre=(0.0, 0.0, -0.25), fixed=True, name="slab")
@@ -155,6 +156,22 @@ def test_the_text_grows_with_the_blocks():
         lines.append(len(mr.mjcf_of(case, None, 1e-3, collisions=True).splitlines()))
         parts.append(drums + len(case.masonry.joints))
     assert (lines[2] - lines[1]) / (parts[2] - parts[1]) == (lines[1] - lines[0]) / (parts[1] - parts[0]) < 3
+
+
+def test_edges_and_shadows_are_seen_by_whoever_opens_the_text():
+    """Each box has dark borders, and what may fall lies within the square that casts shadows."""
+    case = facade()
+    model = mujoco.MjModel.from_xml_string(mr.mjcf_of(case, None, 1e-3, collisions=True))
+    assert (model.geom_matid[model.geom_type == mujoco.mjtGeom.mjGEOM_BOX] == 0).all()
+    side = model.tex_width[1]
+    face = model.tex_data[model.tex_adr[1] :][: 3 * side**2].reshape(side, side, 3)
+    assert (face[[0, -1]] < 60).all()
+    assert (face[:, [0, -1]] < 60).all()
+    assert (face[1:-1, 1:-1] == 255).all()
+    away = case.rests - model.stat.center
+    light = model.light_dir[0] / np.linalg.norm(model.light_dir[0])
+    across = np.linalg.norm(away - np.outer(away @ light, light), axis=1)
+    assert across.max() < 0.5 * model.vis.map.shadowclip * model.stat.extent
 
 
 def test_blocks_turn_freely_in_flight():
