@@ -15,6 +15,7 @@ import pytest
 import mjrock as mr
 from scripts.paper import compare_wall
 from scripts.shared import cli
+from scripts.studies import town
 
 SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*/*.py") if path.parent.name != "shared"}
 """Every script by its name."""
@@ -35,6 +36,7 @@ WRITES = {
     "convergence": {"convergence.png", "convergence.txt"},
     "make_models": {"figure3_one_sided"},
     "overturning_spectrum": {f"overturning_spectrum.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "town": {f"town.{ending}" for ending in ("png", "csv", "txt", "sqlite")} | {"town_walls.csv"},
     "ida": {f"ida.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "fragility": {f"fragility.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
@@ -189,6 +191,7 @@ LONG = {
     "fragility_coverage",
     "agreement",
     "polarity",
+    "town",
     "overturning_spectrum",
     "ida",
     "effect_costs",
@@ -333,3 +336,10 @@ def test_a_full_disk_leaves_the_old_file_whole(tmp_path, monkeypatch):
         cli.write_text(target, "new")
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_the_table_of_the_town_is_drawn_by_its_seed():
+    """Lines of the table in docs/figures, and those of the first walls of any number."""
+    table = (Path(mr.__file__).parents[1] / "docs" / "figures" / "town_walls.csv").read_text(encoding="utf-8")
+    assert cli.csv_text(town.COLUMNS, town.drawn()) == table
+    assert town.drawn(count=20) == town.drawn()[:20]
