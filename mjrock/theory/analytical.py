@@ -11,7 +11,7 @@ import warnings
 import numpy as np
 
 from ..patience import first_answer
-from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution
+from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution, impacts_of
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still
@@ -143,7 +143,7 @@ def _rocking(case: Case, e: AnyRestitution, rtol: float, rest: float) -> Rocking
     outer, inner = case.restoring
     weaker = outer if case.side_stop or outer.P <= inner.P else inner
     least = rest * (float(weaker.energy(weaker.alpha)) if shaken else case.release_energy)
-    return rock(case, e.impacts(lumped=bool(case.side_stop)), least, rtol)
+    return rock(case, impacts_of(e, lumped=bool(case.side_stop)), least, rtol)
 
 
 def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.damping.restitution import impacts_of
 
 MANY = 20000
 
@@ -16,11 +17,14 @@ MANY = 20000
 def test_draws_have_the_mean_and_the_spread(sd, mean, index):
     """Within five standard errors; that of the sd takes the fourth moment of the beta distribution."""
     e = mr.Restitution(mean, -0.5) if index == 0 else mr.Restitution(0.9, mean)
-    draws = e.scattered(sd, 7)._draws(np.random.default_rng(7), MANY)[:, index]
-    assert draws.mean() == pytest.approx(mean, abs=5 * sd / math.sqrt(MANY))
+    if index == 0:
+        draws = impacts_of(e.scattered(sd, 7), lumped=False)(MANY)
+    else:
+        draws = np.array([e.scattered(sd, seed).drawn().side for seed in range(MANY // 10)])
+    assert draws.mean() == pytest.approx(mean, abs=5 * sd / math.sqrt(len(draws)))
     m, s = abs(mean), m_s(abs(mean), sd)
     kurtosis = 3 + 6 * ((2 * m - 1) ** 2 * (s + 1) - m * (1 - m) * (s + 2)) / (m * (1 - m) * (s + 2) * (s + 3))
-    assert draws.std() == pytest.approx(sd, rel=5 * math.sqrt((kurtosis - 1) / (4 * MANY)))
+    assert draws.std() == pytest.approx(sd, rel=5 * math.sqrt((kurtosis - 1) / (4 * len(draws))))
     assert np.abs(draws).max() <= 1
     assert (np.sign(draws) == np.sign(mean)).all()
 
@@ -32,14 +36,18 @@ def m_s(mean, sd):
 
 def test_the_sequence_of_a_stop_is_the_product_of_three_draws():
     e = mr.Restitution(0.97, -0.47).scattered(0.02, 3)
-    expected = e._draws(np.random.default_rng(3), 50).prod(axis=1)
-    assert (e.impacts(lumped=True)(50) == expected).all()
-    assert len(np.unique(expected)) == 50
+    drawn = impacts_of(e, lumped=True)(MANY)
+    first, single = e.drawn(), impacts_of(e, lumped=False)(1)[0]
+    assert first.base == single
+    assert drawn[0] / (first.base * first.side) == pytest.approx(0.97, abs=0.1)
+    relative = (1 + (0.02 / 0.97) ** 2) ** 2 * (1 + (0.02 / 0.47) ** 2) - 1  # of a product of independent values
+    assert drawn.mean() == pytest.approx(e.lumped, rel=5 * math.sqrt(relative / MANY))
+    assert drawn.std() / abs(e.lumped) == pytest.approx(math.sqrt(relative), rel=0.05)
 
 
 def test_impacts_have_their_draws_however_they_are_taken():
     e = mr.Restitution(0.97, -0.47).scattered(0.02, 3)
-    one, other = e.impacts(lumped=False), e.impacts(lumped=False)
+    one, other = impacts_of(e, lumped=False), impacts_of(e, lumped=False)
     assert (np.concatenate([one(5), one(0), one(11)]) == other(16)).all()
 
 
@@ -50,7 +58,7 @@ def test_each_impact_of_a_run_has_its_draw(wall):
     runs = [mr.solve_analytical(case, e, rtol=rtol, output_step=1.0, rest=1e-30) for rtol in (1e-10, 1e-6)]
     found = [[impact.omega_after / impact.omega_before for impact in run.impacts] for run in runs]
     count = min(map(len, found))
-    drawn = e.impacts(lumped=False)(count)
+    drawn = impacts_of(e, lumped=False)(count)
     assert count > 100
     assert runs[0].stats["evaluations"] > 3 * 4096
     for one in found:

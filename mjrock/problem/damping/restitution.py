@@ -77,11 +77,6 @@ class Restitution:
         """
         return ScatteredRestitution(self, sd, seed)
 
-    def impacts(self, *, lumped: bool) -> Callable[[int], Array]:
-        """A function that gives e of the next impacts, so many [-]; `lumped` of the sequence base, side, base."""
-        e = self.lumped if lumped else self.base
-        return lambda count: np.full(count, e)
-
     def require_rebound(self) -> None:
         """Raise ValueError unless the wall rebounds from the side stop."""
         if self.side >= 0:
@@ -197,6 +192,11 @@ class ScatteredRestitution:
         keep(self, sd=sd, seed=require_whole("seed", self.seed, 0, 2**53))
 
     @property
+    def base(self) -> float:
+        """The mean of an impact on the base [-]."""
+        return self.mean.base
+
+    @property
     def lumped(self) -> float:
         """The mean of the sequence base, side, base [-]."""
         return self.mean.lumped
@@ -207,30 +207,33 @@ class ScatteredRestitution:
 
     def drawn(self) -> Restitution:
         """One draw of each coefficient: the restitution of a run on contacts."""
-        base, side, _ = self._draws(np.random.default_rng(self.seed), 1)[0].tolist()
+        base, side, _ = _draws(self, np.random.default_rng(self.seed), 1)[0].tolist()
         return replace(self.mean, base=base, side=side)
-
-    def impacts(self, *, lumped: bool) -> Callable[[int], Array]:
-        """As `Restitution.impacts`."""
-        if self.sd == 0:
-            return self.mean.impacts(lumped=lumped)
-        random = np.random.default_rng(self.seed)
-        return lambda count: self._draws(random, count)[:, : 3 if lumped else 1].prod(axis=1)
-
-    def _draws(self, random: np.random.Generator, count: int) -> Array:
-        """Draws for base, side and base, shape (count, 3)."""
-        means = np.array([self.mean.base, self.mean.side, self.mean.base])
-        found, spread = np.tile(means, (count, 1)), means != 0
-        if self.sd > 0:
-            size = np.abs(means[spread])
-            strength = size * (1 - size) / self.sd**2 - 1
-            drawn = random.beta(size * strength, (1 - size) * strength, (count, len(size)))
-            found[:, spread] = np.sign(means[spread]) * drawn
-        return found
 
 
 AnyRestitution = Restitution | ScatteredRestitution
 """What rocking theory takes."""
+
+
+def impacts_of(e: AnyRestitution, *, lumped: bool) -> Callable[[int], Array]:
+    """A function that gives e of the next impacts of a run, so many [-]; `lumped` of the sequence base, side, base."""
+    if isinstance(e, Restitution) or e.sd == 0:
+        same = e.lumped if lumped else e.base
+        return lambda count: np.full(count, same)
+    random = np.random.default_rng(e.seed)
+    return lambda count: _draws(e, random, count)[:, : 3 if lumped else 1].prod(axis=1)
+
+
+def _draws(e: ScatteredRestitution, random: np.random.Generator, count: int) -> Array:
+    """Draws for base, side and base, shape (count, 3)."""
+    means = np.array([e.mean.base, e.mean.side, e.mean.base])
+    found, spread = np.tile(means, (count, 1)), means != 0
+    if e.sd > 0:
+        size = np.abs(means[spread])
+        strength = size * (1 - size) / e.sd**2 - 1
+        drawn = random.beta(size * strength, (1 - size) * strength, (count, len(size)))
+        found[:, spread] = np.sign(means[spread]) * drawn
+    return found
 
 
 def _base(wall: Block) -> float:
