@@ -9,7 +9,16 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...quantities import Array, Implausible, keep, require_kind, require_real, require_whole, require_within
+from ...quantities import (
+    Array,
+    Implausible,
+    keep,
+    require_kind,
+    require_real,
+    require_whole,
+    require_within,
+    short_repr,
+)
 from ..wall.block import Block
 
 UNLIKE = 1e-2
@@ -36,6 +45,8 @@ class Restitution:
     base: float
     side: float
     made_for: tuple[float, float] | None = field(default=None, kw_only=True, compare=False, repr=False)
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep(self, base=require_real("base restitution", self.base), side=require_real("side restitution", self.side))
