@@ -165,7 +165,7 @@ class Restitution:
         return cls(base=base, side=lumped / base**2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ScatteredRestitution:
     """Restitution that differs from impact to impact.
 
@@ -190,6 +190,8 @@ class ScatteredRestitution:
     mean: Restitution
     sd: float
     seed: int
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         require_kind("mean restitution", self.mean, Restitution)
