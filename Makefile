@@ -96,6 +96,8 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/polarity.py --out docs/figures
 	$(BIN)/python scripts/studies/town.py --out docs/figures
 	$(BIN)/python scripts/studies/sensitivity.py --out docs/figures
+	$(BIN)/python scripts/studies/limestone_blocks.py --out docs/figures
+	$(BIN)/python scripts/studies/restitution_spread.py --out docs/figures
 	$(BIN)/python scripts/studies/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/measure/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/studies/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
