@@ -7,9 +7,13 @@ import inspect
 import re
 import sys
 import types
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib
+from docutils import nodes
+from latex2mathml.converter import convert
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
@@ -37,7 +41,8 @@ nitpick_ignore_regex = [
 ]
 
 myst_heading_anchors = 3
-myst_enable_extensions = ["attrs_inline"]
+myst_enable_extensions = ["attrs_inline", "dollarmath"]
+html_math_renderer = "mathml"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
@@ -137,7 +142,18 @@ compile_loops()
 write_live_view()
 
 
+def as_mathml(display: str) -> Callable[[Any, nodes.math | nodes.math_block], None]:
+    """What writes a formula as MathML, which a browser draws without a script."""
+
+    def visit(page: Any, node: nodes.math | nodes.math_block) -> None:
+        page.body.append(convert(node.astext(), display=display))
+        raise nodes.SkipNode
+
+    return visit
+
+
 def setup(app: object) -> None:
-    """Read docstrings as plain text, before napoleon does, and signatures without ranges."""
+    """Write formulas, and read docstrings as plain text, before napoleon does, and signatures without ranges."""
+    app.add_html_math_renderer("mathml", (as_mathml("inline"), None), (as_mathml("block"), None))  # type: ignore[attr-defined]
     app.connect("autodoc-process-docstring", plain, priority=100)  # type: ignore[attr-defined]
     app.connect("autodoc-process-signature", without_ranges)  # type: ignore[attr-defined]

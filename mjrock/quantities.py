@@ -7,6 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import fields
 from functools import cache, wraps
 from numbers import Real as RealNumber
 from os import PathLike
@@ -73,6 +74,24 @@ def shown(value: object) -> str:
         return "None"
     text = " ".join(spelt(value).split())
     return f"{text[:60]}{'...' if len(text) > 60 else ''} of type {type(value).__name__}"
+
+
+def short_repr(instance: Any) -> str:
+    """A dataclass as it would be written, on a line: numbers with six digits, and nothing that has its default."""
+    shown = ((each, getattr(instance, each.name)) for each in fields(instance) if each.repr)
+    said = (f"{each.name}={_shortened(value)}" for each, value in shown if not _same(value, each.default))
+    return f"{type(instance).__name__}({', '.join(said)})"
+
+
+def _same(value: object, default: object) -> bool:
+    return value is default or (isinstance(value, str | int | float | tuple) and value == default)
+
+
+def _shortened(value: object) -> str:
+    """A value on a line: a long row by how many values it has."""
+    if isinstance(value, np.ndarray | tuple | list):
+        return f"<{len(value)} values>" if len(value) > NAMED else f"({', '.join(map(_shortened, value))})"
+    return f"{value:.6g}" if isinstance(value, float) else spelt(value)
 
 
 def require_real(name: str, value: object) -> float:

@@ -15,7 +15,7 @@ from ..engine.solref import inertia_of
 from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
-from ..quantities import require_flag, require_text
+from ..quantities import require_flag, require_text, short_repr
 from .geoms import GeomPair, compiled_model, kept_apart, label_of
 from .notes import (
     ENOUGH,
@@ -94,6 +94,8 @@ class PairContact:
     load: float = 0.0
     needs: SolverNeed = ENOUGH
     remarks: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     @property
     def label(self) -> str:

@@ -7,7 +7,7 @@ plane it is one vertex. The contacts of all vertices are therefore between the s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -18,7 +18,8 @@ from .notes import model_spoilers
 from .row_of_model import Mixed, ModelRow
 
 
-class FlexContact(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class FlexContact:
     """The contacts of a flex with a geom.
 
     Args:

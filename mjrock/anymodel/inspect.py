@@ -10,7 +10,7 @@ import mujoco
 
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
-from ..quantities import Array, require_flag, require_whole, require_within
+from ..quantities import Array, require_flag, require_whole, require_within, short_repr
 from .geoms import GeomPair, compiled_model, every_pair
 from .holding import holding
 from .meeting import IMMOVABLE, Keyframe, PairMeeting, Pose, meeting, other_keyframes
@@ -51,6 +51,8 @@ class InspectedContact:
     gravity: float
     bodies: tuple[str, str]
     notes: tuple[str, ...]
+
+    __repr__ = short_repr
 
     @property
     def frequency(self) -> float:

@@ -11,7 +11,7 @@ from typing import Any
 
 import mujoco
 
-from ..quantities import Array, named, shown
+from ..quantities import Array, named, short_repr, shown
 from .contact import PairContact, Writing, document, options_of, spoilers, write
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of
 from .make import ContactRequest, beside, contact_of
@@ -33,6 +33,8 @@ class PairContacts:
     """
 
     contacts: tuple[PairContact, ...]
+
+    __repr__ = short_repr
 
     def __iter__(self) -> Iterator[PairContact]:
         return iter(self.contacts)

@@ -79,7 +79,7 @@ def solve_explicit(
         RuntimeError: if more energy appears than was there and was put in.
 
     Warns:
-        UserWarning: of steps that would take more than some ten seconds, or of a tie drawn out too far.
+        UserWarning: of dashpots that make the steps take more than some ten seconds, or of a tie drawn out too far.
         Implausible: of a given timestep that is far below what the contacts need.
 
     Examples:

@@ -9,8 +9,8 @@ from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
-from tqdm import tqdm
 
+from ..bars import Bar
 from ..quantities import Array
 from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
@@ -130,7 +130,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     if memory is not None:
         clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
     at_once, ended, memory = max(1, FIRST_CALL // max(1, len(system.lines))), False, None
-    with tqdm(total=stepping.end, desc="explicit", unit="s", delay=3, disable=None, leave=False) as bar:
+    with Bar("explicit steps", "s", stepping.end) as bar:
         while clock.step < stop and not ended:
             if clock.step == stepping.last:
                 memory = remember(setup.of, system, clock, setup.blocks)
@@ -145,7 +145,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
             step, row, ended = advance(system, books, samples, clock)
             took = time.perf_counter() - begun
             at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
-            bar.update((step - clock.step) * clock.h)
+            bar.to(step * clock.h)
             clock = clock._replace(step=step, row=row)
             for body in unsound(system.bodies)[:1].tolist():
                 raise breakdown(f"the motion of {setup.scene.bodies.names[body]}", step * clock.h)
@@ -183,18 +183,18 @@ def require_sound_rows(system: System) -> None:
 
 
 def warn_if_long(setup: Setup, stepping: Stepping) -> None:
-    """Warn of steps that take long, and of dashpots that make them many."""
+    """Warn of dashpots that make steps many, where these take long."""
     lines, laws = setup.system.lines, [law.rows for law in setup.system.laws]
     sprung = bool(np.isfinite(lines["k_s"]).any())
     seconds = stepping_seconds(stepping.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
     if seconds < SECONDS_WORTH_SAYING:
         return
-    said = f"{stepping.last:.2g} steps of {stepping.h:.2g} s on {len(lines)} contact lines"
     slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, *laws))
     shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
     if shorter > DASHPOTS_WORTH_SAYING:
-        said += (
-            f". The dashpots, c/k = {slowest:.2g} s, make each step {shorter:.2g} times shorter than the springs need: "
-            "lower xi, or raise the frequency that it refers to"
+        warnings.warn(
+            f"explicit steps would take some {seconds:.2g} s: {stepping.last:.2g} steps of {stepping.h:.2g} s on "
+            f"{len(lines)} contact lines. The dashpots, c/k = {slowest:.2g} s, make each step {shorter:.2g} times "
+            "shorter than the springs need: lower xi, or raise the frequency that it refers to",
+            stacklevel=3,
         )
-    warnings.warn(f"explicit steps would take some {seconds:.2g} s: {said}", stacklevel=3)

@@ -23,7 +23,7 @@ from typing import Any, overload
 import numpy as np
 
 from ..compiled import inlined
-from ..quantities import Array, require_real, require_reals, require_row, require_within, shown
+from ..quantities import Array, require_real, require_reals, require_row, require_within, short_repr, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
@@ -44,6 +44,8 @@ class ContactParameters:
     solref: tuple[float, float]
     solimp: tuple[float, float, float, float, float]
     inertia: float
+
+    __repr__ = short_repr
 
     @property
     def impedance(self) -> float:
@@ -139,6 +141,8 @@ class ManyContactParameters:
     solref: Array
     solimp: Array
     inertia: Array
+
+    __repr__ = short_repr
 
 
 @overload

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from tqdm import tqdm
 
+from ..bars import Bar
 from ..compiled import compiled
 from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import Places, meeting
@@ -105,11 +105,11 @@ def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple
     """The steps of a run, made a chunk at a time. `advance` fills a record: how many steps, the time, whether it
     ends."""
     chunks, t, ended = [], 0.0, False
-    with tqdm(total=duration, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
+    with Bar("MuJoCo", "s", duration) as bar:
         while not ended:
             n, t, ended = advance(engine.room)
             chunks.append(engine.room.first(n))
-            bar.update(min(t, duration) - bar.n)
+            bar.to(t)
             require_well(engine.data, t)
     return Record.joined(chunks)
 

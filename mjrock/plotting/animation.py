@@ -18,8 +18,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from PIL import Image
-from tqdm import tqdm
 
+from ..bars import counted
 from ..files import replacing
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
@@ -278,7 +278,7 @@ def _film(
         with writer.saving(figure, str(partial), dpi):
             if isinstance(writer, GifWriter | PageWriter):
                 writer.stage = Stage(figure, dpi)
-            for frame in tqdm(range(len(times)), desc=path.name, unit="frame", delay=0.5, disable=None, leave=False):
+            for frame in counted(range(len(times)), path.name, "frames"):
                 update(frame)
                 writer.grab_frame()
         if path.suffix.lower() == ".html":

@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from ..problem.wall.case import Case
@@ -24,9 +23,10 @@ from ..quantities import (
 )
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
+from .figures import Picture
 
 P = ParamSpec("P")
-Picture = TypeVar("Picture", bound=Callable[..., Any])
+Drawer = TypeVar("Drawer", bound=Callable[..., Any])
 Check = Callable[[str, object], object]
 """Raises a TypeError or ValueError with the name and the value of an invalid argument."""
 MOST_COLUMNS = 50
@@ -166,15 +166,15 @@ class Checked(Protocol):
     def __call__(self, draw: Callable[Concatenate[Axes, P], Axes], /) -> OnAxes[P]: ...
 
     @overload
-    def __call__(self, draw: Picture, /) -> Picture: ...
+    def __call__(self, draw: Drawer, /) -> Drawer: ...
 
 
 def own_axes(about: object) -> Axes:
     """An Axes in a figure of its own, of three dimensions for masonry in space and results of it."""
     about = getattr(about, "case", about)
     deep = getattr(getattr(about, "masonry", about), "in_space", False)
-    figure = Figure(figsize=(6.4, 4.8) if deep else (5.2, 3.6), layout="constrained")
-    return figure.add_subplot(projection="3d" if deep else None)
+    figure = Picture(figsize=(6.4, 4.8) if deep else (5.2, 3.6), layout="constrained")
+    return figure.sole_axes("3d" if deep else None)
 
 
 def picture(**own: Check) -> Checked:

@@ -14,6 +14,7 @@ from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
 from .arguments import kind, listed, picture
+from .figures import Picture
 from .style import below_figure, figure_of, several, short, styles_of, wrapped
 
 TIME = "time $t$ [s]"
@@ -194,7 +195,7 @@ def history(
     tied = any(response.ties for response in given)
     shaken = bool(case.grounds)
     heights = [1.0] * shaken + [2.0] + [1.2] * tied
-    figure = Figure(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
+    figure = Picture(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
     if shaken:
         acceleration(axes[0], case, until)
@@ -255,7 +256,7 @@ def energy(ax: Axes, responses: Sequence[Response]) -> Axes:
 @picture()
 def comparison(responses: Sequence[Response], title: str = "") -> Figure:
     """Rotation above, energy below, in the manner of the paper's Figure 3."""
-    figure = Figure(figsize=(6.3, 5.0), layout="constrained")
+    figure = Picture(figsize=(6.3, 5.0), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     rotation(above, responses).set_xlabel("")
     energy(below, responses)

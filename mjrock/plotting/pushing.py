@@ -96,5 +96,6 @@ def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: C
         colour = LINES[list(lines).index(name) % len(LINES)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
-    ax.legend(frameon=False, fontsize=8)
+    if ax.get_legend_handles_labels()[1]:
+        ax.legend(frameon=False, fontsize=8)
     ax.set(xlim=(0, None), ylim=(0, None), xlabel=r"rotation $\theta$ [rad]")

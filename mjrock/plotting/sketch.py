@@ -17,6 +17,7 @@ from ..problem.wall.effect import Effect
 from ..quantities import require_flag, require_text
 from .arguments import anything, picture
 from .bodies import Bodies
+from .figures import Picture
 from .section import GROUND_COLOUR, STONE, blocks, surroundings
 from .style import Look, figure_of, titled
 
@@ -49,7 +50,7 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     require_wall("case", case, "plotting.blocks")
     require_text("title", title)
     require_flag("arguments", arguments)
-    figure = Figure()
+    figure = Picture()
     section, elevation = (figure.add_axes((0.0, 0.0, 1.0, 1.0), label=name) for name in ("section", "elevation"))
     _section(section, case)
     _elevation(elevation, case, section.get_ylim())

@@ -15,6 +15,7 @@ from ..files import replacing
 from ..quantities import require_kind, require_path
 from ..result.response import Response
 from .arguments import picture
+from .figures import Picture
 
 Look = dict[str, Any]
 """Options of what matplotlib draws, such as its colour."""
@@ -95,7 +96,7 @@ def titled(figure: Figure, text: str, size: float = 11.0) -> float:
 def several(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, Any]:
     """A figure with so many panels in rows of some columns, each of a size [inch], and its Axes, (rows, columns)."""
     rows = -(-count // columns)
-    figure = Figure(figsize=(size[0] * columns, size[1] * rows), layout="constrained")
+    figure = Picture(figsize=(size[0] * columns, size[1] * rows), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
     for ax in axes.flat[count:]:
         ax.set_visible(False)
@@ -136,7 +137,7 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
 @picture()
 def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
     """A figure with one Axes, drawn by `draw`."""
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Picture(figsize=size, layout="constrained")
     draw(figure.subplots())
     return figure
 

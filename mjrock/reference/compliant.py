@@ -13,8 +13,8 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from tqdm import tqdm
 
+from ..bars import Bar
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
@@ -125,7 +125,7 @@ def _integrated(
     system.settle(y, fired)
     states, times = [system.with_places(y[:, None])], [np.zeros(1)]
     evaluations = switches = 0
-    with tqdm(total=case.duration, desc="compliant", unit="s", delay=3, disable=None, leave=False) as bar:
+    with Bar("contact law, SciPy", "s", case.duration) as bar:
         while switches < SWITCHES:
             if held:
                 y = system.caught(y)
@@ -152,8 +152,8 @@ def _integrated(
                 return np.concatenate(times), np.concatenate(states, axis=1).T, evaluations, switches
             fired = [bool(when.size) for when in arc.t_events[2:]]
             last = next(i for i, when in enumerate(arc.t_events) if when.size)
-            bar.update(float(arc.t_events[last][0]) - t)
             t, y = float(arc.t_events[last][0]), arc.y_events[last][0]
+            bar.to(t)
             held = held != bool(arc.t_events[0].size)
             switches += 1
     raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")

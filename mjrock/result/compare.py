@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ..files import csv_text
+from ..notebook import Drawn
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_kind
 from .ending import Outcome
@@ -25,7 +26,7 @@ SAME_IMPACT = 0.25
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Drawn):
     """What distinguishes `candidate` from `reference`. Rebounds are counted from 1; NaN where one has fewer.
 
     On a base at rest the first impact of one belongs to the first of the other. Under ground motion impacts are paired

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..files import csv_text, write_text
 from ..geometry.poses import angle_of, tilt_of
+from ..notebook import Drawn
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.standing import in_space
@@ -56,7 +57,7 @@ class End:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Response:
+class Response(Drawn):
     """The motion that a solver found, of a wall or of masonry.
 
     A wall is one body. The bodies of masonry are its blocks that are not fixed, in order. What is read from the motion
@@ -471,8 +472,8 @@ class Response:
             alpha = float(self.peak[0]) / self.of_wall[0].wall.alpha
             what = f"{len(self.impacts)} impacts, largest rotation {alpha:.3g} alpha"
         else:
-            what = f"{len(self.bodies)} blocks, largest opening {self.opening.max(initial=0):.3g} m, "
-            what += f"{len(self.fallen)} fallen"
+            what = f"largest opening {self.opening.max(initial=0):.3g} m, "
+            what += f"{len(self.fallen)} of {len(self.bodies)} blocks fallen"
         return (
             f"<Response of {self.solver}: {len(self.t)} samples over {self.t[-1]:.4g} s, {what}, {self.outcome.value}>"
         )

@@ -29,6 +29,10 @@ class Impact(NamedTuple):
     energy_before: float
     energy_after: float
 
+    def __repr__(self) -> str:
+        omega = f"{self.omega_before:.4g} to {self.omega_after:.4g} rad/s"
+        return f"<Impact at {self.t:.4g} s: {omega}, {self.energy_before:.4g} to {self.energy_after:.4g} J>"
+
     @property
     def restitution(self) -> float:
         """|e| [-]."""

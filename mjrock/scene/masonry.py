@@ -27,6 +27,8 @@ from .scene import Scene
 
 SETTLEMENT_OF_STIFF = 1e-5
 """Deformation of joints that count as stiff, at each line under the heaviest block [m]."""
+BED = 0.5
+"""Vertical part of the normal of a joint that counts as level [-]."""
 SHARE_OF_FARTHEST = 0.1
 """Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
 
@@ -93,6 +95,8 @@ def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
     if falls and not any(link.law.holds for link in links_of(effects).values()):
         lacking = friction_lacking(masonry, applied(masonry, effects))
         remedy = "" if lacking is None else f"; joints that need friction of {lacking[0]:g}: {named(lacking[1])}"
+        if masonry.in_space and not any(abs(joint.direction[2]) > BED for joint in masonry.space_joints):
+            remedy += "; no joint is level: does z of the drawing point upwards?"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight{remedy}")
 
 

@@ -14,6 +14,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from ..files import aligned, csv_text
+from ..notebook import Drawn
 from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
 from .campaign.campaign import CampaignOptions, completed
 from .campaign.grid import label_of, labelled
@@ -24,7 +25,7 @@ UNITS = {"peak_over_alpha": "alpha", "g": "g", "m": "m", "s": "s", "rad": "rad",
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sensitivity:
+class Sensitivity(Drawn):
     """A measure of a wall for every setting that was tried.
 
     Args:

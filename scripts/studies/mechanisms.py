@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
 
 import mjrock as mr
 from mjrock import plotting
@@ -19,7 +20,6 @@ THICKNESS, HEIGHT = 0.6, 4.0
 ANGLE = math.radians(30)
 """Of the cracks of side walls from the vertical."""
 LOAD = 20e3
-Triangle = list[tuple[float, float]]
 
 
 def smooth_cracks(joint: mr.Joint | mr.SpaceJoint) -> float:
@@ -59,46 +59,20 @@ def bending() -> tuple[mr.Masonry, float]:
     return mr.Masonry.between_floors(wall, LOAD), mr.VerticalBending(wall, LOAD).multiplier
 
 
-def in_space(body: mr.Polyhedron | mr.Compound, rests: Sequence[mr.Polyhedron]) -> mr.Masonry:
-    """A body on the ground in space, before what stays of the walls."""
-    return mr.Masonry([cuboid((-4, 1.5), (-1.5, 4), (-0.3, 0), "ground"), body, *rests], friction=smooth_cracks)
-
-
-def cuboid(x: Sequence[float], y: Sequence[float], z: Sequence[float], fixed: str = "") -> mr.Polyhedron:
-    """A block between two x, y and z [m], fixed where it has a name."""
-    corners = [(i, j, k) for i in x for j in y for k in z]
-    return mr.Polyhedron(corners, fixed=bool(fixed), name=fixed or None)
-
-
-def along_both(triangle: Triangle, fixed: str = "") -> list[mr.Polyhedron]:
-    """A piece of the two walls of a corner, along y and along -x, from their distances from it and heights [m]."""
-    t = THICKNESS
-    sides = (
-        [(x, t + s, z) for x in (-t, 0.0) for s, z in triangle],
-        [(-t - s, y, z) for y in (0.0, t) for s, z in triangle],
-    )
-    return [
-        mr.Polyhedron(corners, fixed=bool(fixed), name=f"{fixed}_{i}" if fixed else None)
-        for i, corners in enumerate(sides)
-    ]
-
-
 def corner() -> tuple[mr.Masonry, float]:
     """A corner that overturns along the diagonal."""
     t, h = THICKNESS, 0.75 * HEIGHT
     p = h * math.tan(ANGLE)
-    post = cuboid((-t, 0.0), (0.0, t), (0.0, h))
-    body = mr.Compound([post, *along_both([(0.0, 0.0), (0.0, h), (p, h)])], name="corner")
-    masonry = in_space(body, along_both([(0.0, 0.0), (p, h), (p + 0.5, h), (p + 0.5, 0.0)], "rest"))
-    behind = (t * t * h * t + t * p * h * (1.5 * t + p / 3)) / math.sqrt(2)
-    return masonry, behind / (t * t * h * h / 2 + t * p * h * 2 * h / 3)
+    alpha_0 = (t**2 + p * (1.5 * t + p / 3)) / (math.sqrt(2) * h * (t / 2 + 2 * p / 3))
+    return mr.Masonry.corner(t, h, ANGLE), alpha_0
 
 
 def gable() -> tuple[mr.Masonry, float]:
     """A triangular gable."""
     h = 0.5 * HEIGHT
     corners = [(x, y, z) for x in (-THICKNESS, 0.0) for y, z in ((-1.0, 0.0), (3.5, 0.0), (1.25, h))]
-    return in_space(mr.Polyhedron(corners, name="gable"), []), 1.5 * THICKNESS / h
+    ground = mr.Polyhedron.box((4.0, 6.0, 0.3), (-0.3, 1.25, -0.15), fixed=True, name="ground")
+    return mr.Masonry([ground, mr.Polyhedron(corners, name="gable")], friction=0.7), 1.5 * THICKNESS / h
 
 
 MECHANISMS = {
@@ -115,7 +89,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Push and draw them."""
     out = cli.folder(cli.parser(__doc__, "mechanisms").parse_args(argv).out)
     figure = Figure(figsize=(14, 3.6), layout="constrained")
-    places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.8, 1.8])
+    places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.3, 1.3])
     lines = []
     for i, (name, (make, angle)) in enumerate(MECHANISMS.items()):
         masonry, alpha_0 = make()
@@ -124,6 +98,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
         plotting.mechanism(ax, found, share=0.06, forces=False)
         ax.axis("off")
+        if isinstance(ax, Axes3D):
+            x, y, z = (high - low for low, high in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim()))
+            ax.set_box_aspect((x, y, z), zoom=1.35)
         ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
     plotting.save(figure, out / "mechanisms.png")
     cli.report(out / "mechanisms", "\n".join(lines))

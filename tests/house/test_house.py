@@ -11,7 +11,7 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
-    ("_version", "interrupts", "patience"),
+    ("_version", "bars", "interrupts", "notebook", "patience"),
     ("stored",),
     ("compiled", "files", "method", "quantities"),
     ("geometry", "linear"),

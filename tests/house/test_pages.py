@@ -21,6 +21,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DO
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
 RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "effects.md", "plain_models.md"]
+RUNS += ["notebook.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "theory.md"]
 LONG += ["results.md", "mortar.md", "slow_loading.md"]
 """Pages whose lines run."""
@@ -69,6 +70,23 @@ def test_the_lines_of_a_page_run_and_print_what_it_shows(name, tmp_path, monkeyp
 
 def test_no_page_has_lines_that_nothing_runs():
     assert sorted(page.name for page in DOCS.glob("*.md") if blocks(page)) == sorted([*RUNS, *LONG, *ELSEWHERE])
+
+
+@pytest.mark.slow
+def test_the_cells_of_the_page_of_notebooks_show_what_it_says(tmp_path):
+    """In a kernel of Jupyter: pictures, a table, and text where a cell ends in what has neither; no word of magic."""
+    nbclient = pytest.importorskip("nbclient", reason="the extra test is not installed")
+    pytest.importorskip("ipykernel", reason="the extra test is not installed")
+    nbformat = pytest.importorskip("nbformat")
+    page = blocks(DOCS / "notebook.md")
+    cells = [nbformat.v4.new_code_cell(code) for code, _ in page]
+    run_in = nbclient.NotebookClient(nbformat.v4.new_notebook(cells=cells), timeout=300)
+    run_in.execute(cwd=str(tmp_path), env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])})
+    shown = [next(one for one in cell.outputs if one.output_type == "execute_result").data for cell in cells]
+    richest = [next(kind for kind in ("text/html", "image/png", "text/plain") if kind in data) for data in shown]
+    table = ["image/png", "text/html", *5 * ["image/png"], "text/plain"]
+    assert richest == table
+    assert not [out for cell in cells for out in cell.outputs if "Warning" in str(out.get("text"))]
 
 
 def test_numbers_are_compared_to_their_last_digit():
@@ -184,6 +202,7 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     assert examples <= {page.stem for page in pages}
     assert (tmp_path / "html" / "arch_view.html").stat().st_size > 5e5
     assert "href='arch_view.html'" in (tmp_path / "html" / "results.html").read_text(encoding="utf-8")
+    assert (tmp_path / "html" / "theory.html").read_text(encoding="utf-8").count('display="block"') > 5
     for page in pages:
         text = page.read_text(encoding="utf-8")
         assert not re.search(r"<(?:script|img)[^>]+src=.https?:|<link[^>]+href=.https?:", text), page

@@ -1,5 +1,6 @@
 """What is public prints in a line, with units."""
 
+import numpy as np
 import pytest
 
 import mjrock as mr
@@ -86,3 +87,29 @@ def test_no_public_object_prints_an_address():
     shown = {name: repr(each) for name, each in public.items() if not callable(each) or isinstance(each, mr.DampingLaw)}
     assert len(shown) > 4
     assert {name: text for name, text in shown.items() if " at 0x" in text or len(text) >= 120} == {}
+
+
+def test_every_public_class_prints_in_a_form_of_its_own():
+    """None has the form that a dataclass makes, with sixteen digits and all defaults."""
+    public = {name: getattr(mr, name) for name in mr.__all__ if isinstance(getattr(mr, name), type)}
+    made = [name for name, kind in public.items() if hasattr(kind.__repr__, "__wrapped__")]
+    assert len(public) > 40
+    assert made == []
+
+
+def test_numbers_are_short_and_defaults_are_left_out():
+    tie = mr.Tie(10.0, 1e8 / 3, strength=float(np.float64(1e5) / 7))
+    assert repr(tie) == "Tie(height=10, stiffness=3.33333e+07, strength=14285.7)"
+    assert repr(mr.Polyhedron([*np.ndindex(2, 2, 2)])) == "Polyhedron(vertices=<8 values>)"
+    assert repr(mr.Restitution.from_geometry(WALL)) == "Restitution(base=0.97, side=-0.47)"
+    masonry = mr.Masonry.box((0.5, 0.5, 1.0))
+    case = mr.MasonryCase(masonry, 2.0, velocity=np.zeros((1, 6)), transverse=mr.GroundMotion([0.0, 1.0], 0.1, "NS"))
+    assert repr(case) == f"<MasonryCase of {masonry!r}: 2 s, transverse 'NS', velocity>"
+    assert repr(mr.collapse_multiplier(masonry)) == "<Collapse at 0.5 times the forces that grow: block move>"
+    fit = mr.fit_capacities([0.3, 0.4, 0.5, 0.45, 0.35])
+    assert repr(fit) == "<Fragility: median 0.3936, dispersion 0.202, of 5 values in 5 groups>"
+    spectrum = mr.code_spectrum("EC8 type 1", ag=2.5, soil="B")
+    corners = "T_B, T_C, T_D, T_E = 0.15, 0.5, 2, 5 s"
+    assert repr(spectrum) == f"<CodeSpectrum EC8 type 1: a_g = 2.5 m/s2, S = 1.2, F_0 = 2.5, {corners}>"
+    impact = mr.Impact(1.14032328, -0.0726032, 0.0351669, 16081.09, 3772.87)
+    assert repr(impact) == "<Impact at 1.14 s: -0.0726 to 0.03517 rad/s, 1.608e+04 to 3773 J>"

@@ -56,7 +56,7 @@ def test_a_fragility_curve_needs_no_levels():
         plotting.fragility(fits[0], [0.5, 0.6], [0.3])
     with pytest.raises(ValueError, match="levels and shares go together: give both, or neither"):
         plotting.fragility(fits[0], levels=[0.5])
-    with pytest.raises(TypeError, match="solver = 3 is not a str or None"):
+    with pytest.raises(TypeError, match="solver = 3 of type int is not a str or None"):
         plotting.fragility(fits[0], solver=3)
 
 

@@ -1,6 +1,8 @@
 """The check by nonlinear dynamic analysis, C8.7.1.2.1.9, against arithmetic by hand and by three solvers."""
 
 import math
+from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -94,3 +96,94 @@ def test_beside_the_kinematic_check_and_the_floor_of_the_slv():
 def test_refused(ask, message):
     with pytest.raises((TypeError, ValueError), match=message):
         ask()
+
+
+OMEGA = mr.reference_frequency(WALL, 3e9)
+RATIO = {
+    place: OMEGA * face.damping.sum() / (2 * face.stiffness.sum())
+    for place, face in (("ground", CONTACTS.base), ("side", CONTACTS.side))
+}
+"""xi of both joints, which have the dashpots of the contacts."""
+
+
+@cache
+def curve_of(way, to=0.35):
+    return mr.push(masonry_of(way), way, to)
+
+
+@cache
+def masonry_of(way):
+    """The wall as masonry on its ground and beside its stop, or mirrored."""
+    wall, ground, stop = (-0.3, 0.3, 0.0, 4.2), (-9.0, 9.0, -0.5, 0.0), (-0.9, -0.3, 0.0, 4.2)
+    blocks = [
+        mr.Polygon([(way * x, z) for x, z in ((a, c), (b, c), (b, d), (a, d))][::way], fixed=name != "wall", name=name)
+        for name, (a, b, c, d) in {"ground": ground, "side": stop, "wall": wall}.items()
+    ]
+    return mr.Masonry(
+        blocks,
+        3e9,
+        frequency=OMEGA,
+        xi=lambda joint: RATIO["ground" if joint.is_bed else "side"],
+        friction=lambda joint: 5.0 if joint.is_bed else 0.0,
+    )
+
+
+def shaken(count, peak, way=1):
+    """Cases of it."""
+    motions = [mr.GroundMotion.synthetic(peak, 6.0, seed=seed).scaled(way) for seed in range(count)]
+    return [mr.MasonryCase(masonry_of(way), 8.0, motion=one) for motion in motions for one in motion.polarities]
+
+
+@pytest.mark.slow
+def test_masonry_of_one_block_is_checked_as_a_wall():
+    """Its push gives half the thickness as d_0, and the maxima are those of the centroid on the same contacts."""
+    asked = shaken(1, 4.0)
+    runs, walls = map(mr.solve_explicit, asked), (mr.solve_explicit(case, CONTACTS) for case in cases(1, 4.0))
+    with pytest.warns(mr.Implausible, match="asks for more"):
+        found = mr.dynamic_check([*runs], curve=curve_of(1))
+    with pytest.warns(mr.Implausible, match="asks for more"):
+        wall = mr.dynamic_check([*walls])
+    assert found.d_0 == pytest.approx(0.3, rel=1e-3)
+    assert [run.d for run in found.runs] == pytest.approx([run.d for run in wall.runs], rel=0.01)
+    assert found.restitution == ()
+
+
+@pytest.mark.slow
+def test_masonry_from_which_a_block_falls_is_beyond_d_0():
+    asked = shaken(1, 15.0)
+    with pytest.warns(mr.Implausible, match="asks for more"):
+        found = mr.dynamic_check([mr.solve_explicit(case) for case in asked], curve=curve_of(1))
+    assert math.isinf(found.mean)
+    assert not found.holds
+
+
+@pytest.mark.slow
+def test_mirrored_masonry_is_pushed_and_shaken_the_other_way():
+    """Its friction sticks rigidly, to 1e-3 of the largest impulse of a step, which is what the two differ by."""
+    found = []
+    for way in (1, -1):
+        runs = [mr.solve_explicit(case) for case in shaken(1, 3.0, way)]
+        with pytest.warns(mr.Implausible, match="asks for more"):
+            found.append(mr.dynamic_check(runs, curve=curve_of(way)))
+    assert found[1].d_0 == pytest.approx(found[0].d_0, rel=1e-6)
+    assert [run.d for run in found[1].runs] == pytest.approx([run.d for run in found[0].runs], rel=1e-3)
+
+
+@pytest.mark.slow
+def test_masonry_without_its_curve_is_refused():
+    case, _ = shaken(1, 3.0)
+    runs = [mr.solve_explicit(replace(case, duration=0.5))]
+    with pytest.raises(TypeError, match=r"runs\[0\] is masonry, .* take curve, its push"):
+        mr.dynamic_check(runs)
+    curve = curve_of(1, 0.01)
+    with pytest.raises(ValueError, match=r"curve ends at 0.01\d* m, where 9\d% of its peak is borne; push on"):
+        mr.dynamic_check(runs, curve=curve)
+    whole = curve_of(1)
+    with pytest.raises(ValueError, match=r"runs\[0\] is not of the masonry of curve"):
+        mr.dynamic_check([mr.solve_analytical(cases(1, 1.0)[0], E)], curve=whole)
+    other = mr.Masonry(masonry_of(1).blocks, 1e9, friction=0.7)
+    with pytest.raises(ValueError, match="not of the masonry of curve"):
+        mr.dynamic_check([mr.solve_explicit(replace(case, masonry=other, duration=0.5))], curve=whole)
+    jack = mr.push(masonry_of(1), mr.Actuator("wall", (-0.3, 2.1), (1, 0), None, 1e6), 0.02)
+    with pytest.raises(ValueError, match="curve is that of an Actuator"):
+        mr.dynamic_check(runs, curve=jack)

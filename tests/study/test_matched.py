@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study.loading import pushover
-from mjrock.study.matching import contacts as contacts_by_matching
+from mjrock import bars
 from scripts.shared.paper import FIGURE_3, K_N
 
 E = mr.Restitution.from_geometry(FIGURE_3)
@@ -82,39 +81,30 @@ def test_a_fixed_step_that_scatters_warns():
     mr.simulate(mr.Case(FIGURE_3, 0.05, 0.1, side_stop=False), contacts, 0.5 / omega)
 
 
-class Bar:
+class Shown:
     """What a bar of progress is told, in place of `tqdm`."""
 
     bars: ClassVar[list] = []
 
-    def __init__(self, items=(), *, desc, **options):
-        self.items, self.desc, self.options, self.count = items, desc, options, 0
-        Bar.bars.append(self)
+    def __init__(self, what, unit, total, **options):
+        self.what, self.unit, self.total, self.n = what, unit, total, 0.0
+        Shown.bars.append(self)
 
-    def __iter__(self):
-        for item in self.items:
-            yield item
-            self.count += 1
+    def update(self, more):
+        self.n += more
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *failure):
+    def close(self):
         pass
-
-    def update(self):
-        self.count += 1
 
 
 def test_what_takes_long_has_a_bar(monkeypatch):
-    """A match counts its simulations, a push-over on contacts its rotations; both wait before they show."""
-    monkeypatch.setattr(Bar, "bars", [])
-    monkeypatch.setattr(contacts_by_matching, "tqdm", Bar)
-    monkeypatch.setattr(pushover, "tqdm", Bar)
+    """A match counts its simulations, a push-over on contacts its rotations."""
+    monkeypatch.setattr(Shown, "bars", [])
+    monkeypatch.setattr(bars, "shown_bar", Shown)
+    monkeypatch.setattr(bars, "DELAY", 0.0)
     contacts = mr.matched_contacts(FIGURE_3, E, K_N, K_N)
     mr.pushover(mr.Case(FIGURE_3, 0.0, 1.0), contacts, points=20)
-    base, side, push = Bar.bars
-    assert [bar.desc for bar in Bar.bars] == ["matching the base", "matching the side", "push-over"]
-    assert min(base.count, side.count) > 5
-    assert push.count == len(push.items)
-    assert all(bar.options["delay"] == 3 and bar.options["disable"] is None for bar in Bar.bars)
+    base, side, push = (bar for bar in Shown.bars if bar.unit != "s")
+    assert [bar.what for bar in (base, side, push)] == ["matching the base", "matching the side", "push-over"]
+    assert min(base.n, side.n) > 5
+    assert push.n == push.total

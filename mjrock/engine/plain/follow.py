@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
-from tqdm import tqdm
 
+from ...bars import Bar
 from ...geometry.frames import PLANE
 from ...problem.masonry.histories import Support
 from ...quantities import GRAVITY, Array, Integers
@@ -211,7 +211,7 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
     before, mean, none = np.zeros(engine.model.nv), np.zeros(engine.model.nv), len(engine.pairs.k)
     total = Work(np.zeros(()), np.zeros(none), np.zeros(()), np.zeros(len(engine.dampers)))
     nv, deepest = engine.scene.freedom.nv, None
-    with tqdm(total=steps, desc="MuJoCo", unit="step", delay=3, disable=None, leave=False) as bar:
+    with Bar("plain MuJoCo", "s", steps * h) as bar:
         for n in range(steps + 1):
             t, kept = n * h, n % stride == 0 or n == steps
             shaken = engine.drive(course, t)
@@ -233,7 +233,7 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
             total = total.plus(done)
             if n % LOOK == 0 or n == steps:
                 require_well(data, t)
-                bar.update(n - bar.n)
+                bar.to(t)
     return samples
 
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...quantities import keep, require_real
+from ...quantities import keep, require_real, short_repr
 from ..wall.block import Block
 from .restitution import Restitution
 
@@ -87,6 +87,8 @@ class PowerLaw:
     slenderness_exponent: float
     stiffness_exponent: float
     r_squared: float
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep(self, **{part.name: require_real(part.name, getattr(self, part.name)) for part in fields(self)})

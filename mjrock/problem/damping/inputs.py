@@ -7,7 +7,16 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from ...quantities import GRAVITY, keep, require_kind, require_real, require_stiffness, require_within, shown
+from ...quantities import (
+    GRAVITY,
+    keep,
+    require_kind,
+    require_real,
+    require_stiffness,
+    require_within,
+    short_repr,
+    shown,
+)
 from ..wall.block import Block
 from .interface import contact_lines
 from .stiffness import measured_stiffness
@@ -35,6 +44,8 @@ class MasonryType:
     f_c: Range
     unit_weight: Range
     source: str = SOURCE
+
+    __repr__ = short_repr
 
     @property
     def density(self) -> float:
@@ -98,6 +109,8 @@ class StiffnessRange:
     best: float
     high: float
     basis: str
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep(self, **{name: require_stiffness(name, getattr(self, name)) for name in ("low", "best", "high")})

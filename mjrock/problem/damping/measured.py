@@ -18,7 +18,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, Within, is_iterable, require_row, shown, within_ranges
+from ...quantities import GRAVITY, Array, Within, is_iterable, require_row, short_repr, shown, within_ranges
 from .falling import MOST_PULL, falling_damping, falling_rebound
 from .rebound import rebound_damping
 
@@ -51,6 +51,8 @@ class MeasuredContact:
     k_interval: tuple[float, float] | None
     bounces: int
     times: int
+
+    __repr__ = short_repr
 
 
 @within_ranges

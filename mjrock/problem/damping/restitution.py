@@ -6,7 +6,7 @@ import math
 import warnings
 from dataclasses import dataclass, field
 
-from ...quantities import Implausible, keep, require_real, require_within
+from ...quantities import Implausible, keep, require_real, require_within, short_repr
 from ..wall.block import Block
 
 UNLIKE = 1e-2
@@ -33,6 +33,8 @@ class Restitution:
     base: float
     side: float
     made_for: tuple[float, float] | None = field(default=None, kw_only=True, compare=False, repr=False)
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep(self, base=require_real("base restitution", self.base), side=require_real("side restitution", self.side))

@@ -22,6 +22,7 @@ from ...quantities import (
     require_increasing,
     require_reals,
     require_within,
+    short_repr,
     spelt,
     within_ranges,
 )
@@ -87,6 +88,13 @@ class CodeSpectrum:
     TE: float
     damping: float = 0.05
 
+    def __repr__(self) -> str:
+        corners = ", ".join(f"{getattr(self, name):.3g}" for name in ("TB", "TC", "TD", "TE"))
+        return (
+            f"<CodeSpectrum {self.code}: a_g = {self.ag:.4g} m/s2, S = {self.S:.4g}, F_0 = {self.amplification:.4g}, "
+            f"T_B, T_C, T_D, T_E = {corners} s>"
+        )
+
     def __call__(self, T: ArrayLike, damping: float | None = None) -> Array:
         """S_e at the periods T [s], 0 to 100 [m/s2]; NTC 2018 equation 3.2.2, EN 1998-1 equations 3.2 to 3.5."""
         T, eta = periods_of(T), damping_correction(self.damping if damping is None else damping)
@@ -146,6 +154,8 @@ class FloorSpectrum:
     period: Array
     damping: float
     motion: Array
+
+    __repr__ = short_repr
 
     def __call__(self, T: ArrayLike, damping: float | None = None) -> Array:
         """S_eZ at the periods T [s], 0 to 100 [m/s2]."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, require_kind, require_reals, require_row, require_within
+from ...quantities import Array, require_kind, require_reals, require_row, require_within, short_repr
 from .code_spectrum import SpectrumOfCode
 from .motion import GroundMotion
 from .oscillator import LONGEST, SHORTEST, displacement, steps_of
@@ -27,6 +27,8 @@ class ResponseSpectrum:
     period: Array
     Sd: Array
     damping: float
+
+    __repr__ = short_repr
 
     @property
     def Sv(self) -> Array:

@@ -97,6 +97,13 @@ class MasonryCase(Carrying):
     settled: bool = field(default=True, kw_only=True)
     tilt: Any = field(default=None, kw_only=True)
 
+    def __repr__(self) -> str:
+        said = [f"{self.duration:.6g} s", *(f"{name} {motion.name!r}" for name, motion in self.grounds.items())]
+        given = {name: getattr(self, name) for name in ("velocity", "supports", "tilt")}
+        said += [name for name, value in given.items() if value is not None and len(value)]
+        said += [type(effect).__name__ for effect in self.effects]
+        return f"<MasonryCase of {self.masonry!r}: {', '.join(said)}{'' if self.settled else ', as drawn'}>"
+
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
         keep_declared(self)

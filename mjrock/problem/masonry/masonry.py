@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...files import write_text
+from ...notebook import Drawn
 from ...quantities import (
     Array,
     Density,
@@ -54,7 +55,16 @@ from .builders.in_plane import (
     side_of,
     stacked,
 )
-from .builders.in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
+from .builders.in_space import (
+    box_on_ground,
+    column_of,
+    corner_of,
+    dome_of,
+    facade_of,
+    ground_below,
+    wallette_of,
+    walls_of,
+)
 from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
 from .files.compas import compas_text, read_compas
@@ -66,11 +76,11 @@ from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
     ByKind,
+    ByWord,
     Halved,
     JointTable,
     OfBond,
     OfCount,
-    OfFloor,
     OfJoint,
     OrElse,
     properties_of,
@@ -84,7 +94,7 @@ AnyPath = str | PathLike[str]
 
 @keywords_checked
 @dataclass(frozen=True, repr=False, init=False)
-class Masonry:
+class Masonry(Drawn):
     """Rigid blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
@@ -628,10 +638,7 @@ class Masonry:
             0.78
         """
         blocks = bending_between_floors(VerticalBending(wall, load, bearing, crack))
-        given = one_by_one(options)
-        friction = given["friction"]
-        given["friction"] = OfFloor(Dry.friction if friction is None else friction)
-        return cls(blocks, **given)
+        return cls(blocks, **_by_word((("guide", 0.0), ("floor", 10.0)), options))
 
     @classmethod
     def wallette(
@@ -794,6 +801,43 @@ class Masonry:
         require_kind("ground", ground, Polyhedron, type(None))
         walls = walls_of(length, height, depth, unit, thickness=thickness, returns=returns, gable=gable)
         return cls(facade_of(walls, openings, density, ground), **options)
+
+    @classmethod
+    def corner(
+        cls,
+        thickness: Annotated[float, Within(0.01, 10, "m")],
+        height: Annotated[float, Within(0.1, 100, "m")],
+        angle: Annotated[float, Within(0, 1.4, "rad")] = 0.0,
+        *,
+        density: Annotated[float, Within(100, 30000, "kg/m3")] = 2000.0,
+        **options: Unpack[JointOptions],
+    ) -> Self:
+        """A corner of two walls that overturns with a wedge of either, from smooth cracks.
+
+        The outer faces are x = 0 and y = 0, and the walls go towards -x and y. Along its diagonal, which is
+        `angle=-math.pi / 4` of `push` and `collapse_multiplier`, the corner turns about its outer edge at the origin.
+        Across one wall it turns about the outer face of that, at 1 / sqrt(2) of the multiplier below. With t the
+        thickness, h the height and p = h tan(angle) the length of a wedge at the top,
+
+            alpha_0 = [t^2 + p (3 t / 2 + p / 3)] / (sqrt(2) h (t / 2 + 2 p / 3)).
+
+        Args:
+            thickness: of both walls [m], 0.01 to 10.
+            height: of the storey that turns [m], 0.1 to 100.
+            angle: of the cracks from the vertical [rad], 0 to 1.4. Without wedges the post in the corner turns alone.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`; `friction` is that of the base. The blocks are "ground", "corner",
+                and "rest_0" and "rest_1", what stays of the walls. All but the corner are fixed.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+
+        Examples:
+            >>> corner = mr.Masonry.corner(0.5, 4.0, angle=math.radians(30))
+            >>> round(float(mr.collapse_multiplier(corner, angle=-math.pi / 4).multiplier), 4)
+            0.3714
+        """
+        return cls(corner_of(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
 
     @classmethod
     def from_obj(
@@ -1002,6 +1046,12 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
         if number > 1:
             raise ValueError(f"blocks: {number} of them have the name {name}")
     return tuple(blocks)
+
+
+def _by_word(words: tuple[tuple[str, float], ...], options: JointOptions) -> Properties:
+    """Properties of joints, with the friction of those that have a word in their names."""
+    given = one_by_one(options)
+    return given | {"friction": ByWord(words, Dry.friction if given["friction"] is None else given["friction"])}
 
 
 def _halved(halves: Bond | None, options: JointOptions) -> Properties:

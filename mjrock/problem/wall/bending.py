@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from ...quantities import GRAVITY, Array, Within, keep, keep_declared, require_kind, require_within
+from ...quantities import GRAVITY, Array, Within, keep, keep_declared, require_kind, require_within, short_repr
 from .block import Block
 
 FINE = 20_001
@@ -64,6 +64,8 @@ class VerticalBending:
     load: Annotated[float, Within(1, 1e9, "N", "load of the floor")]
     bearing: float | None = None
     crack: float | None = None
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         require_kind("wall", self.wall, Block)

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, keep, require_array, require_whole, require_within
+from ...quantities import Array, keep, require_array, require_whole, require_within, short_repr
 
 Point = tuple[float, float, float]
 HIGHEST = 200.0
@@ -24,13 +24,6 @@ FARTHEST = 1e4
 """Largest coordinate of a point [m]."""
 IN_SPACE = {"in space": True}
 """Metadata of a field of an effect that only masonry in space takes."""
-
-
-def short_repr(effect: Any) -> str:
-    """An effect as it would be written, without what may be said by keyword and is not."""
-    shown = ((field, getattr(effect, field.name)) for field in fields(effect))
-    said = (f"{field.name}={value!r}" for field, value in shown if not (field.kw_only and value == field.default))
-    return f"{type(effect).__name__}({', '.join(said)})"
 
 
 def point_or_none(name: str, value: Any) -> Point | None:

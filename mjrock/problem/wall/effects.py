@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, TypeVar
 
-from ...quantities import Within, keep, keep_declared, shown
+from ...notebook import Drawn
+from ...quantities import Within, keep, keep_declared, short_repr, shown
 from ..ground.motion import GroundMotion
 from .damper import Damper, FrictionDamper
-from .effect import HIGHEST, IN_SPACE, Anchored, Effect, Point, keep_place, point_or_none, short_repr
+from .effect import HIGHEST, IN_SPACE, Anchored, Effect, Point, keep_place, point_or_none
 from .tie import Tie
 
 
@@ -197,7 +198,7 @@ def forces_of(effects: Sequence[Effect]) -> dict[str, tuple[Effect, Point]]:
     return {name: (effect, force) for name, effect, force in named if force is not None}
 
 
-class Carrying:
+class Carrying(Drawn):
     """What carries effects."""
 
     effects: tuple[Effect, ...]

@@ -15,8 +15,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, Within, keep_declared, require_flag, require_within, shown
-from .effect import short_repr
+from ...quantities import Array, Within, keep_declared, require_flag, require_within, short_repr, shown
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""
@@ -93,6 +92,8 @@ class Gable:
 
     height: Annotated[float, Within(0.01, 200, "m")]
     top: Annotated[float, Within(0, 1000, "m")] = 0.0
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep_declared(self, "gable")
@@ -203,9 +204,10 @@ class Front(NamedTuple):
             at = np.array(z)
             across, length = sum(float(opening.across(at)) for opening in self.openings), float(self.long(at))
             if not across < length * (1 - 1e-9):
+                where = f"at a height of {z:.4g} m" if z > 2 * edge else "at the base"
                 raise ValueError(
-                    f"the openings at a height of {z:.4g} m are {across:g} m wide together; the valid range is less "
-                    f"than {length:g} m, the length of the wall there"
+                    f"the openings {where} are {across:g} m wide together; the valid range is less than {length:g} m, "
+                    "the length of the wall there"
                 )
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...quantities import Within, keep_declared, require_kind, require_within
+from ...quantities import Within, keep_declared, require_kind, require_within, short_repr
 from .block import Block
 from .effects import AddedMass
 
@@ -43,6 +43,8 @@ class Wedge:
     height: Annotated[float, Within(0.01, 200, "m", "height of the wedge")]
     number: Annotated[int, Within(1, 100, "wedges", whole=True)] = 2
     density: Annotated[float | None, Within(100, 30_000, "kg/m3", "density of the wedge")] = None
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep_declared(self)

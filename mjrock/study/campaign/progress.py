@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
+from ...bars import OF_ALL, PLAIN, shown_bar
 from .store import Store
 
 NUMBER = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
@@ -133,32 +132,33 @@ class CampaignProgress:
         self.first: tuple[int, float] | None = None
         if kept:
             self._say(f"{kept} rows in {store} are kept")
-        self.bar = tqdm(total=total, unit="case", desc="campaign", delay=1, disable=None, smoothing=0.05)
+        form = (PLAIN if total is None else OF_ALL).replace("<{remaining}", "")  # which counts the start of workers
+        self.bar = shown_bar("campaign", "cases", total, delay=1, bar_format=form)
 
     def show(self, skipped: int, finished: int, failed: int) -> None:
         """Show how many tasks had a row already, how many have got one, and how many of these have failed."""
-        failures = f"{failed} failed" if failed else ""
+        now, parts = time.monotonic(), list[str]()
         if finished and self.first is None:
-            self.first = finished, time.monotonic()
+            self.first = finished, now
+        if rate := self._rate(finished, now):
+            parts.append(f"{rate:.3g} cases/s")
+            if self.total is not None:
+                parts.append(f"{(self.total - skipped - finished) / rate:.0f} s left")
+        if failed:
+            parts.append(f"{failed} failed")
         if not self.bar.disable:
-            self.bar.initial = skipped  # what was there already is not part of the rate
-            self.bar.set_postfix_str(failures, refresh=False)
+            self.bar.set_postfix_str(", ".join(parts), refresh=False)
             self.bar.update(skipped + finished - self.bar.n)
-        elif time.monotonic() - self.spoken >= EVERY:
-            self.spoken = time.monotonic()
+        elif now - self.spoken >= EVERY:
+            self.spoken = now
             of = "" if self.total is None else f" of {self.total}"
-            parts = [f"{skipped + finished}{of} cases"]
-            if rate := self._rate(finished):
-                parts.append(f"{rate:.3g} cases/s")
-                if self.total is not None:
-                    parts.append(f"{(self.total - skipped - finished) / rate:.0f} s left")
-            self._say(", ".join([*parts, failures] if failures else parts))
+            self._say(", ".join([f"{skipped + finished}{of} cases", *parts]))
 
-    def _rate(self, finished: int) -> float:
+    def _rate(self, finished: int, now: float) -> float:
         """Cases in a second since the first that ended, as workers start for some time; 0 for fewer than FEWEST."""
-        if finished < FEWEST or self.first is None or finished == self.first[0] or self.spoken <= self.first[1]:
+        if finished < FEWEST or self.first is None or finished == self.first[0] or now <= self.first[1]:
             return 0.0
-        return (finished - self.first[0]) / (self.spoken - self.first[1])
+        return (finished - self.first[0]) / (now - self.first[1])
 
     def close(
         self, skipped: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], warned: Sequence[str]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from ...quantities import Array, Flags, is_iterable, require_real, require_row, require_within, shown
+from ...quantities import Array, Flags, is_iterable, require_real, require_row, require_within, short_repr, shown
 from ...result.ending import Outcome
 from ..campaign.task import Row
 from .fragility import Fragility, drawn, labels_for, numbered
@@ -124,6 +124,8 @@ class PairedRatio:
     pairs: int
     groups: int
     confidence: float
+
+    __repr__ = short_repr
 
     def __str__(self) -> str:
         return (

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-from ...quantities import GRAVITY, Within, keep_declared, require_kind, shown
+from ...quantities import GRAVITY, Within, keep_declared, require_kind, short_repr, shown
 from ..analysis import Analysis, subject_of
 from ..campaign.task import Row
 
@@ -117,6 +117,8 @@ class Capacity:
     start: Annotated[float, Within(1e-6, 1e6)] = 1.0
     below: Annotated[int, Within(0, 1000, whole=True)] = 12
     spacing: Annotated[float, Within(1e-4, GROWTH - 1)] = 0.02
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         require_kind("analysis", self.analysis, Analysis)

@@ -66,6 +66,12 @@ class Fragility:
     tried: tuple[float, float] = (0.0, math.inf)
     without_curve: int = 0
 
+    def __repr__(self) -> str:
+        groups = f" in {self.groups} groups" if self.groups is not None else ""
+        return (
+            f"<Fragility: median {self.median:.4g}, dispersion {self.dispersion:.3g}, of {self.count} values{groups}>"
+        )
+
     def probability(self, intensity: ArrayLike) -> Array:
         """Share overturned at an intensity [-], of any shape.
 

@@ -12,7 +12,7 @@ from ...problem.damping.restitution import Restitution
 from ...problem.ground.motion import GroundMotion
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
-from ...quantities import Array, require_flag, require_kind, require_row
+from ...quantities import Array, require_flag, require_kind, require_row, short_repr
 from ...theory.analytical import solve_analytical
 
 SETTLING = 5.0
@@ -32,6 +32,8 @@ class RockingSpectrum:
     R: Array
     period: Array
     peak: Array
+
+    __repr__ = short_repr
 
 
 def rocking_spectrum(

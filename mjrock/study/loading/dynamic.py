@@ -7,18 +7,22 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
+from ...notebook import html_of
 from ...problem.ground.motion import GroundMotion
+from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
+from ...problem.masonry.effects import laden
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
-from ...quantities import Implausible, is_iterable, require_kind, shown, spelt
+from ...quantities import Array, Implausible, is_iterable, require_kind, shown, spelt
 from ...result.response import Response
 from ..analysis import Analysis
 from ..campaign.campaign import results
-from .mechanism import SHARE, MechanismCheck, Verdict, verdicts_of
+from .mechanism import SHARE, MechanismCheck, Verdict, verdict_rows, verdicts_of
+from .push import Push
 
 LEAST = 8
 """Records that are more than those of the global response, of which NTC 2018, 7.3.5, takes the mean from seven on."""
@@ -48,7 +52,8 @@ class DynamicCheck:
         limit_state: "SLV" or "SLC".
         d_0: displacement of the centroid at which nothing brings the wall back [m].
         runs: the largest displacement of each run.
-        restitution: |e| of all impacts of the responses [-], shape (n,); none is known of rows of a campaign.
+        restitution: |e| of all impacts of the responses [-], shape (n,); none is known of masonry and of rows of a
+            campaign.
         lacking: what C8.7.1.2.1.9 asks for and the runs do not have, in words.
     """
 
@@ -109,8 +114,13 @@ class DynamicCheck:
         before = () if kinematic is None else kinematic.verdicts
         return "\n".join([*lines, verdicts_of((*before, *self.verdicts))])
 
+    def _repr_html_(self) -> str:
+        runs = [(one.name, f"{one.d:.4f}", f"{one.d / self.d_0:.2f}") for one in self.runs]
+        head = ("run", "displacement [m]", "of d_0")
+        return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
+
     def __repr__(self) -> str:
-        said = "holds" if self.holds else "fails"
+        said = "HOLDS" if self.holds else "FAILS"
         return (
             f"<DynamicCheck {self.limit_state} {said}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
             f"{len(self.exceeded)} of {len(self.runs)} runs beyond d_0 = {self.d_0:.4g} m>"
@@ -121,10 +131,11 @@ def dynamic_check(
     runs: Sequence[Response] | Sequence[Analysis],
     limit_state: str = "SLV",
     *,
+    curve: Push | None = None,
     store: str | Path | None = None,
     natural: bool | None = None,
 ) -> DynamicCheck:
-    """The check of a wall by nonlinear dynamic analysis, by Circolare 2019 n. 7, C8.7.1.2.1.9.
+    """The check of a wall or of masonry by nonlinear dynamic analysis, by Circolare 2019 n. 7, C8.7.1.2.1.9.
 
     The limit state holds if no run exceeds d_0, and if the mean of the largest displacements is at most 0.4 d_0 at the
     SLV and 0.6 d_0 at the SLC (C8.7.1.2.1.6). d_0 is the displacement of the centroid at which weight, loads and
@@ -132,13 +143,20 @@ def dynamic_check(
     what is known to hold up to collapse. The worse of both polarities of a record enters the mean, which is on the
     safe side of the clause.
 
+    Of masonry of many blocks d_0 is that of its `push` along a direction, of the common centroid of its free blocks,
+    and the maxima are those of the same centroid along that direction. Leave ties out of the push, and give it what
+    else is constant. A run from which a block has fallen exceeds d_0. Masonry that may go either way is checked with
+    the push either way.
+
     The clause asks for more records than the global response, natural ones that fit the spectrum together, and a
     restitution of mechanism and slenderness. What the runs lack of it is said. That they fit the spectrum is for the
     user, see `RecordSet.mean_over`.
 
     Args:
-        runs: responses of one wall with the same effects, of any solver, or the `Analysis` tasks of a campaign.
+        runs: responses of one wall or masonry with the same effects, of any solver, or of a wall the `Analysis` tasks
+            of a campaign.
         limit_state: "SLV" or "SLC", whose spectrum the records fit.
+        curve: of masonry, its push along the direction that is checked, until nothing is borne any more.
         store: the file of the campaign, for tasks.
         natural: whether the records were recorded. None does not know.
 
@@ -146,8 +164,8 @@ def dynamic_check(
         The `DynamicCheck`, with `holds` and `table()`.
 
     Raises:
-        TypeError, ValueError: for runs of masonry, of unlike walls or effects or without ground motion, or tasks
-            without a row.
+        TypeError, ValueError: for runs of unlike walls or effects or without ground motion, masonry without a curve or
+            with one that ends too early, or tasks without a row.
 
     Warns:
         Implausible: for what the clause asks for and the runs lack.
@@ -155,24 +173,36 @@ def dynamic_check(
     if limit_state not in SHARE:
         raise ValueError(f"limit_state = {spelt(limit_state)} is not one of {', '.join(SHARE)}")
     require_kind("natural", natural, bool, type(None))
+    require_kind("curve", curve, Push, type(None))
     if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):
         raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
-    cases = _cases_of(given)
-    wall = cases[0].wall
-    outer, inner = cases[0].restoring
-    alone = max(outer.alpha if cases[0].side_stop else min(outer.alpha, inner.alpha), 0.0)
-    motions, numbers, largest = _motions(cases), _records(cases), _shares(given, store)
+    cases = _cases_of(given, curve)
+    motions, numbers = [case.motion for case in cases if case.motion is not None], _records(cases)
+    responses = [run for run in given if isinstance(run, Response)]
+    if responses and store is not None:
+        raise ValueError("store is for the tasks of a campaign, and runs are responses; leave it out")
+    if curve is None:
+        d_0, maxima = _of_wall(cast(Case, cases[0]), _shares(given, store))
+    else:
+        d_0, maxima = curve.d_0, [_along(run, cast(MasonryCase, run.case), curve.way) for run in responses]
     found = tuple(
-        RunMaximum(motion.name, number, run.solver, _moved(wall, share * wall.alpha))
-        for motion, number, run, share in zip(motions, numbers, given, largest, strict=True)
+        RunMaximum(motion.name, number, run.solver, d)
+        for motion, number, run, d in zip(motions, numbers, given, maxima, strict=True)
     )
-    impacts = (impact.restitution for run in given if isinstance(run, Response) for impact in run.impacts)
+    impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
     lacking = _lacking(motions, numbers, natural)
     known = tuple(e for e in impacts if not math.isnan(e))
-    check = DynamicCheck(limit_state, _moved(wall, alone), found, known, lacking)
+    check = DynamicCheck(limit_state, d_0, found, known, lacking)
     if lacking:
         warnings.warn(f"C8.7.1.2.1.9 asks for more: {'; '.join(lacking)}", Implausible, stacklevel=2)
     return check
+
+
+def _of_wall(case: Case, shares: Sequence[float]) -> tuple[float, list[float]]:
+    """d_0 of a wall and the largest displacements of its centroid [m], from its largest rotations over alpha [-]."""
+    outer, inner = case.restoring
+    alone = max(outer.alpha if case.side_stop else min(outer.alpha, inner.alpha), 0.0)
+    return _moved(case.wall, alone), [_moved(case.wall, share * case.wall.alpha) for share in shares]
 
 
 def _moved(wall: Block, rotation: float) -> float:
@@ -180,28 +210,47 @@ def _moved(wall: Block, rotation: float) -> float:
     return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
 
 
-def _cases_of(runs: Sequence[Response | Analysis]) -> list[Case]:
-    """The cases of runs of one kind, which are of one wall with the same effects."""
-    cases = list[Case]()
+def _along(run: Response, case: MasonryCase, way: Array) -> float:
+    """Largest displacement of the centroid of the free blocks along a direction [m], infinite where a block fell."""
+    mass = laden(case.masonry, case.effects)[0][list(case.masonry.free)]
+    moved = (run.pose[:, :, : len(way)] @ way) @ mass / mass.sum()
+    return math.inf if run.fallen else max(float(moved.max()), 0.0)
+
+
+def _cases_of(runs: Sequence[Response | Analysis], curve: Push | None) -> list[AnyCase]:
+    """The cases of runs of one kind, which are of one wall or masonry with the same effects."""
+    first = runs[0].case
+    if curve is not None:
+        _require_whole(curve)
     for i, run in enumerate(runs):
         require_kind(f"runs[{i}]", run, Response if isinstance(runs[0], Response) else Analysis)
         case = run.case
-        if not isinstance(case, Case):
-            raise TypeError(f"runs[{i}] is one of masonry, and the check takes those of one wall")
+        if curve is None:
+            require_wall(f"runs[{i}]", case, "curve, its push along the direction that is checked")
+        elif case.built != curve.answer.case.built:
+            raise ValueError(f"runs[{i}] is not of the masonry of curve")
         if case.motion is None:
             raise ValueError(f"runs[{i}] has no horizontal ground motion, of which the clause takes the maxima")
-        cases.append(case)
-        if any(getattr(case, name) != getattr(cases[0], name) for name in ("block", "effects", "side_stop")):
-            raise ValueError(f"runs[{i}] is of another wall, side stop or other effects than runs[0]")
-    return cases
+        if any(getattr(case, name, None) != getattr(first, name, None) for name in ("built", "side_stop", "effects")):
+            raise ValueError(f"runs[{i}] has another wall, side stop, masonry or other effects than runs[0]")
+    return [run.case for run in runs]
+
+
+def _require_whole(curve: Push) -> None:
+    """Refuse a curve that has no d_0."""
+    if curve.unit != "-":
+        raise ValueError("curve is that of an Actuator; push along a direction, which moves all blocks")
+    if math.isnan(curve.d_0):
+        raise ValueError(
+            f"curve ends at {curve.displacement[-1]:.4g} m, where {curve.force[-1] / curve.peak:.0%} of its peak is "
+            "borne; push on until nothing is"
+        )
 
 
 def _shares(runs: Sequence[Response | Analysis], store: str | Path | None) -> list[float]:
     """The largest rotation of each run over alpha [-], infinite for a wall that has overturned."""
     responses = [run for run in runs if isinstance(run, Response)]
     if responses:
-        if store is not None:
-            raise ValueError("store is for the tasks of a campaign, and runs are responses; leave it out")
         return [run.peak_over_alpha for run in responses]
     if store is None:
         raise ValueError("runs are tasks of a campaign; give its file as store")
@@ -212,16 +261,17 @@ def _shares(runs: Sequence[Response | Analysis], store: str | Path | None) -> li
     return done
 
 
-def _same(one: Case, other: Case) -> bool:
-    """Whether two cases have one record, in either polarity of its horizontal component."""
-    if one.vertical != other.vertical or one.motion is None or other.motion is None:
-        return False
-    return other.motion in one.motion.polarities
+def _same(one: AnyCase, other: AnyCase) -> bool:
+    """Whether two cases have one record, in either polarity of each horizontal component."""
+    return one.vertical == other.vertical and all(
+        now == then or (then is not None and now in then.polarities)
+        for now, then in ((other.motion, one.motion), (other.transverse, one.transverse))
+    )
 
 
-def _records(cases: Sequence[Case]) -> list[int]:
+def _records(cases: Sequence[AnyCase]) -> list[int]:
     """The number of the record of each case."""
-    firsts: list[Case] = []
+    firsts: list[AnyCase] = []
     numbers = []
     for case in cases:
         number = next((i for i, first in enumerate(firsts) if _same(first, case)), len(firsts))
@@ -242,8 +292,3 @@ def _lacking(motions: Sequence[GroundMotion], numbers: Sequence[int], natural: b
     if not natural:
         lacking.append("natural records, and these " + ("are artificial" if natural is False else "are not said to be"))
     return tuple(lacking)
-
-
-def _motions(cases: Sequence[Case]) -> list[GroundMotion]:
-    """The horizontal motion of each case."""
-    return [case.motion for case in cases if case.motion is not None]

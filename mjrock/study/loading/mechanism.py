@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...files import aligned
+from ...notebook import html_of
 from ...problem.ground.code_spectrum import SpectrumOfCode
 from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST
@@ -23,7 +24,7 @@ from ...problem.masonry.case import require_wall
 from ...problem.wall.bending import VerticalBending
 from ...problem.wall.case import Case
 from ...problem.wall.ties_on_wall import moment_at_strength
-from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, shown, takes
+from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, short_repr, shown, takes
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
@@ -64,6 +65,12 @@ class Verdict(NamedTuple):
     clause: str
     least: float = 0.0
 
+    def __repr__(self) -> str:
+        return (
+            f"<{self.what}, {self.limit_state}: {self.capacity:.4g} for {self.demand:.4g} {self.unit}, "
+            f"ratio {self.ratio:.2f} {self.said}, {self.clause}>"
+        )
+
     @property
     def ratio(self) -> float:
         """Capacity over demand [-]."""
@@ -74,18 +81,28 @@ class Verdict(NamedTuple):
         """Whether the capacity is at least the demand."""
         return self.ratio >= 1
 
+    @property
+    def said(self) -> str:
+        """HOLDS or FAILS."""
+        return "HOLDS" if self.holds else "FAILS"
 
-def verdicts_of(verdicts: Sequence[Verdict]) -> str:
-    """Conditions as a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
-    rows = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
+
+def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
+    """Conditions as rows of a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
+    rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
     rows += [
         (
             *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, f"{one.ratio:.2f}"),
-            *("HOLDS" if one.holds else "FAILS", one.clause),
+            *(one.said, one.clause),
         )
         for one in verdicts
     ]
-    return "\n".join(line.rstrip() for line in aligned(rows, "<"))
+    return rows
+
+
+def verdicts_of(verdicts: Sequence[Verdict]) -> str:
+    """Conditions as a table in text, see `verdict_rows`."""
+    return "\n".join(line.rstrip() for line in aligned(verdict_rows(verdicts), "<"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +118,8 @@ class LimitState:
     capacity: float
     period: float
     demand: float
+
+    __repr__ = short_repr
 
     @property
     def ratio(self) -> float:
@@ -187,7 +206,17 @@ class MechanismCheck:
         return multiplier * GRAVITY / (self.participation * self.confidence_factor)
 
     def table(self) -> str:
-        """The steps with their clauses, as text."""
+        """The steps with their clauses, as text. Capacity over demand is followed by HOLDS or FAILS."""
+        return "\n".join(line.rstrip() for line in aligned(self._steps(), "<><"))
+
+    def _repr_html_(self) -> str:
+        return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), self._steps())
+
+    def _steps(self) -> list[tuple[str, str, str]]:
+        """The steps: what it is, its value, and its clause or its verdict."""
+        *linear, slv, slc = self.verdicts
+        floored = self.ground_ratio > self.states["SLV"].ratio
+        said = {"SLV": "see a_g,SLV" if floored else slv.said, "SLC": slc.said}
         rows = [
             ("multiplier alpha_0", f"{self.alpha_0:.4f}", "C8.7.1.1"),
             ("participating mass e*", f"{self.participation:.4f}", "C8.7.1.5"),
@@ -200,7 +229,7 @@ class MechanismCheck:
             rows.append(("linear SLV, ties at their strength [g]", f"{self.linear_tied / GRAVITY:.4f}", "C8.7.1.2.1.7"))
         if self.peak is not None:
             rows.append(("peak of the demand, a_g S or a_Z [g]", f"{self.peak / GRAVITY:.4f}", "C8.7.1.2.1.7"))
-            rows.append(("capacity over demand SLV, linear", f"{self.linear_ratio:.2f}", ""))
+            rows.append(("capacity over demand SLV, linear", f"{self.linear_ratio:.2f}", linear[0].said))
         if self.elastic_period is not None:
             rows.append(("elastic branch up to the curve, T_0 [s]", f"{self.elastic_period:.3f}", "C8.7.1.6"))
         rows.append(("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"))
@@ -208,19 +237,20 @@ class MechanismCheck:
         rows += [(f"{tie} breaks at d [m]", f"{d:.4f}", "") for tie, d in self.breaking.items()]
         for name, state in self.states.items():
             gone = [tie for tie, d in self.breaking.items() if d <= state.capacity]
-            broken = f"without {', '.join(gone)}, broken" if gone else ""
+            broken = f", without {', '.join(gone)}, broken" if gone else ""
             rows += [
                 (f"d_{name} = {SHARE[name]:.1f} d_0 [m]", f"{state.capacity:.4f}", "C8.7.1.2.1.6"),
                 (f"T_{name} [s]", f"{state.period:.3f}", "C8.7.1.10" if name == "SLV" else "C8.7.1.11"),
                 (f"demand, xi = {DAMPING[name]:.0%} [m]", f"{state.demand:.4f}", "C8.7.1.2.1.8"),
-                (f"capacity over demand {name}", f"{state.ratio:.2f}", broken),
+                (f"capacity over demand {name}", f"{state.ratio:.2f}", said[name] + broken),
             ]
-        if self.ground_ratio > self.states["SLV"].ratio:
-            rows.append(("a_g,SLV / a_g, at least a_g,SLD / a_g", f"{self.ground_ratio:.2f}", "C8.7.1.2.1.8"))
-        return "\n".join(line.rstrip() for line in aligned(rows, "<><"))
+        if floored:
+            least = f"{slv.said}, C8.7.1.2.1.8"
+            rows.append(("a_g,SLV / a_g, at least a_g,SLD / a_g", f"{self.ground_ratio:.2f}", least))
+        return rows
 
     def __repr__(self) -> str:
-        ratios = ", ".join(f"{name} {state.ratio:.2f}" for name, state in self.states.items())
+        ratios = ", ".join(f"{one.limit_state} {one.ratio:.2f} {one.said}" for one in self.verdicts[-2:])
         return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 

@@ -14,9 +14,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from tqdm import tqdm
 
+from ...bars import Bar
 from ...distinct.explicit import solve_explicit
+from ...notebook import Drawn
 from ...problem.masonry.actuator import LARGEST, Actuator
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import laden
@@ -57,7 +58,7 @@ OFF = 0.02
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Push:
+class Push(Drawn):
     """What masonry bears as it is pushed slowly. A point is a mean over its time.
 
     Args:
@@ -92,6 +93,22 @@ class Push:
         return float(np.abs(self.force[self._peak_at]))
 
     @property
+    def way(self) -> Array:
+        """The direction, a unit vector along x or in space along x, y and z, shape (2,) or (3,)."""
+        driver = self.answer.case.effects[-1]
+        assert isinstance(driver, Actuator)
+        return driver.way
+
+    @property
+    def d_0(self) -> float:
+        """Displacement beyond the peak at which nothing is borne any more [m]; NaN where the curve ends before it."""
+        after = self._peak_at + int(np.argmax(self.force[self._peak_at :] <= 0))
+        if self.force[after] > 0:
+            return math.nan
+        (d, e), (borne, none) = self.displacement[after - 1 : after + 1], self.force[after - 1 : after + 1]
+        return float(d + (e - d) * borne / (borne - none))
+
+    @property
     def inertia_share(self) -> float:
         """Root mean square of the forces of inertia over the whole curve, over the peak [-]."""
         return float(np.sqrt(np.mean(self.inertia**2)) / self.peak)
@@ -103,9 +120,10 @@ class Push:
         return int(np.where(inertia <= STRIKING * borne, borne, -1.0).argmax())
 
     def __repr__(self) -> str:
+        peak = f"{self.peak / 1e3:.4g} kN" if self.unit == "N" else f"{self.peak:.4g} of the weight"
         return (
-            f"<Push: {len(self.force)} points to {np.abs(self.displacement).max():.3g} m, peak {self.peak:.4g} "
-            f"{self.unit}, inertia {self.inertia_share:.2%} of it, {self.ended}>"
+            f"<Push: {len(self.force)} points to {np.abs(self.displacement).max():.3g} m, peak {peak}, "
+            f"inertia {self.inertia_share:.2%} of it, {self.ended}>"
         )
 
 
@@ -427,7 +445,7 @@ class Forced(Load):
 def _pushed(load: Load, allowed: float, falls_to: float) -> Push:
     """The pieces of a push until one ends it."""
     points, ended, duration = list[tuple[Array, ...]](), "", FIRST
-    with tqdm(desc="push", delay=3, disable=None, leave=False) as bar:
+    with Bar("push", "pieces") as bar:
         while not ended:
             piece, share = load.piece(duration), math.inf
             for _ in range(TRIES - 1):
@@ -442,7 +460,7 @@ def _pushed(load: Load, allowed: float, falls_to: float) -> Push:
             points.append(piece[:4])
             fallen = float(np.abs(piece.force).max()) < falls_to * load.largest
             ended = load.done(piece) or (f"fell to {falls_to:.0%} of its peak" if fallen else "")
-            bar.update()
+            bar.add()
     displacement, force, inertia, energy = (np.concatenate(part) for part in zip(*points, strict=True))
     push = Push(displacement, force, inertia, ended, piece.answer, load.unit, energy=energy)
     warn_if_fast(push, load.weight)

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from tqdm import tqdm
 
+from ...bars import counted
 from ...geometry.frames import frames_of
 from ...geometry.kinematics import along, gaps, snaps, stretch
+from ...notebook import Drawn
 from ...problem.damping.contacts import Contacts, Uplift
 from ...problem.masonry.case import require_wall
 from ...problem.wall.case import Case
@@ -62,7 +63,7 @@ def tilted(scene: Scene, rotations: Array) -> Tilted:
     pose = scene.at_rest[0].copy()
     rows = np.zeros((len(rotations), 5))
     lever = _lever(scene, int(base[-1]), pose)
-    for n, theta in enumerate(tqdm(rotations, desc="push-over", delay=3, disable=None, leave=False)):
+    for n, theta in counted(list(enumerate(rotations)), "push-over", "points"):
         step, before = theta - pose[2], lever
         start = pose[0]
         for _ in range(2):  # Heun's method: the second time with the mean of both levers
@@ -114,7 +115,7 @@ def _carried(scene: Scene, potential: Potential, pose: Array) -> tuple[Array, Ar
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PushoverCurve:
+class PushoverCurve(Drawn):
     """The static curve of a wall that is pushed outwards.
 
     Args:

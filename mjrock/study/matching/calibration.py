@@ -17,7 +17,16 @@ import numpy as np
 from ...problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
 from ...problem.damping.law import HIGHEST, LEAST, DampingLaw
 from ...problem.damping.restitution import Restitution
-from ...quantities import Within, keep, keep_declared, require_array, require_kind, require_whole, require_within
+from ...quantities import (
+    Within,
+    keep,
+    keep_declared,
+    require_array,
+    require_kind,
+    require_whole,
+    require_within,
+    short_repr,
+)
 from ..campaign.campaign import CampaignOptions, completed
 from ..campaign.task import VERSION, Row
 from .match import AMPLITUDE_RANGE, K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, Match, combinations
@@ -46,6 +55,8 @@ class Plan:
     seed: Annotated[int, Within(0, 2**31, whole=True)] = 1
     k_n: tuple[float, float] = K_N_RANGE
     amplitude: tuple[float, float] = (0.08, 0.8)
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         keep_declared(self)

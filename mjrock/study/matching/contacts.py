@@ -10,8 +10,7 @@ import warnings
 from dataclasses import dataclass
 from typing import Annotated
 
-from tqdm import tqdm
-
+from ...bars import Bar
 from ...problem.damping.contacts import Contacts, OfBase, OfSide, Rubbing
 from ...problem.damping.interface import Points
 from ...problem.damping.restitution import Restitution
@@ -159,10 +158,10 @@ def as_theory(
 
 def _matched(name: str, match: Match, bounds: tuple[float, float], *, whole: bool) -> float:
     """The damping ratio that is matched, with a warning where the match is missed."""
-    with tqdm(desc=f"matching the {name}", unit="run", delay=3, disable=None, leave=False) as bar:
+    with Bar(f"matching the {name}", "runs") as bar:
 
         def measured(xi: float) -> float:
-            bar.update()
+            bar.add()
             return match.restitution(xi)
 
         closest = highest_branch(measured, match.target, bounds, whole=whole)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ....geometry.graph import components
 from ....geometry.hull import Convex, Side
-from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, shown
+from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, short_repr, shown
 from .joints import CLOSE, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
 from .polygon import Polygon, checked_name
@@ -50,6 +50,8 @@ class Compound:
     parts: tuple[Polygon | Polyhedron, ...]
     fixed: bool = False
     name: str | None = field(default=None)
+
+    __repr__ = short_repr
 
     def __init__(self, parts: Sequence[Polygon | Polyhedron], fixed: bool = False, name: str | None = None) -> None:
         keep(self, parts=checked_parts(parts), fixed=require_flag("fixed", fixed), name=checked_name(name))

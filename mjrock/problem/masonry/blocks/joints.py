@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from ....quantities import Array, Integers
+from ....quantities import Array, Integers, short_repr
 from .shape import Flat, Shape
 
 SHORTEST = 10.0
@@ -52,6 +52,8 @@ class Joint:
     corners: tuple[bool, bool]
     name: str
     sides: tuple[int, int]
+
+    __repr__ = short_repr
 
     @cached_property
     def width(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ....geometry import convex
 from ....geometry.hull import Convex, Side
-from ....quantities import Array, frozen
+from ....quantities import Array, frozen, short_repr
 from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart, unlike_named
 from .polyhedron import Vertices
 from .shape import Shape
@@ -44,6 +44,8 @@ class SpaceJoint:
     corners: tuple[bool, ...]
     name: str
     sides: tuple[int, int]
+
+    __repr__ = short_repr
 
     @cached_property
     def outline(self) -> Array:

@@ -11,7 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....geometry.hull import Convex, Side, prism
-from ....quantities import Array, Flags, frozen, keep, require_flag, require_reals, require_text, require_within, shown
+from ....quantities import (
+    Array,
+    Flags,
+    frozen,
+    keep,
+    require_flag,
+    require_reals,
+    require_text,
+    require_within,
+    short_repr,
+    shown,
+)
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST = 1e4
@@ -46,6 +57,8 @@ class Polygon:
     length: float = 1.0
     fixed: bool = False
     name: str | None = field(default=None)
+
+    __repr__ = short_repr
 
     def __init__(
         self,

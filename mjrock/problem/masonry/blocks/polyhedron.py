@@ -12,7 +12,17 @@ import scipy
 from numpy.typing import ArrayLike
 
 from ....geometry.hull import Convex, Hull, Side, hull_of
-from ....quantities import Array, Flags, frozen, keep, require_array, require_flag, require_kind, require_within
+from ....quantities import (
+    Array,
+    Flags,
+    frozen,
+    keep,
+    require_array,
+    require_flag,
+    require_kind,
+    require_within,
+    short_repr,
+)
 from .polygon import FARTHEST, Polygon, checked_name, required_vertices
 
 Vertices = tuple[tuple[float, float, float], ...]
@@ -47,6 +57,8 @@ class Polyhedron:
     name: str | None = field(default=None)
     hull: Hull = field(init=False, repr=False, compare=False)
     """Faces and their normals, found from the vertices."""
+
+    __repr__ = short_repr
 
     def __init__(
         self,

@@ -1,4 +1,5 @@
-"""Blocks of masonry that is built often, in space: a box, a column, a dome, and a facade with return walls."""
+"""Blocks of masonry that is built often, in space: a box, a column, a dome, a corner, and a facade with
+return walls."""
 
 from __future__ import annotations
 
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from ....quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
 from ...wall.section import Opening
+from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
 from .in_plane import MOST_BLOCKS, SMALLEST_PIECE, Ends, extent_of_ground, required_ends, required_unit, rings_of
@@ -262,6 +264,28 @@ def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Recta
         ]
         pieces += [(one, other, start, end) for one, other in pairwise([left, *inner, right])]
     return pieces
+
+
+def corner_of(thickness: float, height: float, angle: float, density: float) -> list[SolidBlock]:
+    """The ground, a corner with wedges of two walls, and what stays of them, see `Masonry.corner`."""
+    t, long = thickness, height * math.tan(angle)
+    end = long + max(t, 0.5 * height)
+
+    def along(shape: Sequence[tuple[float, float]], name: str = "") -> list[Polyhedron]:
+        sides = (
+            [(x, t + s, z) for x in (-t, 0.0) for s, z in shape],
+            [(-t - s, y, z) for y in (0.0, t) for s, z in shape],
+        )
+        return [
+            Polyhedron(corners, density, fixed=bool(name), name=f"{name}_{i}" if name else None)
+            for i, corners in enumerate(sides)
+        ]
+
+    post = Polyhedron.box((t, t, height), (-0.5 * t, 0.5 * t, 0.5 * height), density, name="corner")
+    turning = [post, *along([(0.0, 0.0), (0.0, height), (long, height)])] if long > 0 else [post]
+    rest = along([(0.0, 0.0), (long, height), (end, height), (end, 0.0)], "rest")
+    ground = ground_below((-t - end, 0.0, 0.0), (0.0, t + end, height))
+    return [ground, Compound(turning, name="corner") if long > 0 else post, *rest]
 
 
 def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: int) -> list[Polyhedron]:

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ....quantities import Array, Implausible, Within, keep_declared, require_within
+from ....quantities import Array, Implausible, Within, keep_declared, require_within, short_repr
 from .bond_law import HARDENED, YIELDS
 
 LEAST_POINTS = 3
@@ -67,6 +67,8 @@ class Bond:
     crushing_energy: Annotated[float | None, Within(1e-6, TOUGHEST, "J/m2")] = None
     residual_friction: Annotated[float | None, Within(0, 10)] = None
     hardening: Annotated[float | None, Within(1e-9, 0.1, "m")] = field(default=None, kw_only=True)
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         if (self.crushing is None) != (self.crushing_energy is None):

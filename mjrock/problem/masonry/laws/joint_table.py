@@ -106,19 +106,18 @@ class ByKind:
 
 
 @dataclass(frozen=True)
-class OfFloor:
-    """Friction of a wall between floors: `held` under the upper floor, none at its guides, another in the wall."""
+class ByWord:
+    """A property of joints whose name has a word, the first of pairs of a word and a value, and that of all others."""
 
-    wall: OfJoint
-    held: float = 10.0
+    words: tuple[tuple[str, float], ...]
+    otherwise: OfJoint
 
     def __call__(self, joint: AnyJoint) -> float:
         """The value of a joint."""
-        if "guide" in joint.name:
-            return 0.0
-        if "floor" in joint.name:
-            return self.held
-        return self.wall(joint) if callable(self.wall) else self.wall
+        for word, value in self.words:
+            if word in joint.name:
+                return value
+        return self.otherwise(joint) if callable(self.otherwise) else self.otherwise
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ import numpy as np
 import scipy
 from scipy.sparse import hstack
 
-from ....quantities import Array
+from ....notebook import Drawn
+from ....quantities import Array, named
 from ..blocks.joints_in_space import axes_along
 from ..laws.joint_law import Law, shear_limit
 from ..masonry import Masonry
@@ -62,7 +63,7 @@ BALANCED = 1e-9
 
 
 @dataclass(frozen=True)
-class Collapse:
+class Collapse(Drawn):
     """How rigid masonry fails under forces that grow.
 
     Args:
@@ -91,6 +92,12 @@ class Collapse:
     masonry: Masonry | None = field(default=None, compare=False, repr=False)
     wedged: tuple[str, ...] = field(default=(), compare=False)
     pulls: Array | None = field(default=None, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        if not self.moving:
+            return "<Collapse: nothing gives way>"
+        wedged = f", which stands by wedging of {named(self.wedged)}" if self.wedged else ""
+        return f"<Collapse at {self.multiplier:.4g} times the forces that grow: {named(self.moving)} move{wedged}>"
 
 
 def limit_of(

@@ -1,0 +1,83 @@
+"""Bars that show how far something is: on a terminal as text, in a notebook as a widget, where it has widgets."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from typing import TypeVar
+
+from tqdm import tqdm
+
+Value = TypeVar("Value")
+DELAY = 3.0
+"""Time that nothing is shown [s]."""
+PLAIN = "{desc}: {n:.0f} {unit} [{elapsed}{postfix}]"
+OF_ALL = "{desc}: {percentage:3.0f}%|{bar}| {n:.0f} of {total:g} {unit} [{elapsed}<{remaining}{postfix}]"
+
+
+def in_notebook() -> bool:
+    """Whether a kernel of Jupyter runs this, also that of VS Code or Colab."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return hasattr(shell, "kernel")
+
+
+def shown_bar(what: str, unit: str, total: float | None, **options: object) -> tqdm:
+    """The bar of tqdm that suits: a widget in a notebook with `ipywidgets`, otherwise text.
+
+    Seconds have two decimals. It shows nothing where nobody looks on, as in a file.
+    """
+    there = in_notebook()
+    if there and importlib.util.find_spec("ipywidgets"):
+        from tqdm.notebook import tqdm as kind
+    else:
+        kind = tqdm
+    form = PLAIN if total is None else OF_ALL
+    if unit == "s":
+        form = form.replace("{n:.0f}", "{n:.2f}")
+    options = {"total": total, "desc": what, "unit": unit, "bar_format": form} | options
+    return kind(disable=False if there else None, **options)
+
+
+class Bar:
+    """Progress of what may take longer than DELAY; before, it costs nothing. Use it in a `with` statement.
+
+    Args:
+        what: is in progress.
+        unit: what is counted.
+        total: how much there is of it; None if nobody knows.
+    """
+
+    def __init__(self, what: str, unit: str, total: float | None = None) -> None:
+        self.what, self.unit, self.total = what, unit, total
+        self.n, self.begun = 0.0, time.time()
+        self.bar: tqdm | None = None
+
+    def __enter__(self) -> Bar:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self.bar is not None:
+            self.bar.close()
+
+    def add(self, more: float = 1.0) -> None:
+        """There is so much more."""
+        self.to(self.n + more)
+
+    def to(self, n: float) -> None:
+        """Say how much there is."""
+        self.n = n if self.total is None else min(n, self.total)
+        if self.bar is None and time.time() - self.begun >= DELAY:
+            self.bar = shown_bar(self.what, self.unit, self.total, leave=None)
+            self.bar.start_t = self.begun
+        if self.bar is not None:
+            self.bar.update(self.n - self.bar.n)
+
+
+def counted(values: Sequence[Value], what: str, unit: str) -> Iterator[Value]:
+    """Values one by one, and a bar of how many there have been."""
+    with Bar(what, unit, len(values)) as bar:
+        for value in values:
+            yield value
+            bar.add()

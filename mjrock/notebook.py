@@ -1,0 +1,35 @@
+"""What a notebook shows of an answer, without a call: its picture or its table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+from importlib import import_module
+
+VERDICTS = {"HOLDS": "#2c6e49", "FAILS": "#b5402a"}
+"""Of the words of a verdict."""
+
+
+class Drawn:
+    """What a notebook shows as a picture, that of its type in `mjrock.plotting.notebook`."""
+
+    def _repr_png_(self) -> bytes | None:
+        shown: bytes | None = import_module("mjrock.plotting.notebook").png_of(self)
+        return shown
+
+
+def html_of(said: str, *tables: Iterable[Sequence[str]]) -> str:
+    """A line of text above tables, the words of a verdict in their colours.
+
+    Args:
+        said: the line.
+        tables: rows of cells, all texts.
+    """
+    made = ["".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows) for rows in tables]
+    return f"<p>{escape(said)}</p>" + "".join(f"<table>{rows}</table>" for rows in made)
+
+
+def _cell(text: str) -> str:
+    colour = VERDICTS.get(text.partition(",")[0])
+    look = f"text-align: left; color: {colour}; font-weight: bold" if colour else "text-align: left"
+    return f'<td style="{look}">{escape(text)}</td>'
