@@ -3,22 +3,26 @@
 const byId = id => document.getElementById(id);
 const all = selector => [...document.querySelectorAll(selector)];
 const pause = time => new Promise(done => setTimeout(done, time));
-const until = async ready => { while (!ready()) await pause(20); };
+const until = async ready => {
+  while (!ready()) await pause(20);
+};
 const press = (key, more = {}) => document.dispatchEvent(new KeyboardEvent('keydown', {key, ...more}));
 const placeOf = number => [...view.poses.subarray(8 * number, 8 * number + 3)];
 
 // Where a point [m] is on the screen.
 function onScreen(point) {
-  const {x, y} = new THREE.Vector3(...point).project(view.camera), box = byId('canvas').getBoundingClientRect();
-  return [box.left + (x + 1) / 2 * box.width, box.top + (1 - y) / 2 * box.height];
+  const {x, y} = new THREE.Vector3(...point).project(view.camera),
+    box = byId('canvas').getBoundingClientRect();
+  return [box.left + ((x + 1) / 2) * box.width, box.top + ((1 - y) / 2) * box.height];
 }
 
 // Red, green and blue of the picture at a point [m].
 function colourAt(point) {
   view.draw();
-  const gl = view.renderer.getContext(), found = new Uint8Array(4);
+  const gl = view.renderer.getContext(),
+    found = new Uint8Array(4);
   const {x, y} = new THREE.Vector3(...point).project(view.camera);
-  const at = [(x + 1) / 2 * gl.drawingBufferWidth, (y + 1) / 2 * gl.drawingBufferHeight].map(Math.floor);
+  const at = [((x + 1) / 2) * gl.drawingBufferWidth, ((y + 1) / 2) * gl.drawingBufferHeight].map(Math.floor);
   gl.readPixels(...at, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, found);
   return [...found.subarray(0, 3)];
 }
@@ -78,7 +82,8 @@ const tests = {
   },
 
   colours() {
-    const front = -0.5, told = {lower: colourAt([0, front, 0.5]), upper: colourAt([0, front, 1.5])};
+    const front = -0.5,
+      told = {lower: colourAt([0, front, 0.5]), upper: colourAt([0, front, 1.5])};
     told.edge = colourAt([0, front, 1]);
     told.shaded = colourAt([0.7, 0.55, -0.002]); // the sun comes from the left and the front
     told.lit = colourAt([-1.5, -1.5, -0.002]);
@@ -88,7 +93,9 @@ const tests = {
   },
 
   layout() {
-    const points = [], {shapes} = JSON.parse(byId('run').textContent), turn = new THREE.Quaternion();
+    const points = [],
+      {shapes} = JSON.parse(byId('run').textContent),
+      turn = new THREE.Quaternion();
     for (const time of [0, 0.3]) {
       view.show(time);
       view.draw();
@@ -106,7 +113,9 @@ const tests = {
       canvas: [box.left, box.top, box.right, box.bottom],
       footer: document.querySelector('footer').getBoundingClientRect().bottom,
       wide: document.documentElement.scrollWidth,
-      heights: all('button, select').filter(one => one.offsetParent).map(one => one.offsetHeight),
+      heights: all('button, select')
+        .filter(one => one.offsetParent)
+        .map(one => one.offsetHeight),
       slider: byId('time').offsetWidth,
     };
   },
@@ -114,7 +123,7 @@ const tests = {
   async frames() {
     const took = [];
     for (let i = 0; i < 150; i++) {
-      view.time = view.last * i / 150;
+      view.time = (view.last * i) / 150;
       const start = performance.now();
       view.draw();
       took.push(performance.now() - start);
@@ -132,6 +141,10 @@ const tests = {
 const state = () => document.documentElement.dataset.state;
 await until(state);
 let told;
-try { told = await tests[NAME](); } catch (error) { told = {error: String(error.stack ?? error)}; }
+try {
+  told = await tests[NAME]();
+} catch (error) {
+  told = {error: String(error.stack ?? error)};
+}
 const asked = performance.getEntriesByType('resource').map(entry => entry.name);
 await fetch('/told', {method: 'POST', body: JSON.stringify({...told, asked, state: state()})});

@@ -7,9 +7,13 @@
 const run = JSON.parse(document.getElementById('run').textContent);
 const byId = id => document.getElementById(id);
 const canvas = byId('canvas');
-const NARROW = 24 * Math.PI / 180; // vertical angle of the camera
+const NARROW = (24 * Math.PI) / 180; // vertical angle of the camera
 const WIDE = 1024; // texels in a row of the texture of poses
-const INK = '#2b1a14', FAINT = '#a08f86', GREY = '#c9c5bd', FLOOR = '#e4e0d7', PICKED = '#ffd24a';
+const INK = '#2b1a14',
+  FAINT = '#a08f86',
+  GREY = '#c9c5bd',
+  FLOOR = '#e4e0d7',
+  PICKED = '#ffd24a';
 const EDGE = 1.3; // width of edges in pixels
 const KINDS = {ties: ['#1f5f9e', 3], cracks: ['#d1261a', 3.5], forces: ['#b5462f', 3.5]}; // colour and width in pixels
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2];
@@ -24,10 +28,13 @@ async function unpacked({rows, step, data}) {
   const bytes = Uint8Array.from(atob(data), letter => letter.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
-  const count = planes.length / 4, samples = count / rows, values = new Float32Array(count);
+  const count = planes.length / 4,
+    samples = count / rows,
+    values = new Float32Array(count);
   for (let row = 0, i = 0; row < rows; row++) {
     for (let sample = 0, rate = 0, value = 0; sample < samples; sample++, i++) {
-      const folded = planes[i] | planes[i + count] << 8 | planes[i + 2 * count] << 16 | planes[i + 3 * count] << 24;
+      const folded =
+        planes[i] | (planes[i + count] << 8) | (planes[i + 2 * count] << 16) | (planes[i + 3 * count] << 24);
       rate = (rate + ((folded >>> 1) ^ -(folded & 1))) | 0;
       value = (value + rate) | 0;
       values[sample * rows + row] = value * step;
@@ -38,10 +45,12 @@ async function unpacked({rows, step, data}) {
 
 // The sample before a time, and how far the time lies between it and the next one, 0 to 1.
 function sampleAt(time) {
-  let low = 0, high = run.t.length - 1;
+  let low = 0,
+    high = run.t.length - 1;
   while (high - low > 1) {
     const middle = (low + high) >> 1;
-    if (run.t[middle] <= time) low = middle; else high = middle;
+    if (run.t[middle] <= time) low = middle;
+    else high = middle;
   }
   const share = high > low ? (time - run.t[low]) / (run.t[high] - run.t[low]) : 0;
   return [low, high, Math.min(1, Math.max(0, share))];
@@ -49,15 +58,21 @@ function sampleAt(time) {
 
 // Write the poses of all bodies at a time: x, y, z and 1 where the body is shown, then the quaternion with w last.
 function setPoses(poses, motion, time) {
-  const [low, high, share] = sampleAt(time), {places, turns} = motion, count = run.moving.length;
+  const [low, high, share] = sampleAt(time),
+    {places, turns} = motion,
+    count = run.moving.length;
   for (let k = 0; k < count; k++) {
-    const at = 8 * run.moving[k], rest = run.bodies[run.moving[k]].rest;
-    const p = 3 * (low * count + k), q = 3 * (high * count + k), a = 4 * (low * count + k), b = 4 * (high * count + k);
+    const at = 8 * run.moving[k],
+      rest = run.bodies[run.moving[k]].rest;
+    const p = 3 * (low * count + k),
+      q = 3 * (high * count + k),
+      a = 4 * (low * count + k),
+      b = 4 * (high * count + k);
     for (let i = 0; i < 3; i++) poses[at + i] = rest[i] + places[p + i] + share * (places[q + i] - places[p + i]);
     let size = 0;
     for (let i = 0; i < 4; i++) {
       const part = turns[a + i] + share * (turns[b + i] - turns[a + i]);
-      poses[at + 4 + (i + 3) % 4] = part; // Python has w first
+      poses[at + 4 + ((i + 3) % 4)] = part; // Python has w first
       size += part * part;
     }
     size = 1 / Math.sqrt(size);
@@ -82,8 +97,14 @@ function follow(material, uniforms) {
   material.onBeforeCompile = shader => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', `#include <common>\nattribute float body; uniform float picked; uniform vec3 mark;${POSED}`)
-      .replace('#include <color_vertex>', '#include <color_vertex>\nif (body == picked) vColor.rgb = mix(vColor.rgb, mark, 0.75);')
+      .replace(
+        '#include <common>',
+        `#include <common>\nattribute float body; uniform float picked; uniform vec3 mark;${POSED}`,
+      )
+      .replace(
+        '#include <color_vertex>',
+        '#include <color_vertex>\nif (body == picked) vColor.rgb = mix(vColor.rgb, mark, 0.75);',
+      )
       .replace('#include <beginnormal_vertex>', 'vec3 objectNormal = turned(normal, texel(body, 1));')
       .replace('#include <begin_vertex>', 'vec3 transformed = placed(position, body);');
   };
@@ -92,12 +113,17 @@ function follow(material, uniforms) {
 
 // The mesh of the bodies that are fixed, or of those that are not.
 function meshOfBodies(fixed, uniforms) {
-  const at = [], normals = [], colours = [], numbers = [];
-  const [a, b, c] = [0, 1, 2].map(() => new THREE.Vector3()), colour = new THREE.Color();
+  const at = [],
+    normals = [],
+    colours = [],
+    numbers = [];
+  const [a, b, c] = [0, 1, 2].map(() => new THREE.Vector3()),
+    colour = new THREE.Color();
   run.bodies.forEach((body, number) => {
     if ((body.tint === null) !== fixed) return;
     const {corners, faces} = run.shapes[body.shape];
-    if (fixed) colour.set(run.ground && body.kind === 'ground' ? FLOOR : GREY); else colour.setRGB(...run.tints[body.tint], THREE.SRGBColorSpace);
+    if (fixed) colour.set(run.ground && body.kind === 'ground' ? FLOOR : GREY);
+    else colour.setRGB(...run.tints[body.tint], THREE.SRGBColorSpace);
     for (const face of faces) {
       for (let i = 1; i + 1 < face.length; i++) {
         const triangle = [face[0], face[i], face[i + 1]].map(corner => corners[corner]);
@@ -113,8 +139,12 @@ function meshOfBodies(fixed, uniforms) {
     }
   });
   const geometry = new THREE.BufferGeometry();
-  const add = (name, values, size) => geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(values), size));
-  add('position', at, 3); add('normal', normals, 3); add('color', colours, 3); add('body', numbers, 1);
+  const add = (name, values, size) =>
+    geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(values), size));
+  add('position', at, 3);
+  add('normal', normals, 3);
+  add('color', colours, 3);
+  add('body', numbers, 1);
   const mesh = new THREE.Mesh(geometry, follow(new THREE.MeshLambertMaterial({vertexColors: true}), uniforms));
   // blocks lie on what is fixed, face on face: of the two the block is in front
   Object.assign(mesh.material, {polygonOffset: fixed, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
@@ -157,7 +187,12 @@ function meshOfLines(lines, [colour, width], uniforms) {
   geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(12), 3));
   geometry.setAttribute('corner', new THREE.BufferAttribute(new Float32Array([0, -1, 1, -1, 1, 1, 0, 1]), 2));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  for (const [name, size] of [['start', 3], ['end', 3], ['bodies', 2], ['life', 2]]) {
+  for (const [name, size] of [
+    ['start', 3],
+    ['end', 3],
+    ['bodies', 2],
+    ['life', 2],
+  ]) {
     const values = new Float32Array(lines.flatMap(line => line[name]));
     geometry.setAttribute(name, new THREE.InstancedBufferAttribute(values, size));
   }
@@ -170,17 +205,25 @@ function meshOfLines(lines, [colour, width], uniforms) {
 
 // The ground: a disc that fades out beyond all that lies on it.
 function meshOfGround({level, middle, radius}) {
-  const at = [], colours = [], index = [], parts = 96, tone = new THREE.Color(FLOOR);
-  for (const [share, alpha] of [[0, 1], [1, 1], [1.6, 0]]) {
+  const at = [],
+    colours = [],
+    index = [],
+    parts = 96,
+    tone = new THREE.Color(FLOOR);
+  for (const [share, alpha] of [
+    [0, 1],
+    [1, 1],
+    [1.6, 0],
+  ]) {
     for (let i = 0; i < parts; i++) {
-      const angle = 2 * Math.PI * i / parts;
+      const angle = (2 * Math.PI * i) / parts;
       at.push(middle[0] + share * radius * Math.cos(angle), middle[1] + share * radius * Math.sin(angle), level);
       colours.push(tone.r, tone.g, tone.b, alpha);
     }
   }
   for (let ring = 0; ring < 2; ring++) {
     for (let i = 0; i < parts; i++) {
-      const [a, b] = [ring * parts + i, ring * parts + (i + 1) % parts];
+      const [a, b] = [ring * parts + i, ring * parts + ((i + 1) % parts)];
       index.push(a, a + parts, b + parts, a, b + parts, b);
     }
   }
@@ -197,12 +240,20 @@ function meshOfGround({level, middle, radius}) {
 // Light from all sides, and a sun whose shadows cover the box of what is looked at.
 function addLight(scene) {
   scene.add(new THREE.HemisphereLight('#ffffff', '#b9b0a4', 1.9));
-  const sun = new THREE.DirectionalLight('#fff4e2', 2.3), middle = middleOfBox();
+  const sun = new THREE.DirectionalLight('#fff4e2', 2.3),
+    middle = middleOfBox();
   const reach = 1.1 * new THREE.Vector3().fromArray(run.box[1]).distanceTo(new THREE.Vector3().fromArray(run.box[0]));
   sun.position.copy(middle).addScaledVector(new THREE.Vector3(-0.55, -0.75, 1.15).normalize(), 2 * reach);
   sun.target.position.copy(middle);
   sun.castShadow = true;
-  Object.assign(sun.shadow.camera, {left: -reach, right: reach, bottom: -reach, top: reach, near: 0.5 * reach, far: 4 * reach});
+  Object.assign(sun.shadow.camera, {
+    left: -reach,
+    right: reach,
+    bottom: -reach,
+    top: reach,
+    near: 0.5 * reach,
+    far: 4 * reach,
+  });
   sun.shadow.mapSize.set(2048, 2048);
   sun.shadow.normalBias = reach / 1024;
   sun.shadow.bias = -1e-4;
@@ -211,16 +262,22 @@ function addLight(scene) {
 
 // The bars of forces at a time: each lies along the force of a joint, and is as long as the force is large.
 function setBars(mesh, {places, shares}, time, longest) {
-  const [low, high, share] = sampleAt(time), count = 3 * run.forces.joints.length, {most} = run.forces;
-  const {start, end} = mesh.geometry.attributes, between = (values, i) => {
-    const before = values[low * count + i];
-    return before + share * (values[high * count + i] - before);
-  };
+  const [low, high, share] = sampleAt(time),
+    count = 3 * run.forces.joints.length,
+    {most} = run.forces;
+  const {start, end} = mesh.geometry.attributes,
+    between = (values, i) => {
+      const before = values[low * count + i];
+      return before + share * (values[high * count + i] - before);
+    };
   for (let i = 0; i < count; i += 3) {
-    const x = between(shares, i), y = between(shares, i + 1), z = between(shares, i + 2);
+    const x = between(shares, i),
+      y = between(shares, i + 1),
+      z = between(shares, i + 2);
     const half = 0.5 * longest * Math.min(1, most / Math.max(Math.sqrt(x * x + y * y + z * z), 1e-9));
     for (let k = 0; k < 3; k++) {
-      const at = between(places, i + k), off = half * (k === 0 ? x : k === 1 ? y : z);
+      const at = between(places, i + k),
+        off = half * (k === 0 ? x : k === 1 ? y : z);
       start.array[i + k] = at - off;
       end.array[i + k] = at + off;
     }
@@ -230,16 +287,22 @@ function setBars(mesh, {places, shares}, time, longest) {
 
 // ------------------------------------------------------------------------------------------------------- the camera
 
-const middleOfBox = () => new THREE.Vector3().fromArray(run.box[0]).add(new THREE.Vector3().fromArray(run.box[1])).multiplyScalar(0.5);
+const middleOfBox = () =>
+  new THREE.Vector3().fromArray(run.box[0]).add(new THREE.Vector3().fromArray(run.box[1])).multiplyScalar(0.5);
 
 // Put the camera where it sees the whole box, whatever the shape of the window.
 function fitCamera(camera, controls) {
-  const [low, high] = run.box, middle = middleOfBox(), eye = new THREE.Vector3(...run.way).normalize();
-  const right = new THREE.Vector3(0, 0, 1).cross(eye).normalize(), up = eye.clone().cross(right);
-  const tall = Math.tan(NARROW / 2) * 0.86, wide = tall * camera.aspect, corner = new THREE.Vector3();
+  const [low, high] = run.box,
+    middle = middleOfBox(),
+    eye = new THREE.Vector3(...run.way).normalize();
+  const right = new THREE.Vector3(0, 0, 1).cross(eye).normalize(),
+    up = eye.clone().cross(right);
+  const tall = Math.tan(NARROW / 2) * 0.86,
+    wide = tall * camera.aspect,
+    corner = new THREE.Vector3();
   let distance = 0;
   for (let i = 0; i < 8; i++) {
-    corner.set(...[0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])).sub(middle);
+    corner.set(...[0, 1, 2].map(k => ((i >> k) & 1 ? high : low)[k])).sub(middle);
     const across = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / tall);
     distance = Math.max(distance, across + corner.dot(eye));
   }
@@ -254,10 +317,14 @@ function roundBelow(most) {
   return power * [5, 2, 1].find(factor => factor * power <= most * (1 + 1e-9));
 }
 
-const PREFIXES = [[1e6, 'M'], [1e3, 'k'], [1, '']];
+const PREFIXES = [
+  [1e6, 'M'],
+  [1e3, 'k'],
+  [1, ''],
+];
 // A value with its unit, to so many digits.
 function shown(value, unit, digits = 3) {
-  const [factor, prefix] = unit === 'N' ? PREFIXES.find(([least]) => Math.abs(value) >= least) ?? [1, ''] : [1, ''];
+  const [factor, prefix] = unit === 'N' ? (PREFIXES.find(([least]) => Math.abs(value) >= least) ?? [1, '']) : [1, ''];
   return `${+(value / factor).toPrecision(digits)} ${prefix}${unit}`;
 }
 
@@ -265,13 +332,21 @@ function shown(value, unit, digits = 3) {
 
 // The number of the nearest body that a ray meets, or -1.
 function bodyOnRay(ray, poses) {
-  const turn = new THREE.Quaternion(), local = new THREE.Ray(), point = new THREE.Vector3(), [a, b, c] = [0, 1, 2].map(() => new THREE.Vector3());
-  let nearest = Infinity, found = -1;
+  const turn = new THREE.Quaternion(),
+    local = new THREE.Ray(),
+    point = new THREE.Vector3(),
+    [a, b, c] = [0, 1, 2].map(() => new THREE.Vector3());
+  let nearest = Infinity,
+    found = -1;
   run.bodies.forEach((body, number) => {
-    const pose = poses.subarray(8 * number, 8 * number + 8), {corners, faces} = run.shapes[body.shape];
+    const pose = poses.subarray(8 * number, 8 * number + 8),
+      {corners, faces} = run.shapes[body.shape];
     if (!pose[3]) return;
     turn.set(pose[4], pose[5], pose[6], pose[7]).invert();
-    local.origin.copy(ray.origin).sub(point.set(pose[0], pose[1], pose[2])).applyQuaternion(turn);
+    local.origin
+      .copy(ray.origin)
+      .sub(point.set(pose[0], pose[1], pose[2]))
+      .applyQuaternion(turn);
     local.direction.copy(ray.direction).applyQuaternion(turn);
     for (const face of faces) {
       for (let i = 1; i + 1 < face.length; i++) {
@@ -287,21 +362,33 @@ function bodyOnRay(ray, poses) {
 
 // Rows of the card of a body: what is known of it at a time.
 function rowsOf(number, poses, forces, time) {
-  const body = run.bodies[number], pose = poses.subarray(8 * number, 8 * number + 8), rows = [];
+  const body = run.bodies[number],
+    pose = poses.subarray(8 * number, 8 * number + 8),
+    rows = [];
   if (body.mass !== null) rows.push(['mass', shown(body.mass, 'kg', 4)]);
   if (body.tint === null) rows.push(['fixed', run.moving.includes(number) ? 'moved as a support' : 'yes']);
   if (run.moving.includes(number)) {
-    const off = [0, 1, 2].map(i => pose[i] - body.rest[i]), metres = value => (Math.abs(value) < 5e-7 ? 0 : value).toPrecision(3);
+    const off = [0, 1, 2].map(i => pose[i] - body.rest[i]),
+      metres = value => (Math.abs(value) < 5e-7 ? 0 : value).toPrecision(3);
     rows.push(['displacement', `${metres(Math.hypot(...off))} m`]);
     rows.push(['along x, y, z', `${off.map(metres).join(', ')} m`]);
-    const angle = 2 * Math.atan2(Math.hypot(pose[4], pose[5], pose[6]), Math.abs(pose[7])) * 180 / Math.PI;
+    const angle = (2 * Math.atan2(Math.hypot(pose[4], pose[5], pose[6]), Math.abs(pose[7])) * 180) / Math.PI;
     rows.push(['turned by', `${angle < 5e-5 ? 0 : angle.toPrecision(3)} degrees`]);
   }
   if (forces) {
-    const [low, high, share] = sampleAt(time), nearer = share < 0.5 ? low : high, count = run.forces.joints.length;
-    const pressing = run.forces.joints.map(([name, ...sides], j) => ({
-      name, of: sides.includes(number), force: run.forces.scale * Math.hypot(...forces.shares.subarray(3 * (nearer * count + j), 3 * (nearer * count + j) + 3)),
-    })).filter(joint => joint.of && joint.force > 1e-3 * run.forces.scale).sort((one, other) => other.force - one.force);
+    const [low, high, share] = sampleAt(time),
+      nearer = share < 0.5 ? low : high,
+      count = run.forces.joints.length;
+    const pressing = run.forces.joints
+      .map(([name, ...sides], j) => ({
+        name,
+        of: sides.includes(number),
+        force:
+          run.forces.scale *
+          Math.hypot(...forces.shares.subarray(3 * (nearer * count + j), 3 * (nearer * count + j) + 3)),
+      }))
+      .filter(joint => joint.of && joint.force > 1e-3 * run.forces.scale)
+      .sort((one, other) => other.force - one.force);
     for (const joint of pressing.slice(0, 6)) rows.push([`force of ${joint.name}`, shown(joint.force, 'N')]);
     if (pressing.length > 6) rows.push(['', `and of ${pressing.length - 6} joints more`]);
   }
@@ -318,14 +405,15 @@ const make = (tag, properties = {}, ...children) => {
 
 // Draw what the ground does below the slider.
 function drawTrack() {
-  const svg = byId('ground-motion'), space = 'http://www.w3.org/2000/svg';
+  const svg = byId('ground-motion'),
+    space = 'http://www.w3.org/2000/svg';
   const add = (tag, attributes) => {
     const element = svg.appendChild(document.createElementNS(space, tag));
     for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
     return element;
   };
   run.track.forEach(({values}, number) => {
-    const points = values.map((value, i) => `${(1000 * i / (values.length - 1)).toFixed(1)},${-value}`).join(' ');
+    const points = values.map((value, i) => `${((1000 * i) / (values.length - 1)).toFixed(1)},${-value}`).join(' ');
     add('polyline', {points, stroke: LINES_OF_TRACK[number % LINES_OF_TRACK.length]});
   });
   run.track.forEach(({name, peak, unit}, number) => {
@@ -340,16 +428,29 @@ function drawTrack() {
 // All that the page does, about the time that it shows.
 class View {
   constructor(motion, forces) {
-    Object.assign(this, {motion, forces, first: run.t[0], last: run.t.at(-1), speed: 1, playing: false, moved: false, number: -1});
+    Object.assign(this, {
+      motion,
+      forces,
+      first: run.t[0],
+      last: run.t.at(-1),
+      speed: 1,
+      playing: false,
+      moved: false,
+      number: -1,
+    });
     this.time = this.first;
     this.frames = 0; // drawn
     this.cost = []; // time of script of the last frames [ms]
-    const rows = Math.ceil(2 * run.bodies.length / WIDE);
+    const rows = Math.ceil((2 * run.bodies.length) / WIDE);
     this.poses = new Float32Array(4 * WIDE * rows);
     run.bodies.forEach((body, i) => this.poses.set([...body.rest, 1, 0, 0, 0, 1], 8 * i));
     this.texture = new THREE.DataTexture(this.poses, WIDE, rows, THREE.RGBAFormat, THREE.FloatType);
     this.uniforms = {
-      poses: {value: this.texture}, picked: {value: -1}, mark: {value: new THREE.Color(PICKED)}, time: {value: 0}, size: {value: new THREE.Vector2(1, 1)},
+      poses: {value: this.texture},
+      picked: {value: -1},
+      mark: {value: new THREE.Color(PICKED)},
+      time: {value: 0},
+      size: {value: new THREE.Vector2(1, 1)},
     };
     this.build();
     this.connect();
@@ -363,12 +464,16 @@ class View {
     this.renderer.shadowMap.enabled = true;
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue('--paper').trim());
+    this.scene.background = new THREE.Color(
+      getComputedStyle(document.documentElement).getPropertyValue('--paper').trim(),
+    );
     addLight(this.scene);
     this.blocks = meshOfBodies(false, this.uniforms);
     this.shapes = {};
     const always = [-1e30, 1e30];
-    const edges = run.bodies.flatMap((body, i) => run.shapes[body.shape].edges.map(([start, end]) => ({start, end, bodies: [i, i], life: always})));
+    const edges = run.bodies.flatMap((body, i) =>
+      run.shapes[body.shape].edges.map(([start, end]) => ({start, end, bodies: [i, i], life: always})),
+    );
     this.edges = meshOfLines(edges, [INK, EDGE], this.uniforms);
     this.scene.add(this.blocks, meshOfBodies(true, this.uniforms), this.edges);
     for (const kind of ['ties', 'cracks']) {
@@ -384,12 +489,14 @@ class View {
     }
     if (run.ground) this.shapes.ground = meshOfGround(run.ground);
     this.scene.add(...Object.values(this.shapes));
-    this.camera = new THREE.PerspectiveCamera(NARROW * 180 / Math.PI, 1, 1, 10);
+    this.camera = new THREE.PerspectiveCamera((NARROW * 180) / Math.PI, 1, 1, 10);
     this.camera.up.set(0, 0, 1);
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     if (run.ground) this.controls.maxPolarAngle = 0.495 * Math.PI;
     this.controls.enableZoom = window.self === window.top; // within another page the wheel scrolls that one, see connect
-    this.controls.addEventListener('start', () => { this.moved = true; });
+    this.controls.addEventListener('start', () => {
+      this.moved = true;
+    });
     this.controls.addEventListener('change', () => this.ask());
   }
 
@@ -398,34 +505,56 @@ class View {
     this.cursor = drawTrack();
     const slider = byId('time');
     Object.assign(slider, {min: this.first, max: this.last, value: this.first});
-    slider.oninput = () => { this.stop(); this.show(+slider.value); };
+    slider.oninput = () => {
+      this.stop();
+      this.show(+slider.value);
+    };
     byId('play').onclick = () => (this.playing ? this.stop() : this.play());
     byId('back').onclick = () => this.step(-1);
     byId('forth').onclick = () => this.step(1);
     byId('reset').onclick = () => this.reset();
-    byId('speed').append(...SPEEDS.map(speed => make('option', {value: speed, textContent: `${speed} \u00d7`, selected: speed === 1})));
-    byId('speed').onchange = () => { this.speed = +byId('speed').value; };
+    byId('speed').append(
+      ...SPEEDS.map(speed => make('option', {value: speed, textContent: `${speed} \u00d7`, selected: speed === 1})),
+    );
+    byId('speed').onchange = () => {
+      this.speed = +byId('speed').value;
+    };
     byId('longer').append(...LENGTHS.map(times => make('option', {value: times, textContent: `${times} \u00d7`})));
-    byId('longer').onchange = () => { this.longest = run.forces.longest * byId('longer').value; this.ask(); };
+    byId('longer').onchange = () => {
+      this.longest = run.forces.longest * byId('longer').value;
+      this.ask();
+    };
     byId('full').hidden = !document.fullscreenEnabled;
-    byId('full').onclick = () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen());
+    byId('full').onclick = () =>
+      document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
     byId('block').append(...run.bodies.map((body, value) => make('option', {value, textContent: body.name})));
     byId('block').onchange = () => this.pick(+byId('block').value);
     const groups = [...new Set(run.bodies.map(body => body.kind))];
-    this.switches = Object.fromEntries([...new Set([...groups, ...Object.keys(this.shapes)])].map(name => {
-      const box = make('input', {type: 'checkbox', name, checked: this.shapes[name]?.visible ?? true});
-      box.onchange = () => this.turn(name, box.checked);
-      byId('switches').append(make('label', {}, box, name));
-      return [name, box];
-    }));
+    this.switches = Object.fromEntries(
+      [...new Set([...groups, ...Object.keys(this.shapes)])].map(name => {
+        const box = make('input', {type: 'checkbox', name, checked: this.shapes[name]?.visible ?? true});
+        box.onchange = () => this.turn(name, box.checked);
+        byId('switches').append(make('label', {}, box, name));
+        return [name, box];
+      }),
+    );
     let pressed = null;
-    canvas.addEventListener('pointerdown', event => { pressed = [event.clientX, event.clientY]; this.controls.enableZoom = true; });
-    canvas.addEventListener('pointerup', event => {
-      if (pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 5) this.pickAt(event.clientX, event.clientY);
+    canvas.addEventListener('pointerdown', event => {
+      pressed = [event.clientX, event.clientY];
+      this.controls.enableZoom = true;
     });
-    canvas.addEventListener('pointerleave', () => { this.controls.enableZoom = window.self === window.top; });
+    canvas.addEventListener('pointerup', event => {
+      if (pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 5)
+        this.pickAt(event.clientX, event.clientY);
+    });
+    canvas.addEventListener('pointerleave', () => {
+      this.controls.enableZoom = window.self === window.top;
+    });
     document.addEventListener('keydown', event => this.key(event));
-    canvas.setAttribute('aria-label', `${run.bodies.length} blocks in motion, ${this.first} to ${this.last} s: drag to turn, wheel or pinch to zoom, click a block`);
+    canvas.setAttribute(
+      'aria-label',
+      `${run.bodies.length} blocks in motion, ${this.first} to ${this.last} s: drag to turn, wheel or pinch to zoom, click a block`,
+    );
   }
 
   // What a key does. Keys that a control of the page takes are left to it.
@@ -434,17 +563,33 @@ class View {
     if (event.ctrlKey || event.metaKey || event.altKey || within === 'SELECT') return;
     if (within === 'BUTTON' && event.key === ' ') return;
     const turn = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
-    const action = event.shiftKey && turn ? () => this.orbit(...turn) : {
-      ' ': () => byId('play').click(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), Home: () => this.go(this.first),
-      End: () => this.go(this.last), r: () => this.reset(), f: () => byId('full').click(), Escape: () => this.pick(-1),
-      ',': () => this.change(-1), '.': () => this.change(1), '+': () => this.zoom(0.9), '=': () => this.zoom(0.9), '-': () => this.zoom(1 / 0.9),
-    }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const action =
+      event.shiftKey && turn
+        ? () => this.orbit(...turn)
+        : {
+            ' ': () => byId('play').click(),
+            ArrowLeft: () => this.step(-1),
+            ArrowRight: () => this.step(1),
+            Home: () => this.go(this.first),
+            End: () => this.go(this.last),
+            r: () => this.reset(),
+            f: () => byId('full').click(),
+            Escape: () => this.pick(-1),
+            ',': () => this.change(-1),
+            '.': () => this.change(1),
+            '+': () => this.zoom(0.9),
+            '=': () => this.zoom(0.9),
+            '-': () => this.zoom(1 / 0.9),
+          }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;
     event.preventDefault();
     action();
   }
 
-  go(time) { this.stop(); this.show(time); }
+  go(time) {
+    this.stop();
+    this.show(time);
+  }
 
   // Go to the next sample, or to the one before.
   step(by) {
@@ -460,9 +605,9 @@ class View {
   // Turn the camera about what it looks at, by steps of five degrees.
   orbit(across, down) {
     const off = this.camera.position.clone().sub(this.controls.target);
-    off.applyAxisAngle(new THREE.Vector3(0, 0, 1), across * Math.PI / 36);
+    off.applyAxisAngle(new THREE.Vector3(0, 0, 1), (across * Math.PI) / 36);
     const right = new THREE.Vector3(0, 0, 1).cross(off).normalize();
-    const tilted = off.clone().applyAxisAngle(right, down * Math.PI / 36);
+    const tilted = off.clone().applyAxisAngle(right, (down * Math.PI) / 36);
     if (Math.hypot(tilted.x, tilted.y) > 0.1 * tilted.length()) off.copy(tilted);
     this.camera.position.copy(this.controls.target).add(off);
     this.moved = true;
@@ -511,7 +656,9 @@ class View {
   turn(name, on) {
     this.switches[name].checked = on;
     if (this.shapes[name]) this.shapes[name].visible = on;
-    run.bodies.forEach((body, i) => { if (body.kind === name) this.poses[8 * i + 3] = +on; });
+    run.bodies.forEach((body, i) => {
+      if (body.kind === name) this.poses[8 * i + 3] = +on;
+    });
     if (name === 'forces') {
       Object.assign(this.blocks.material, {transparent: on, opacity: on ? 0.3 : 1, depthWrite: !on});
       this.blocks.material.needsUpdate = true;
@@ -523,8 +670,12 @@ class View {
   }
 
   pickAt(x, y) {
-    const box = canvas.getBoundingClientRect(), caster = new THREE.Raycaster();
-    caster.setFromCamera(new THREE.Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
+    const box = canvas.getBoundingClientRect(),
+      caster = new THREE.Raycaster();
+    caster.setFromCamera(
+      new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height),
+      this.camera,
+    );
     this.pick(bodyOnRay(caster.ray, this.poses));
   }
 
@@ -538,10 +689,16 @@ class View {
 
   // Write the card of the body that is picked.
   writeCard() {
-    const rows = rowsOf(this.number, this.poses, this.forces, this.time).map(([name, value]) => make('tr', {}, make('th', {scope: 'row', textContent: name}), make('td', {textContent: value})));
+    const rows = rowsOf(this.number, this.poses, this.forces, this.time).map(([name, value]) =>
+      make('tr', {}, make('th', {scope: 'row', textContent: name}), make('td', {textContent: value})),
+    );
     const close = make('button', {textContent: '\u00d7', title: 'let go (Escape)', onclick: () => this.pick(-1)});
     close.setAttribute('aria-label', 'let go of the block');
-    byId('card').replaceChildren(make('h2', {textContent: run.bodies[this.number].name}), close, make('table', {}, make('tbody', {}, ...rows)));
+    byId('card').replaceChildren(
+      make('h2', {textContent: run.bodies[this.number].name}),
+      close,
+      make('table', {}, make('tbody', {}, ...rows)),
+    );
   }
 
   resize() {
@@ -557,14 +714,18 @@ class View {
 
   // Ask for a frame. One is drawn when something has changed, and not otherwise.
   ask() {
-    if (!this.asked) this.asked = requestAnimationFrame(now => { this.asked = 0; this.frame(now); });
+    if (!this.asked)
+      this.asked = requestAnimationFrame(now => {
+        this.asked = 0;
+        this.frame(now);
+      });
   }
 
   // Draw a frame, and ask for the next one while the motion plays.
   frame(now) {
     const start = performance.now();
     if (this.playing) {
-      if (this.since !== null) this.time = Math.min(this.last, this.time + this.speed * (now - this.since) / 1000);
+      if (this.since !== null) this.time = Math.min(this.last, this.time + (this.speed * (now - this.since)) / 1000);
       this.since = now;
       if (this.time >= this.last) this.stop();
     }
@@ -578,14 +739,17 @@ class View {
     this.texture.needsUpdate = true;
     this.uniforms.time.value = this.time;
     if (this.shapes.forces?.visible) setBars(this.shapes.forces, this.forces, this.time, this.longest);
-    const distance = this.camera.position.distanceTo(this.controls.target), reach = run.reach + distance;
+    const distance = this.camera.position.distanceTo(this.controls.target),
+      reach = run.reach + distance;
     Object.assign(this.camera, {near: 0.02 * distance, far: 3 * reach});
     this.camera.updateProjectionMatrix();
     this.renderer.render(this.scene, this.camera);
     byId('time').value = this.time;
     byId('time').setAttribute('aria-valuetext', `${this.time.toFixed(2)} seconds`);
     byId('clock').textContent = `${this.time.toFixed(2)} / ${this.last.toFixed(2)} s`;
-    if (this.cursor) for (const end of ['x1', 'x2']) this.cursor.setAttribute(end, 1000 * (this.time - this.first) / (this.last - this.first));
+    if (this.cursor)
+      for (const end of ['x1', 'x2'])
+        this.cursor.setAttribute(end, (1000 * (this.time - this.first)) / (this.last - this.first));
     this.drawScales(this.tall / (2 * distance * Math.tan(NARROW / 2)));
     if (this.number >= 0) this.writeCard();
   }
@@ -593,14 +757,15 @@ class View {
   // Draw the scale bars, of so many pixels a metre at what the camera looks at.
   drawScales(pixels) {
     const put = (id, per, unit) => {
-      const value = roundBelow(110 / per), [bar, text] = byId(id).children;
+      const value = roundBelow(110 / per),
+        [bar, text] = byId(id).children;
       bar.style.width = `${per * value}px`;
       text.textContent = shown(value, unit);
     };
     put('length-scale', pixels, 'm');
     const forces = this.shapes.forces?.visible ?? false;
     byId('force-scale').hidden = !forces;
-    if (forces) put('force-scale', pixels * this.longest / run.forces.scale, 'N');
+    if (forces) put('force-scale', (pixels * this.longest) / run.forces.scale, 'N');
   }
 }
 
@@ -615,7 +780,8 @@ function obey(view) {
 
 function fail(error) {
   byId('trouble').hidden = false;
-  byId('trouble').textContent = `This page cannot be shown: ${error.message ?? error}. It needs a browser with WebGL 2, of 2023 or later.`;
+  byId('trouble').textContent =
+    `This page cannot be shown: ${error.message ?? error}. It needs a browser with WebGL 2, of 2023 or later.`;
   document.documentElement.dataset.state = 'failed';
 }
 
@@ -623,7 +789,7 @@ window.addEventListener('error', event => fail(event.error ?? event));
 window.addEventListener('unhandledrejection', event => fail(event.reason));
 const motion = {places: await unpacked(run.places), turns: await unpacked(run.turns)};
 const forces = run.forces && {places: await unpacked(run.forces.places), shares: await unpacked(run.forces.shares)};
-const view = window.view = new View(motion, forces);
+const view = (window.view = new View(motion, forces));
 obey(view);
 view.draw();
 document.documentElement.dataset.state = 'drawn';
