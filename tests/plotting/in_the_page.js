@@ -87,8 +87,12 @@ const tests = {
     told.edge = colourAt([0, front, 1]);
     told.shaded = colourAt([0.7, 0.55, -0.002]); // the sun comes from the left and the front
     told.lit = colourAt([-1.5, -1.5, -0.002]);
+    view.turn('forces', true);
+    told.through = colourAt([0, front, 0.3]); // the ground lies behind
+    view.turn('forces', false);
     view.turn('blocks', false);
     told.gone = colourAt([0, front, 1.5]);
+    told.ground = colourAt([0, front, 0.3]);
     return told;
   },
 

@@ -323,7 +323,7 @@ def test_a_browser_shows_the_blocks_where_they_are_and_its_controls_work(slid, t
     assert told["turned"] > 0.1
     assert told["reset"] == [0, 1, pytest.approx(0, abs=1e-6)]
     assert told["card"].startswith(NASTY)
-    assert all(word in told["card"] for word in ("mass600 kg", "displacement", "turned by", "force of"))
+    assert all(word in told["card"] for word in ("mass600 kg", "displacement", "turned by", "force with lower"))
     assert (told["picked"], told["hidden"], told["none"], told["chosen"]) == ("2", True, -1, "lower")
     assert set(told["switches"]) == {"ground", "blocks", "ties", "forces"}
     assert re.fullmatch(r"[125]0* k?N", told["scales"][0])
@@ -335,10 +335,10 @@ def test_a_browser_shows_the_blocks_where_they_are_and_its_controls_work(slid, t
 @in_a_browser
 def test_a_browser_draws_tints_edges_and_shadows(tmp_path):
     column = mr.Masonry.column(width=1.0, height=2.0, drums=2, k_n=1e9)
-    answer = mr.solve_explicit(mr.MasonryCase(column, 0.1))
+    answer = mr.solve_explicit(mr.MasonryCase(column, 0.1), forces=True)
     told = told_by(plotting.view(answer, tmp_path / "page.html"), "colours")
-    lower, upper, edge, shaded, lit, gone = (
-        np.array(told[name], float) for name in ("lower", "upper", "edge", "shaded", "lit", "gone")
+    lower, upper, edge, shaded, lit, gone, through, ground = (
+        np.array(told[name], float) for name in ("lower", "upper", "edge", "shaded", "lit", "gone", "through", "ground")
     )
     for colour in (lower, upper):
         assert colour[0] > 1.5 * colour[2]  # brick
@@ -346,6 +346,8 @@ def test_a_browser_draws_tints_edges_and_shadows(tmp_path):
     assert edge.max() < 0.6 * min(lower.max(), upper.max())
     assert shaded.max() < 0.8 * lit.max()
     assert np.abs(gone - lower).max() > 50
+    assert (through < ground - 10).all()  # seen through, in front of the ground
+    assert np.abs(through - lower).max() > 30
 
 
 @pytest.mark.slow

@@ -234,6 +234,7 @@ function meshOfGround({level, middle, radius}) {
   geometry.computeVertexNormals();
   const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({vertexColors: true, transparent: true}));
   mesh.receiveShadow = true;
+  mesh.renderOrder = -1; // before blocks that are seen through
   return mesh;
 }
 
@@ -360,37 +361,42 @@ function bodyOnRay(ray, poses) {
   return found;
 }
 
+const MOST_ROWS = 6; // of forces on the card of a body
+
+// The forces of the joints of a body at the sample nearest to a time, the largest first: [name of the other body, N].
+function forcesOn(number, {shares}, time) {
+  const [low, high, share] = sampleAt(time);
+  const start = 3 * run.forces.joints.length * (share < 0.5 ? low : high);
+  const found = [];
+  run.forces.joints.forEach(([, below, above], joint) => {
+    if (below !== number && above !== number) return;
+    const at = start + 3 * joint;
+    const size = Math.hypot(...shares.subarray(at, at + 3));
+    if (size > 1e-3) found.push([run.bodies[below === number ? above : below].name, size * run.forces.scale]);
+  });
+  return found.sort((one, other) => other[1] - one[1]);
+}
+
 // Rows of the card of a body: what is known of it at a time.
 function rowsOf(number, poses, forces, time) {
-  const body = run.bodies[number],
-    pose = poses.subarray(8 * number, 8 * number + 8),
-    rows = [];
+  const body = run.bodies[number];
+  const pose = poses.subarray(8 * number, 8 * number + 8);
+  const rows = [];
   if (body.mass !== null) rows.push(['mass', shown(body.mass, 'kg', 4)]);
   if (body.tint === null) rows.push(['fixed', run.moving.includes(number) ? 'moved as a support' : 'yes']);
   if (run.moving.includes(number)) {
-    const off = [0, 1, 2].map(i => pose[i] - body.rest[i]),
-      metres = value => (Math.abs(value) < 5e-7 ? 0 : value).toPrecision(3);
-    rows.push(['displacement', `${metres(Math.hypot(...off))} m`]);
-    rows.push(['along x, y, z', `${off.map(metres).join(', ')} m`]);
+    const off = [0, 1, 2].map(i => pose[i] - body.rest[i]);
+    const far = Math.hypot(...off);
+    const places = Math.min(6, Math.max(0, 2 - Math.floor(Math.log10(far + 1e-6))));
+    rows.push(['displacement', `${far.toFixed(places)} m`]);
+    rows.push(['x, y, z [m]', off.map(value => value.toFixed(places)).join(', ')]);
     const angle = (2 * Math.atan2(Math.hypot(pose[4], pose[5], pose[6]), Math.abs(pose[7])) * 180) / Math.PI;
     rows.push(['turned by', `${angle < 5e-5 ? 0 : angle.toPrecision(3)} degrees`]);
   }
   if (forces) {
-    const [low, high, share] = sampleAt(time),
-      nearer = share < 0.5 ? low : high,
-      count = run.forces.joints.length;
-    const pressing = run.forces.joints
-      .map(([name, ...sides], j) => ({
-        name,
-        of: sides.includes(number),
-        force:
-          run.forces.scale *
-          Math.hypot(...forces.shares.subarray(3 * (nearer * count + j), 3 * (nearer * count + j) + 3)),
-      }))
-      .filter(joint => joint.of && joint.force > 1e-3 * run.forces.scale)
-      .sort((one, other) => other.force - one.force);
-    for (const joint of pressing.slice(0, 6)) rows.push([`force of ${joint.name}`, shown(joint.force, 'N')]);
-    if (pressing.length > 6) rows.push(['', `and of ${pressing.length - 6} joints more`]);
+    const found = forcesOn(number, forces, time);
+    for (const [name, force] of found.slice(0, MOST_ROWS)) rows.push([`force with ${name}`, shown(force, 'N')]);
+    if (found.length > MOST_ROWS) rows.push(['', `and at ${found.length - MOST_ROWS} joints more`]);
   }
   return rows;
 }
