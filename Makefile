@@ -114,6 +114,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/plain_models.py --out docs/figures
 	$(BIN)/python scripts/studies/second_opinion.py --out docs/figures
 	$(BIN)/python scripts/studies/in_the_viewer.py --out docs/figures
+	$(BIN)/python scripts/studies/in_the_browser.py --out docs/figures
 	$(BIN)/python scripts/studies/columns_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
 	$(BIN)/python scripts/studies/facade_in_space.py --out docs/figures

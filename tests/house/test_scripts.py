@@ -15,7 +15,7 @@ import pytest
 import mjrock as mr
 from scripts.paper import compare_wall
 from scripts.shared import cli
-from scripts.studies import town
+from scripts.studies import in_the_browser, town
 
 SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*/*.py") if path.parent.name != "shared"}
 """Every script by its name."""
@@ -63,6 +63,7 @@ WRITES = {
     "plain_masonry": {f"plain_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "plain_models": {f"plain_models.{ending}" for ending in ("png", "csv", "txt")},
     "in_the_viewer": {"viewer.png"},
+    "in_the_browser": {"view.png"},
     "plain_throughput": {"plain_throughput.txt"},
     "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
@@ -252,6 +253,7 @@ LONG = {
     "plain_models",
     "second_opinion",
     "in_the_viewer",
+    "in_the_browser",
     "plain_throughput",
 }
 """Scripts that take a while even with --quick."""
@@ -271,6 +273,8 @@ def require_pictures_of_mujoco():
 def test_quick(name, tmp_path, capsys):
     if name in ("opened_in_vtk", "drawn_in_space"):
         pytest.importorskip("pyvista", reason="the extra docs is not installed")
+    if name == "in_the_browser" and in_the_browser.BROWSER is None:
+        pytest.skip("no Chromium on this machine")
     if name == "in_the_viewer":
         require_pictures_of_mujoco()
     main_of(name)(["--quick", "--out", str(tmp_path / "deep" / "er")])
