@@ -277,8 +277,8 @@ EQUIVALENT = {
     **{
         f"clipping.py: {line}": "no place is so far from a corner to the last bit"
         for line in (
-            "if length_of(minus(at, corner)) <= ONE_PLACE * length_of(along):",
-            "if length_of(off) <= ONE_PLACE * length_of(own):",
+            "if length_of(minus(at, corner)) <= one_place:",
+            "if length_of(off) <= one_place:",
         )
     },
     **{

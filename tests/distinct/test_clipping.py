@@ -187,6 +187,18 @@ def clipped(*blocks, first=0, size=16, face=0):
     return columns(table), count
 
 
+@pytest.mark.parametrize("size", [(1.0, 0.2, 0.3), (0.2, 1.0, 0.3)])
+def test_a_corner_and_its_mirror_image_are_found_alike(size):
+    """Both are beyond an edge by more of the short sides beside them than counts as one place, and less of the long
+    ones. Around a face a long side comes after one of them, and a short one after the other."""
+    turn = Rotation.from_rotvec([0.0, 1e-3, 0.0])
+    table, count = clipped(LOWER, turned(size, (1.0 + 5e-7 - 0.5 * size[0], 0.0, 0.0), turn))
+    at_edge = table[:count][np.abs(table[:count, 2] - 1.0) < 1e-3]
+    np.testing.assert_allclose(sorted(at_edge[:, 3]), np.array([-0.5, 0.5]) * size[1], rtol=1e-12)
+    np.testing.assert_array_equal(at_edge[0, :2], at_edge[1, :2])
+    np.testing.assert_allclose(at_edge[0, 5:8], at_edge[1, 5:8] * [1, -1, 1], atol=1e-15)
+
+
 def sorted_by_place(table):
     return table[np.lexsort(np.round(table[:, 2:5], 9).T)]
 

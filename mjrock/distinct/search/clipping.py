@@ -51,6 +51,16 @@ def length_of(a: Vector) -> float:
 
 
 @inlined
+def longest_edge(solids: Solids, face: int) -> float:
+    """Length of the longest edge of a face [m]. What is small beside a face goes by it: an edge beside a corner is
+    another one where the outline runs the other way round, as in a mirror image."""
+    longest = 0.0
+    for i in range(solids.first[face], solids.first[face + 1]):
+        longest = max(longest, length_of(minus(next_corner(solids, face, i), corner_of(solids, i))))
+    return longest
+
+
+@inlined
 def face_towards(solids: Solids, block: int, way: Vector) -> int:
     """The face of a block whose normal is nearest to a direction, of two that are as near the one that `is_before`."""
     best, largest = -1, -math.inf
@@ -109,18 +119,16 @@ def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
     Returns:
         How many corners it has.
     """
-    count, extent, polygon, further = 0, 0.0, room[: len(room) // 2], room[len(room) // 2 :]
+    count, polygon, further = 0, room[: len(room) // 2], room[len(room) // 2 :]
     for i in range(solids.first[over], solids.first[over + 1]):
         put(polygon[count], corner_of(solids, i))
         count += 1
-    normal = normal_of(solids, face)
+    normal, slack = normal_of(solids, face), ON_EDGE * longest_edge(solids, face)
     for i in range(solids.first[face], solids.first[face + 1]):
         a = corner_of(solids, i)
         way = spun(minus(next_corner(solids, face, i), a), normal)
-        length = length_of(way)
-        extent = max(extent, length)
-        way = scaled(1 / length, way)
-        count = cut(polygon, count, way, dot(way, a), ON_EDGE * extent, further)
+        way = scaled(1 / length_of(way), way)
+        count = cut(polygon, count, way, dot(way, a), slack, further)
     return count
 
 
@@ -181,22 +189,23 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
     """
     face, over = faces
     normal, edge, from_edge = normal_of(solids, face), -1, math.inf
+    one_place = ONE_PLACE * longest_edge(solids, over)
     for i in range(solids.first[over], solids.first[over + 1]):
         corner = corner_of(solids, i)
         along = minus(next_corner(solids, over, i), corner)
-        if length_of(minus(at, corner)) < ONE_PLACE * length_of(along):
+        if length_of(minus(at, corner)) < one_place:
             gap = dot(normal, minus(at, corner_of(solids, solids.first[face])))
             write_place(place, blocks, at, normal, gap)
             return
         distance = distance_from(at, corner, along)
         if distance < from_edge:
             edge, from_edge = i, distance
-    crossed, from_crossed = -1, math.inf
+    crossed, from_crossed, one_place = -1, math.inf, ONE_PLACE * longest_edge(solids, face)
     for i in range(solids.first[face], solids.first[face + 1]):
         corner = corner_of(solids, i)
         own, off = minus(next_corner(solids, face, i), corner), minus(at, corner)
         off = minus(off, scaled(dot(off, normal), normal))
-        if length_of(off) < ONE_PLACE * length_of(own):
+        if length_of(off) < one_place:
             normal = normal_of(solids, over)
             gap = dot(normal, minus(corner, corner_of(solids, solids.first[over])))
             write_place(place, (blocks[1], blocks[0]), corner, normal, gap)

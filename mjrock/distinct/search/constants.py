@@ -68,9 +68,9 @@ whose ends lie in one plane is on these ends, and rounding does not decide."""
 SHARE_OF_EDGES = 0.25
 """Share of what a pair has that two edges take: that of a corner of a rectangle."""
 ON_EDGE = 1e-9
-"""Distance of a corner beyond an edge within which it counts as on it, over the length of the edges."""
+"""Distance of a corner beyond an edge within which it counts as on it, over the longest edge of the face."""
 ONE_PLACE = 1e-6
-"""Distance of two places that are one, over the length of an edge."""
+"""Distance of two places that are one, over the longest edge of the face."""
 PARALLEL_EDGES, EDGES_ALONG_FACE = 1e-4, 0.3
 """Sine of the angle of two edges, and cosine of the angle between their common normal and that of the face, below which
 they do not meet as edges."""

@@ -22,6 +22,7 @@ from .clipping import (
     distance_from,
     face_towards,
     length_of,
+    longest_edge,
     lying_over,
     meet,
     next_corner,
@@ -168,12 +169,12 @@ def is_on_edge(grid: Grid, i: int, j: int) -> bool:
 @inlined
 def is_at_outline(solids: Solids, face: int, at: Vector) -> bool:
     """Whether a place of the plane of a face is on its outline."""
-    nearest, longest = math.inf, 0.0
+    nearest = math.inf
     for i in range(solids.first[face], solids.first[face + 1]):
         corner = corner_of(solids, i)
         along = minus(next_corner(solids, face, i), corner)
-        longest, nearest = max(longest, length_of(along)), min(nearest, distance_from(at, corner, along))
-    return nearest < ONE_PLACE * longest
+        nearest = min(nearest, distance_from(at, corner, along))
+    return nearest < ONE_PLACE * longest_edge(solids, face)
 
 
 @inlined
