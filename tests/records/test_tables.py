@@ -1,5 +1,7 @@
 """Tables as people have them: which columns, which decimal point, and what a header says against what a caller says."""
 
+import time
+
 import numpy as np
 import pytest
 from record_files import written
@@ -116,6 +118,7 @@ DOUBTS = {
     "a name that is not there": ("t,a\n" + lines(T, A, between=","), {"columns": "b"}, r"'b'; the names are 't', 'a'"),
     "a column that is not there": (lines(T, A), {"columns": 2, "dt": 0.01}, r"a number in columns = 2 is outside"),
     "rows without a step": (in_rows(5), {}, r"or dt= and columns='rows' for samples in rows"),
+    "a shorter last row of five": (in_rows(7), {}, r"line 29 has 4 columns; .* 7; samples in rows are read with dt"),
     "no unit": (lines(T, A), {"unit": None}, r"the header names no unit; give unit="),
     "two units": ("(g) or gal; made; up\n" + lines(T, A), {"unit": None}, r"the header names cm/s2 and g; give unit="),
     "two accelerations": (lines(T, A, A), {"columns": (0, 1, 2)}, r"columns has 2 accelerations; components_in reads"),
@@ -169,3 +172,17 @@ def test_a_spreadsheet(tmp_path):
         mr.GroundMotion.from_csv(tmp_path / "b.xlsx")
     with pytest.raises(ValueError, match=r"c\.xlsx: pandas does not read it as a spreadsheet"):
         mr.GroundMotion.from_csv(written(tmp_path / "c.xlsx", "0 1\n"), "g")
+
+
+@pytest.mark.filterwarnings("ignore:.*drifts")
+def test_the_time_goes_with_the_length_of_a_file(tmp_path):
+    """A table of four times as many rows takes some four times as long, and not sixteen times."""
+
+    def seconds(count):
+        path = written(tmp_path / "a.txt", "".join(f"{0.01 * i:.2f} {i % 7} {i % 5}\n" for i in range(count)))
+        start = time.process_time()
+        mr.components_in(path, 0.01, columns=(0, 1, 2))
+        return time.process_time() - start
+
+    seconds(1000)
+    assert min(seconds(16_000) for _ in range(2)) < 10 * min(seconds(4000) for _ in range(2))

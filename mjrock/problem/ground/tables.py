@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -117,7 +118,7 @@ class Table:
     places: list[int]
     decimals: int
 
-    @property
+    @cached_property
     def width(self) -> int:
         """The number of columns that most rows have."""
         return Counter(map(len, self.values)).most_common(1)[0][0]
@@ -341,7 +342,8 @@ def _columns_of(found: Table, wanted: Wanted, dt: float | None) -> tuple[dict[in
         picked = list(range(found.width))
     for place, row in zip(found.places, found.values, strict=True):
         if len(row) != found.width:
-            raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}")
+            rows = "; samples in rows are read with dt" if dt is None and place == found.places[-1] else ""
+            raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}{rows}")
     scale = TIME_UNITS[wanted.time_unit]
     time = scale * found.column(picked[0])
     grid = _is_grid(time, found.decimals, scale)
@@ -395,7 +397,7 @@ def _step_of(time: Array, found: Table, scale: float, given: float | None) -> fl
     if back.size:
         i = back[0]
         raise ValueError(f"line {places[i + 1]}: time does not increase, {time[i]:g} s to {time[i + 1]:g} s")
-    dt = _grid(time)[0]
+    dt = float(f"{_grid(time)[0]:.12g}")  # so that two components have one step
     if not _is_even(time, found.decimals, scale):
         usual = float(np.median(steps))
         i = int(np.abs(steps - usual).argmax())
