@@ -53,6 +53,7 @@ FORMS = {
     "a title of digits": ("1999 Nowhere, a record\n" + lines(T, A), {}),
     "a step in the header": ("Made up, NPTS= 200, DT= .01 SEC\n" + in_rows(8), {}),
     "a rate in the header": ("sampling rate: 100 Hz\n" + lines(A), {}),
+    "a corner of a filter in the header": ("cut-off frequency: 25 Hz, scale: 1.0\n" + lines(T, A), {}),
     "milliseconds in the header": ("time step 10 ms\n" + lines(A), {}),
 }  # fmt: skip
 
@@ -110,6 +111,7 @@ DOUBTS = {
     "another step of the times": (
         "dt=0.005\n" + lines(T, A), {}, r"the step of the times is 0\.01 s, and line 1 states 0\.005 s",
     ),
+    "a scale": ("Scale factor = 2.5\n" + lines(T, A), {}, r"line 1 states a scale of 2\.5: of the samples, .* skip="),
     "another count": ("npts: 300\n" + lines(T, A), {}, r"200 samples; the header states 300 in line 1; skip="),
     "four columns": (
         "t;a;v;d\n" + lines(T, A, A, A, between=";"), {}, r"line 2 has 4 columns: 0 't', 1 'a', .* as columns=\(0, 1\)",

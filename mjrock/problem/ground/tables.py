@@ -68,7 +68,10 @@ HEAD_STEP = re.compile(
     rf"[ _]*(?:[(\[]s(?:ec)?[)\]])?[ :=]*{STEP} *(ms|msec)?(?![\w.])",
     AS_ASCII,
 )
-HEAD_RATE = re.compile(rf"(?:rate|frequency)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{STEP} *(?:hz|sps|samples)?", AS_ASCII)
+HEAD_RATE = re.compile(
+    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{STEP} *(?:hz|sps|samples)?", AS_ASCII
+)
+HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{STEP}(?![\w.])", AS_ASCII)
 HEAD_COUNT = re.compile(
     rf"(?:npts|ndata|(?:n[ou]\.?|number) of (?:data|points|samples|pts))[ :=]*{COUNT}(?![\w.])", AS_ASCII
 )
@@ -204,7 +207,12 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
             f"{len(found.values)} rows of numbers in {len(lines)} lines, the first of them {short(lines[0])}; at least "
             "2 rows are needed, of time and acceleration or with dt of accelerations alone"
         )
-    stated = found.stated(HEAD_STEP, HEAD_RATE)
+    stated, scaled = found.stated(HEAD_STEP, HEAD_RATE), found.stated(HEAD_SCALE)
+    if scaled and scaled.value != 1:
+        raise ValueError(
+            f"line {scaled.place} states a scale of {scaled.value:g}: of the samples, or one that they have already? "
+            f"skip= leaves it out, and scaled({scaled.value:g}) applies it"
+        )
     if wanted.skip is None:
         found, stated = _without_header(found, dt, stated)
     timed = wanted.columns != ROWS and found.width > 1 and _is_grid(scale * found.column(0), found.decimals, scale)
