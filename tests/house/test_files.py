@@ -177,6 +177,7 @@ READERS = {
     "law.load": mr.DampingLaw.load,
     "from_obj": mr.Masonry.from_obj,
     "from_stl": mr.Masonry.from_stl,
+    "from_ply": mr.Masonry.from_ply,
     "from_compas": mr.Masonry.from_compas,
     "from_dxf": mr.Masonry.from_dxf,
     "Store": mr.Store,

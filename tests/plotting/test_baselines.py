@@ -197,7 +197,7 @@ def test_a_picture_is_the_one_that_was_looked_at(name):
     assert difference(name, drawn) < DIFFERENT
 
 
-@pytest.mark.parametrize("missing", ["_elevation", "blocks", "surroundings"])
+@pytest.mark.parametrize("missing", ["elevation", "blocks", "surroundings"])
 def test_a_sketch_without_its_wall_or_what_it_meets_is_another_picture(missing, monkeypatch):
     sketches = importlib.import_module("mjrock.plotting.sketch")
     monkeypatch.setattr(sketches, missing, lambda *given: lambda frame: None)

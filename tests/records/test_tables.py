@@ -101,6 +101,7 @@ DOUBTS = {
     ),
     "a step alone": ("0.01\n" + lines(A), {"dt": 0.01}, r"line 1 is 0\.01 .* skip=1 reads what follows"),
     "a number that stands alone": ("made up\n400\n" + lines(A), {"dt": 0.01}, r"line 2 is 400 .* skip=2 .* skip=1"),
+    "a number beyond the peak": ("4\n" + lines(A), {"dt": 0.01}, r"line 1 is 4 .* skip=1 .* skip=0"),
     "a row ahead of the others": ("400 7\n" + lines(T, A, A), {"columns": (0, 1)}, r"line 1 is 400 7: of the header"),
     "numbers ahead of times": ("400 7\n" + lines(T, A), {}, r"line 1 is 400 7: of the header, or the first row"),
     "numbers of rows": (lines(np.arange(200), A, form="{:g}"), {}, r"first column steps by 1 s: times .* dt=1 takes"),

@@ -47,7 +47,10 @@ ROUNDED = 0.1
 SLOW = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
 ALONE = 5.0
-"""A first number so many times as large as any other is doubted: it may be one of the header."""
+"""A first number that is the largest, and so many times as large as those soon after it, is doubted: it may be one of
+the header."""
+SOON = 10
+"""How many numbers those are."""
 ROWS = "rows"
 """What `columns` is where the samples stand in rows, one after the other."""
 SMOOTH = 0.7
@@ -325,7 +328,9 @@ def _without_header(found: Table, dt: float | None, stated: Stated | None) -> tu
     if len(others) >= 3:
         wide = found.width > 1
         follows = others[0] == [dt] and first[0] != 0 and first[0] == int(first[0])
-        alone = len(others) >= 10 and abs(first[0]) > ALONE * max(abs(x) for row in others for x in row) > 0
+        alone = len(others) >= 10 and abs(first[0]) > max(
+            max(abs(row[0]) for row in others), ALONE * max(abs(row[0]) for row in others[:SOON])
+        )
         grid = wide and len(first) == found.width and _is_grid(found.without(1).column(0), found.decimals, 1.0)
         early = grid and not _is_grid(found.column(0), found.decimals, 1.0)
         if len(first) == 1 and not wide and dt is not None:
