@@ -94,7 +94,10 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/ida.py --out docs/figures
 	$(BIN)/python scripts/studies/fragility.py --out docs/figures
 	$(BIN)/python scripts/studies/polarity.py --out docs/figures
+	$(BIN)/python scripts/studies/town.py --out docs/figures
 	$(BIN)/python scripts/studies/sensitivity.py --out docs/figures
+	$(BIN)/python scripts/studies/limestone_blocks.py --out docs/figures
+	$(BIN)/python scripts/studies/restitution_spread.py --out docs/figures
 	$(BIN)/python scripts/studies/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/measure/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/studies/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
@@ -120,6 +123,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/dome.py --out docs/figures
 	$(BIN)/python scripts/studies/vaults.py --out docs/figures
 	$(BIN)/python scripts/studies/mechanisms.py --out docs/figures
+	$(BIN)/python scripts/studies/your_geometry.py --out docs/figures
 	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
 	$(BIN)/python scripts/studies/opened_in_vtk.py --out docs/figures
 	$(BIN)/python scripts/studies/drawn_in_space.py --out docs/figures
