@@ -348,7 +348,7 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     try:
         import obspy
     except ImportError as error:
-        raise ImportError(f"{error}; ObsPy reads SAC, miniSEED and more: pip install 'mjrock[obspy]'") from error
+        raise ImportError(f"{error}; ObsPy reads SAC, miniSEED and more: pip install obspy") from error
     try:
         stream = obspy.read(str(path))
     except Exception as error:

@@ -175,7 +175,7 @@ def table_lines(path: Path) -> list[str]:
 
         sheets = pandas.read_excel(path, sheet_name=None, header=None, dtype=object)
     except ImportError as error:
-        raise ImportError(f"{error}; pandas reads spreadsheets: pip install 'mjrock[frames]'") from error
+        raise ImportError(f"{error}; pandas reads spreadsheets: pip install pandas openpyxl") from error
     except Exception as error:
         raise ValueError(f"pandas does not read it as a spreadsheet: {short(str(error))}") from error
     texts = {name: ["\t".join(map(_cell, row)).rstrip() for row in sheet.to_numpy()] for name, sheet in sheets.items()}
