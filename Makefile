@@ -94,6 +94,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/ida.py --out docs/figures
 	$(BIN)/python scripts/studies/fragility.py --out docs/figures
 	$(BIN)/python scripts/studies/polarity.py --out docs/figures
+	$(BIN)/python scripts/studies/town.py --out docs/figures
 	$(BIN)/python scripts/studies/sensitivity.py --out docs/figures
 	$(BIN)/python scripts/studies/limestone_blocks.py --out docs/figures
 	$(BIN)/python scripts/studies/restitution_spread.py --out docs/figures
@@ -113,6 +114,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/plain_models.py --out docs/figures
 	$(BIN)/python scripts/studies/second_opinion.py --out docs/figures
 	$(BIN)/python scripts/studies/in_the_viewer.py --out docs/figures
+	$(BIN)/python scripts/studies/in_the_browser.py --out docs/figures
 	$(BIN)/python scripts/studies/columns_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
 	$(BIN)/python scripts/studies/facade_in_space.py --out docs/figures
@@ -121,6 +123,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/dome.py --out docs/figures
 	$(BIN)/python scripts/studies/vaults.py --out docs/figures
 	$(BIN)/python scripts/studies/mechanisms.py --out docs/figures
+	$(BIN)/python scripts/studies/your_geometry.py --out docs/figures
 	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
 	$(BIN)/python scripts/studies/opened_in_vtk.py --out docs/figures
 	$(BIN)/python scripts/studies/drawn_in_space.py --out docs/figures

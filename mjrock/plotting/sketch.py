@@ -51,13 +51,13 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     require_text("title", title)
     require_flag("arguments", arguments)
     figure = Picture()
-    section, elevation = (figure.add_axes((0.0, 0.0, 1.0, 1.0), label=name) for name in ("section", "elevation"))
-    _section(section, case)
-    _elevation(elevation, case, section.get_ylim())
+    left, right = (figure.add_axes((0.0, 0.0, 1.0, 1.0), label=name) for name in ("section", "elevation"))
+    section(left, case)
+    elevation(right, case, left.get_ylim())
     notes = sorted(_effects(case, arguments=arguments), key=lambda note: note[0][1])
     _arrange(figure, title, _sizes(case), notes)
-    section.set_title("section; outwards is to the right", fontsize=9, loc="left")
-    elevation.set_title("elevation", fontsize=9)
+    left.set_title("section; outwards is to the right", fontsize=9, loc="left")
+    right.set_title("elevation", fontsize=9)
     return figure
 
 
@@ -70,10 +70,8 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
         openings: what stands below the elevation, line by line.
         notes: on effects, from the lowest.
     """
-    section, elevation = figure.axes
-    wide, tall, long = (
-        float(np.ptp(limits)) for limits in (section.get_xlim(), section.get_ylim(), elevation.get_xlim())
-    )
+    left, right = figure.axes
+    wide, tall, long = (float(np.ptp(limits)) for limits in (left.get_xlim(), left.get_ylim(), right.get_xlim()))
     scale = min(TALLEST / tall, WIDEST / wide)  # [inch/m]
     smaller = min(scale, LONGEST / long)
     column = EDGE + scale * wide + EDGE
@@ -83,15 +81,15 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
     figure.set_size_inches(width, 1.0)
     height = below + room + 0.3 + titled(figure, title)
     figure.set_size_inches(width, height)
-    for ax, one, left in ((section, scale, EDGE), (elevation, smaller, width - EDGE - smaller * long)):
+    for ax, one, start in ((left, scale, EDGE), (right, smaller, width - EDGE - smaller * long)):
         (x0, x1), (low, high) = ax.get_xlim(), ax.get_ylim()
         bottom = below + (one - scale) * low
-        ax.set_position((left / width, bottom / height, one * (x1 - x0) / width, one * (high - low) / height))
+        ax.set_position((start / width, bottom / height, one * (x1 - x0) / width, one * (high - low) / height))
         ax.axis("off")
     said, place = "\n".join(openings), (0.0, 72 * below - 3)
     coordinates = ("data", "figure points")
-    elevation.annotate(said, place, xycoords=coordinates, fontsize=6.5, ha="center", va="top", annotation_clip=False)
-    _notes(section, notes, column, (below, below + room))
+    right.annotate(said, place, xycoords=coordinates, fontsize=6.5, ha="center", va="top", annotation_clip=False)
+    _notes(left, notes, column, (below, below + room))
 
 
 def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
@@ -106,8 +104,8 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
         note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
 
 
-def _section(ax: Axes, case: Case) -> None:
-    """The wall and all that it meets and carries, its thickness, and the height of the stop."""
+def section(ax: Axes, case: Case, stop: str = "stop") -> None:
+    """The wall and all that it meets and carries, its thickness, and the height of the stop, which has a name."""
     wall, height = case.wall, 2 * case.block.h
     rests = np.array([[wall.centroid_offset, wall.centroid_height]])
     bodies = Bodies(np.zeros(1), (wall.outline,), rests, np.zeros((1, 1, 3)))
@@ -121,7 +119,7 @@ def _section(ax: Axes, case: Case) -> None:
     _across(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")
     if case.stop_top is not None and case.stop_top < height:
         at = -half - 0.12 * height
-        _across(ax, (at, 0.0), (at, case.stop_top), f"stop {case.stop_top:g} m")
+        _across(ax, (at, 0.0), (at, case.stop_top), f"{stop} {case.stop_top:g} m")
     ax.plot(wall.centroid_offset, wall.centroid_height, marker="+", color="0.15", markersize=7, zorder=7)
 
 
@@ -161,7 +159,7 @@ def _effects(case: Case, *, arguments: bool) -> list[Note]:
     return made
 
 
-def _elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
+def elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
     """The wall from outside with its openings, between lower and upper ends [m]."""
     wall = case.block
     height, length = 2 * wall.h, wall.length

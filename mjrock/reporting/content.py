@@ -1,9 +1,12 @@
-"""What a report says of walls and masonry alike: inputs with their units, forces, ties and messages."""
+"""What a report says of walls and masonry alike: inputs with their units, effects, contacts, motions and versions."""
 
 from __future__ import annotations
 
+import dataclasses
+import math
 import platform
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import matplotlib
 import mujoco
@@ -14,127 +17,137 @@ from .._version import __version__
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import AnyCase
-from ..quantities import GRAVITY, named
+from ..problem.wall.effect import Effect
+from ..quantities import GRAVITY, declared
 from ..result.response import Response
-from ..result.ties import Plastic
+from ..study.intensity.fragility import Fragility
+from .markup import Markup, element, table
+from .texts import FOUND, GIVEN, Words, texts
+from .verdicts import REVERSED, effect_name
 
-TableRows = list[tuple[str, ...]]
-"""Rows of a table."""
-
-
-def of_effects(case: AnyCase) -> TableRows:
-    """The effects: name and values with units."""
-    own = [(name, effect) for name, effect in case.named.items() if not effect.mass_added]
-    masses = [("added mass", mass) for mass in case.effects if mass.mass_added]
-    return [(name, effect.said.replace("\n", " ")) for name, effect in (*own, *masses)]
+ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
+"""What is said of a run of a solver, its unit and its digits."""
 
 
-def of_contacts(e: Restitution | None, contacts: Contacts | None) -> TableRows:
-    """Restitution, stiffness and damping."""
-    rows: TableRows = []
-    if e is not None:
-        rows += [("e, base", f"{e.base:.4f}"), ("e, side", f"{e.side:.4f}"), ("e, lumped", f"{e.lumped:.4f}")]
-    if contacts is not None:
-        rows.append(("law of the damping", contacts.law))
-        for name, face in (("base", contacts.base), ("side", contacts.side)):
-            if face is None:
-                continue
-            friction = "holds" if face.friction is None else f"{face.friction:g}"
-            said = f"{face.k_n:.4g} N/m³, damping ratio {face.xi:.3%}, friction {friction}, {face.points} lines"
-            rows.append((f"k_{name}", said))
-    return rows
+class Input(NamedTuple):
+    """An input of the report.
+
+    Args:
+        key: its name in the program, by which `basis` names it.
+        name: in words.
+        value: with its unit.
+        computed: whether it follows from others, and rests on nothing of its own.
+    """
+
+    key: str
+    name: str
+    value: str
+    computed: bool = False
 
 
-def of_motions(responses: Sequence[Response]) -> TableRows:
-    """The ground motions of the responses, each once."""
-    rows: TableRows = []
-    for grounds in (response.case.grounds for response in responses):
-        for direction, name in (("horizontal", "motion"), ("transverse", "transverse"), ("vertical", "vertical")):
-            if (motion := grounds.get(name)) is not None:
-                peak = float(abs(motion.accel).max())
-                said = f"{peak:.4g} m/s² = {peak / GRAVITY:.3g} g, {motion.duration:.4g} s, step {motion.dt:.4g} s"
-                rows.append((direction, motion.name, said))
-    return list(dict.fromkeys(rows))
+def of_effects(case: AnyCase, words: Words) -> list[Input]:
+    """The effects."""
+    return [Input(name, effect_name(name, words), described(effect, words)) for name, effect in case.named.items()]
 
 
-def settings(responses: Sequence[Response]) -> tuple[str, list[str]]:
-    """How the responses were solved: what all of them share, and what else each of them has."""
-    own = [_settings(response) for response in responses]
-    shared = [part for part in own[0] if all(part in parts for parts in own)]
-    return ", ".join(shared), [", ".join(part for part in parts if part not in shared) for parts in own]
-
-
-def _settings(response: Response) -> list[str]:
-    """How a response was solved, in parts."""
-    known = ("accuracy", "timestep", "newmark_beta", "rtol", "atol", "steps")
-    values = ((name, response.stats.get(name)) for name in known)
-    said = [f"{name} {value:.3g}" if name != "steps" else f"{value} steps" for name, value in values if value]
-    return [response.solver, *said]
-
-
-def of_ties(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
-    """What each tie did in each response."""
-    rows: TableRows = []
-    for response, name in zip(responses, names, strict=True):
-        for tie, motion in response.ties.items():
-            drawn = response.plastic.get(tie, Plastic(0.0, 0.0))
-            taken = f"{1e3 * drawn.elongation:.3g} mm", f"{drawn.energy + drawn.lost:.4g} J"
-            broke = "-" if motion.broken == float("inf") else f"{motion.broken:.3f} s"
-            rows.append((name, tie, f"{motion.largest_force / 1e3:.4g} kN", *taken, broke))
-    return rows
-
-
-def of_forces(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
-    """The largest reaction and the largest normal force of a joint, of each response that has kept its forces."""
-    rows: TableRows = []
-    for response, name in zip(responses, names, strict=True):
-        if response.kept_forces is not None:
-            forces, normal = response.forces, response.forces.normal.max(axis=0)
-            joint = int(normal.argmax())
-            reaction, pressed = (f"{force / 1e3:.4g} kN" for force in (forces.largest_reaction, normal[joint]))
-            rows.append((name, reaction, pressed, forces.joints[joint]))
-    return rows
-
-
-def of_messages(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
-    """The messages, each once with the responses that it is said of: by name up to three of them, else by number."""
-    said: dict[str, list[str]] = {}
-    for response, name in zip(responses, names, strict=True):
-        said.setdefault(response.message, []).append(name)
-    return [
-        f"{', '.join(of) if len(of) <= 3 else f'{len(of)} of {len(names)} responses'}: {message}"
-        for message, of in said.items()
-    ]
-
-
-def broken_ties(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
-    """Which ties broke, in a sentence for all that broke in the same runs."""
-    broke: dict[str, dict[str, float]] = {}
-    for response, name in zip(responses, names, strict=True):
-        for tie, drawn in response.plastic.items():
-            if drawn.broken < float("inf"):
-                broke.setdefault(tie, {})[name] = drawn.broken
-    alike: dict[tuple[str, ...], list[str]] = {}
-    for tie, when in broke.items():
-        alike.setdefault(tuple(when), []).append(tie)
+def described(effect: Effect, words: Words) -> str:
+    """An effect in words: each of its numbers, and what it is called; as it says itself where these are not known."""
+    if not words.or_else(f"effect_{effect.label}", ""):
+        return effect.said.replace("\n", " ")
+    kind: Any = type(effect)  # mypy takes a class for a thing without a hash
+    units = {name: within.unit for name, (within, _) in declared(kind).items()} | {"strength": "N"}
     said = []
-    for runs, ties in alike.items():
-        first = min(broke[tie][name] for tie in ties for name in runs)
-        held = sum(ties[0] in response.ties for response in responses)
-        count = f"all {held}" if len(runs) == held else f"{len(runs)} of {held}"
-        one = f"{runs[0]}: {named(ties)} broke"
-        many = f"{named(ties)} broke in {count} runs with {'it' if len(ties) == 1 else 'them'}"
-        said.append(f"{one if len(runs) == 1 else many}, first at {first:.3f} s.")
+    for field in dataclasses.fields(kind):
+        value, key = getattr(effect, field.name), f"field_{field.name}"
+        if value is None or value == math.inf or key not in texts():
+            continue
+        if isinstance(value, str):
+            said.append(words(key, value=words(f"governed_{value}")))
+        elif isinstance(value, tuple):
+            said.append(words(key, value="; ".join(words.number(x) for x in value)))
+        else:
+            unit = "m" if field.name in ("height", "anchor_height") else units.get(field.name, "")
+            said.append(words(key, value=words.quantity(value, unit)))
+    return ", ".join(said)
+
+
+def of_contacts(e: Restitution | None, contacts: Contacts | None, words: Words) -> list[Input]:
+    """Restitution, stiffness and damping."""
+    rows = []
+    if e is not None:
+        for name in ("base", "side", "lumped"):
+            rows.append(Input(f"e_{name}", words(f"in_e_{name}"), words.number(getattr(e, name), FOUND)))
+    if contacts is not None:
+        law = words.or_else(f"law_{contacts.law.lower()}", contacts.law)
+        rows.append(Input("law", words("in_law"), law))
+        for name, face in (("base", contacts.base), ("side", contacts.side)):
+            if face is not None:
+                friction = words("sticks") if face.friction is None else words.number(face.friction)
+                values = {"k": words.quantity(face.k_n, "N/m3"), "xi": words.share(face.xi), "points": face.points}
+                rows.append(Input(f"k_{name}", words(f"in_k_{name}"), words("face", friction=friction, **values)))
+    return rows
+
+
+def of_motions(responses: Sequence[Response], words: Words) -> list[tuple[str, ...]]:
+    """The ground motions of the responses, each once, in one polarity."""
+    rows: dict[tuple[str, str], tuple[str, ...]] = {}
+    for response in responses:
+        for direction, motion in response.case.grounds.items():
+            peak = float(abs(motion.accel).max())
+            sizes = words.quantity(peak, "m/s2", FOUND), words.quantity(peak / GRAVITY, "g", FOUND)
+            name = motion.name.removesuffix(REVERSED)
+            times = words.quantity(motion.duration, "s"), words.quantity(motion.dt, "s")
+            rows.setdefault((direction, name), (name, words(f"ground_{direction}"), *sizes, *times))
+    return list(rows.values())
+
+
+def solved_with(responses: Sequence[Response], words: Words) -> list[str]:
+    """How the responses were solved, a sentence for each solver."""
+    said = []
+    for solver in dict.fromkeys(response.solver for response in responses):
+        own = [response.stats for response in responses if response.solver == solver]
+        asked = []
+        for name, shown in ASKED.items():
+            if values := [stats[name] for stats in own if stats.get(name)]:
+                low, high = (words.quantity(value, *shown) for value in (min(values), max(values)))
+                asked.append(words(f"solved_{name}", value=low if low == high else words("range", low=low, high=high)))
+        solved = words.or_else(f"solver_{solver}", solver)
+        said.append(words("solved", solver=solved, count=len(own), how=", ".join(asked)))
     return said
 
 
-def versions() -> TableRows:
-    """Versions of what has computed this."""
+def of_fragility(fits: dict[str, Fragility], words: Words) -> Markup:
+    """Fragility curves as a table."""
+    rows = []
+    for name, fit in fits.items():
+        spans = (fit.median, *fit.median_interval(0.9)), (fit.dispersion, *fit.dispersion_interval(0.9))
+        numbers = [[words.number(value, FOUND) for value in span] for span in spans]
+        cells = [words("interval", value=value, low=low, high=high) for value, low, high in numbers]
+        groups = words("independent") if fit.groups is None else str(fit.groups)
+        rows.append((name, *cells, str(fit.count), groups))
+    heads = [words(f"fragility_{key}") for key in ("name", "median", "dispersion", "runs", "groups")]
+    return element("div", table(heads, rows, right=(3, 4)), element("p", words("fragility_note")))
+
+
+def versions(words: Words) -> list[tuple[str, ...]]:
+    """Versions of what has computed this, and what was drawn by chance."""
+    made = {
+        "mjrock": __version__,
+        "MuJoCo": mujoco.__version__,
+        "NumPy": numpy.__version__,
+        "SciPy": scipy.__version__,
+        "matplotlib": matplotlib.__version__,
+        "Python": platform.python_version(),
+    }
     return [
-        ("mjrock", __version__),
-        ("MuJoCo", mujoco.__version__),
-        ("NumPy", numpy.__version__),
-        ("SciPy", scipy.__version__),
-        ("matplotlib", matplotlib.__version__),
-        ("Python", platform.python_version()),
+        (words("versions"), ", ".join(f"{name} {version}" for name, version in made.items())),
+        (words("seed"), words("seed_said")),
     ]
+
+
+def code_chapter(solvers: Sequence[str], kinematic: bool, words: Words) -> list[tuple[str, ...]]:
+    """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer."""
+    used = [words("kinematic_analysis")] * kinematic + [words.or_else(f"solver_{solver}", solver) for solver in solvers]
+    keys = "origin", "basis", "field", "validation", "results"
+    said = [(words(f"ntc_{key}"), words(f"ntc_{key}_said", version=__version__)) for key in keys]
+    return [(words("ntc_kind"), "; ".join(used)), *said]

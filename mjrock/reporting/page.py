@@ -1,149 +1,183 @@
-"""A report as one page that needs no other file: HTML with its pictures inside, which prints to PDF."""
+"""A report as one page that needs no other file: HTML with its pictures inside, or the same as PDF."""
 
 from __future__ import annotations
 
-import base64
-import html
+import math
+import re
 from collections.abc import Mapping, Sequence
-from io import BytesIO
+from itertools import groupby
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from .._version import __version__
 from ..files import write_text
-from ..plotting.histories import history, required_labels, same_ground
+from ..plotting.histories import required_labels
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
-from . import content
+from ..study.intensity.fragility import Fragility
+from ..study.loading.dynamic import signals_of
+from . import content, subject, verdicts
+from .markup import Markup, element, listed, page, picture, table, write_pdf
+from .pictures import PANELS, Run, capacity_curves, histories, strip
 from .subject import Reported, reported
+from .texts import DASH, MINUS, Words
+from .verdicts import REVERSED, Check, Mechanism, required_checks
 
-LOOK = """
-@page { size: A4; margin: 18mm 16mm }
-body { font: 10.5pt/1.4 Georgia, serif; color: #222; max-width: 46em; margin: 2em auto; padding: 0 1em }
-h1 { font-size: 1.6em; border-bottom: 2px solid #12406b; padding-bottom: .2em }
-h2 { font-size: 1.15em; margin: 1.6em 0 .4em; color: #12406b; break-after: avoid }
-table { border-collapse: collapse; width: 100%; font: .85em/1.35 Helvetica, Arial, sans-serif }
-th, td { text-align: left; vertical-align: top; padding: .18em .5em; border-bottom: 1px solid #ddd }
-th { border-bottom: 1px solid #888; font-weight: 600 }
-tr, figure { break-inside: avoid }
-thead { break-after: avoid }
-tr:nth-child(-n+2) { break-before: avoid }
-figure { margin: .6em 0; text-align: center }
-figure img { max-width: 100% }
-pre { font-size: .75em; white-space: pre-wrap; break-inside: avoid }
-ul.cautions { background: #fdf3e7; border-left: 4px solid #e07b2a; padding: .6em 1em .6em 2em }
-footer { margin-top: 2em; font-size: .8em; color: #666 }
-"""
+HEADS = ("project", "client", "author", "date")
+"""What the title block has a place for."""
+Responses = Response | Sequence[Response] | Mapping[str, Response | Sequence[Response]]
 
 
 def report(
     case: AnyCase,
-    responses: Response | Sequence[Response],
+    responses: Responses,
     path: str | Path,
     *,
-    title: str = "Rocking of a wall",
+    title: str | None = None,
     labels: Sequence[str] | None = None,
     e: Restitution | None = None,
     contacts: Contacts | None = None,
+    checks: Check | Sequence[Check] | Mapping[str, Check | Sequence[Check]] | None = None,
+    project: Mapping[str, str] | None = None,
+    language: str = "en",
     basis: Mapping[str, str] | None = None,
     notes: str = "",
     sections: Mapping[str, object] | None = None,
 ) -> Path:
-    """Write a report of a case and its responses: one HTML page that needs no other file and prints to PDF.
+    """Write a report of a case, its checks and its responses: a page of HTML that needs no other file, or a PDF.
 
-    It has a sketch with dimensions, the inputs with their units and what they rest on, what to be careful of, the
-    histories with the forces of the ties, a table of the results and the versions of the programs. Of masonry it has
-    pictures of the blocks at rest and as each response ends.
+    The first page answers: a title block, the question, what holds and what fails with demand, capacity and ratio, and
+    a drawing with hinge and effects. Then come the checks step by step with their formulae, the dynamic runs, what
+    governs, what the results do not say, and what NTC 2018, 10.2, asks of a calculation by program. At the end stand
+    the inputs with their units and what they rest on, every run, and the versions of the programs.
 
     Args:
-        case: the wall or masonry and its effects, for the sketch and the inputs.
-        responses: of walls of this size or of this masonry, by any solver, under any motions. Those under one motion
-            share a picture.
-        path: where to, an .html.
-        title: of the page.
-        labels: what each response is called, one for each.
+        case: the wall or masonry and its effects, for the drawing and the inputs.
+        responses: of walls of this size or of this masonry, by any solver, under any motions. A mapping gives those of
+            each variant, such as a wall without ties and with them.
+        path: where to, an .html, or a .pdf, which WeasyPrint makes.
+        title: of the page; None is that of the language.
+        labels: what each response is called, one for each; variants need none.
         e, contacts: what the responses were computed with, for the inputs.
-        basis: what inputs rest on, by the name that the page gives them, such as {"density": "3 cores, 2024", "k_base":
-            "E of the mortar 800 MPa, 30 mm"}.
-        notes: a paragraph that stands first: the question, the building, who asked.
-        sections: further sections after the results, by their headings: each a text, a figure, a result that has a
-            table, as those of `mechanism_check`, `sensitivity`, `fit_fragility` and `compare` have, or some of these.
+        checks: of `mechanism_check` and `dynamic_check`, by the names of their mechanisms or variants: one or several
+            of each, at most one of them kinematic.
+        project: "project", "client", "author" and "date" of the title block, which leaves room for those not given.
+        language: "en" or "it". Texts of yours stay as they are. `mjrock/reporting/texts.toml` has all others.
+        basis: what inputs rest on, by their names in the program, such as {"density": "3 cores, 2024", "k_base": "E of
+            the mortar 800 MPa, 30 mm"}.
+        notes: the question, the building, who asked.
+        sections: further sections, by their headings: each a text, a figure, a result that has a table, as those of
+            `sensitivity` and `compare`, a mapping of names to `Fragility` curves, or some of these.
 
     Returns:
         The path that was written.
 
     Raises:
         TypeError: for an argument of another type.
-        ValueError: for another ending of the path, no response, one of another wall or of other masonry, e or contacts
-            of masonry, another number of labels, or a basis of an input that the page does not have.
+        ValueError: for another ending of the path, another language, no response, one of another wall or of other
+            masonry, e or contacts of masonry, another number of labels, or a name in `basis` or `project` that the
+            page does not have.
+        ImportError: for a PDF without WeasyPrint.
     """
     require_kind("case", case, Case, MasonryCase)
     path = require_path("path", path)
-    if path.suffix.lower() != ".html":
-        raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html")
-    require_text("title", title)
+    if path.suffix.lower() not in (".html", ".pdf"):
+        raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html or .pdf")
+    words = Words(language)
     require_text("notes", notes, 100_000)
     require_kind("e", e, Restitution, type(None))
     require_kind("contacts", contacts, Contacts, type(None))
-    several = required_responses(case, responses)
-    names = required_labels(several, labels) or [response.solver for response in several]
     case.require_own_joints(e, contacts)
-    subject = reported(case)
-    inputs = {
-        subject.NAME: subject.inputs(),
-        "Effects": content.of_effects(case),
-        "Impacts and contacts": content.of_contacts(e, contacts),
-    }
-    further = [part for name, pieces in required_sections(sections).items() for part in section(name, pieces)]
-    rests = required_basis(basis, {row[0] for rows in inputs.values() for row in rows})
-    head = [f"<h1>{html.escape(title)}</h1>", *([f"<p>{html.escape(notes)}</p>"] if notes else [])]
-    parts = [*head, heading(f"The {subject.NAME.lower()}"), picture(*subject.at_rest())]
-    parts += [heading("What to be careful of"), listed(subject.cautions(several, names))]
-    parts += [heading("Results"), results(subject, several, names), *histories(subject, several, names), *further]
-    for name, rows in inputs.items():
-        if rows:
-            found = [(key, value, rests.get(key, "")) for key, value in rows]
-            parts += [heading(f"Inputs: {name.lower()}"), table(("quantity", "value", "basis"), found)]
-    motions = content.of_motions(several)
-    if motions:
-        parts += [heading("Inputs: ground motions"), table(("direction", "name", "peak, duration, step"), motions)]
-    parts += [heading("Versions"), table(("program", "version"), content.versions())]
-    parts.append(f"<footer>{subject.RIGID} SI units; rotations in radians.</footer>")
-    write_text(path, page(title, parts))
+    whole = reported(case)
+    heading = words(f"title_{whole.KIND}") if title is None else require_text("title", title)
+    runs = required_runs(case, responses, labels, whole, words)
+    mechanisms = required_checks(checks, words(f"kind_{whole.KIND}"))
+    given = [
+        (words(f"kind_{whole.KIND}"), whole.inputs(words)),
+        (words("effects"), content.of_effects(case, words)),
+        (words("contacts"), content.of_contacts(e, contacts, words)),
+    ]
+    rests = required_texts("basis", basis, [row.key for _, rows in given for row in rows])
+    block = required_texts("project", project, HEADS)
+    parts = [
+        element("h1", heading),
+        title_block(block, words),
+        *([element("p", element("b", words("question")), " ", notes)] if notes else []),
+        *answered(whole, runs, mechanisms, words),
+        *checked(mechanisms, words),
+        *shaken(whole, runs, mechanisms, words),
+        *[part for name, pieces in required_sections(sections).items() for part in section(name, pieces, words)],
+        *judged(whole, runs, mechanisms, words),
+        *appendix(given, rests, words),
+        *every_run(whole, runs, words),
+    ]
+    text = page(words, heading, block.get("project", ""), f"mjrock {__version__}", parts)
+    if path.suffix.lower() == ".pdf":
+        write_pdf(path, text)
+    else:
+        write_text(path, text)
     return path
 
 
-def required_responses(case: AnyCase, responses: object) -> list[Response]:
-    """At least one response, each of the wall or masonry of the case; TypeError or ValueError for any other."""
-    given = [responses] if isinstance(responses, Response) else responses
-    if not isinstance(given, Sequence) or isinstance(given, str):
-        raise TypeError(f"responses = {shown(responses)} is neither a Response nor a sequence of them")
+def required_runs(case: AnyCase, responses: object, labels: object, whole: Reported, words: Words) -> list[Run]:
+    """The runs of at least one response, each of what the case is of; TypeError or ValueError for others."""
+    if isinstance(responses, Mapping) and labels is not None:
+        raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
+    given: list[tuple[str, Response]] = []
+    for variant, of in (responses if isinstance(responses, Mapping) else {"": responses}).items():
+        require_text("a name of responses", variant)
+        name = f"responses[{variant!r}]" if variant else "responses"
+        several = [of] if isinstance(of, Response) else of
+        if not isinstance(several, Sequence) or isinstance(several, str):
+            raise TypeError(f"{name} = {shown(of)} is neither a Response nor a sequence of them")
+        for i, response in enumerate(several):
+            require_kind(f"{name}[{i}]", response, Response)
+            require_same(f"{name}[{i}]", response, case)
+        given += [(variant, response) for response in several]
     if not given:
         raise ValueError("responses is empty; at least one response is needed")
-    for i, response in enumerate(given):
-        require_kind(f"responses[{i}]", response, Response)
-        if response.case.built != case.built:
-            own, asked = response.case.said, case.said
-            other = "other " if own == asked else ""
-            raise ValueError(f"responses[{i}] is of {own}, and the case of {other}{asked}")
-    return list(given)
+    answers = [response for _, response in given]
+    motions = [DASH if (motion := response.case.motion) is None else motion.name for response in answers]
+    records = [name.removesuffix(REVERSED) for name in motions]
+    names = records if isinstance(responses, Mapping) else required_labels(answers, labels)
+    if names is None or not (labels or isinstance(responses, Mapping)):
+        own = names or [response.solver for response in answers]
+        names = [in_words(name, response.solver, words) for name, response in zip(own, answers, strict=True)]
+    signals = signals_of([response.case for response in answers])
+    return [
+        Run(response, variant, names[i], signals[i][0], records[i], motions[i] != records[i], whole.largest(response))
+        for i, (variant, response) in enumerate(given)
+    ]
 
 
-def required_basis(basis: object, known: set[str]) -> dict[str, str]:
-    """What inputs rest on, by their names; TypeError for no mapping of texts, ValueError for a name that is unknown."""
-    if basis is None:
-        return {}
-    if not isinstance(basis, Mapping):
-        raise TypeError(f"basis = {shown(basis)} is not a mapping of names to texts")
-    for name, text in basis.items():
-        if name not in known:
-            raise ValueError(f"basis has {name!r}, which is not one of {', '.join(sorted(known))}")
-        require_text(f"basis[{name!r}]", text)
-    return dict(basis)
+def in_words(name: str, solver: str, words: Words) -> str:
+    """A name that a response has by its solver, in words."""
+    known = words.or_else(f"short_{solver}", solver)
+    return known + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
+
+
+def require_same(name: str, response: Response, case: AnyCase) -> None:
+    """Raise a ValueError for a response of another wall or of other masonry than the case."""
+    if response.case.built != case.built:
+        own, asked = response.case.said, case.said
+        other = "other " if own == asked else ""
+        raise ValueError(f"{name} is of {own}, and the case of {other}{asked}")
+
+
+def required_texts(name: str, given: object, known: Sequence[str]) -> dict[str, str]:
+    """Texts by names that are known; TypeError for no mapping of texts, ValueError for a name that is unknown."""
+    if not isinstance(given, Mapping | None):
+        raise TypeError(f"{name} = {shown(given)} is not a mapping of names to texts")
+    for key, text in (given or {}).items():
+        if key not in known:
+            raise ValueError(f"{name} has {key!r}, which is not one of {', '.join(dict.fromkeys(known))}")
+        require_text(f"{name}[{key!r}]", text)
+    return dict(given or {})
 
 
 def required_sections(sections: object) -> dict[str, object]:
@@ -153,83 +187,139 @@ def required_sections(sections: object) -> dict[str, object]:
     return {require_text("a heading of sections", name): pieces for name, pieces in (sections or {}).items()}
 
 
-def section(name: str, pieces: object) -> list[str]:
+def title_block(block: Mapping[str, str], words: Words) -> Markup:
+    """Project, client, author and date, with room to write where one is not given."""
+    cells = [cell for name in HEADS for cell in (words(f"head_{name}"), block.get(name, ""))]
+    return table((), [cells[:4], cells[4:]], kind="block")
+
+
+def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The answer and the drawing."""
+    found = verdicts.answers(mechanisms, words) if mechanisms else []
+    said = words("methods" if mechanisms else "no_check"), outcomes(runs, words)
+    parts = [element("h2", words("answer")), *found, *(element("p", one) for one in said)]
+    return [*parts, picture(whole.at_rest(words), words(f"drawing_{whole.KIND}"), words)]
+
+
+def outcomes(runs: Sequence[Run], words: Words) -> str:
+    """How many runs of each variant overturn."""
+    said = []
+    for variant in dict.fromkeys(run.variant for run in runs):
+        own = [run.largest for run in runs if run.variant == variant]
+        count = sum(d == math.inf for d in own)
+        said.append(words("runs_overturn", name=variant or words("all_runs"), count=count, of=len(own)))
+    return f"{words('falls')} {'; '.join(said)}."
+
+
+def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The checks, step by step, and their curves."""
+    parts: list[Markup] = []
+    if (figure := capacity_curves(mechanisms, words)) is not None:
+        parts += [element("h2", words("checks"), kind="page"), element("p", words("checks_said"))]
+        parts += [*verdicts.kinematic_steps(mechanisms, words), picture(figure, words("curves_said"), words)]
+    if dynamic := verdicts.dynamic_steps(mechanisms, words):
+        parts += [element("h2", words("dynamic")), element("p", words("dynamic_said")), *dynamic]
+    return parts
+
+
+def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The runs as pictures."""
+    limits, limit = {}, whole.limit()
+    if limit is not None:
+        limits["d₀"] = limit
+        for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
+            limits[words("limit_of_mean", state=words(check.limit_state))] = check.capacity
+    solved = content.solved_with([run.response for run in runs], words)
+    parts = [element("h2", words("runs"), kind="page"), *[element("p", said) for said in solved]]
+    drawn = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
+    parts.append(picture(drawn, words(f"strip_{whole.KIND}"), words))
+    drawn = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
+    count = len({run.record for run in runs})
+    parts.append(picture(drawn, words("histories_said", count=min(count, PANELS), of=count), words))
+    end = whole.at_end(runs, words)
+    return parts if end is None else [*parts, picture(end, words("ends_said"), words)]
+
+
+def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """What governs, what the results do not say, and what the code asks to be said of a program."""
+    parts = [element("h2", words("governing")), verdicts.governing(mechanisms, words)] if mechanisms else []
+    if broken := subject.broken_ties(runs, words):
+        parts.append(listed(broken))
+    parts += [element("h2", words("limits")), listed([*verdicts.limits(mechanisms, words), *whole.limits(runs, words)])]
+    solvers = list(dict.fromkeys(run.response.solver for run in runs))
+    kinematic = any(mechanism.kinematic for mechanism in mechanisms)
+    parts += [element("h2", words("ntc")), table((), content.code_chapter(solvers, kinematic, words), kind="block")]
+    if by_hand := whole.by_hand(words):
+        parts += [element("p", words("hand")), table((), by_hand, right=(1,))]
+    return [*parts, element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))]
+
+
+def section(name: str, pieces: object, words: Words) -> list[Markup]:
     """A section: texts, figures and the tables of results; TypeError for anything else."""
-    parts = [heading(name)]
+    parts = [element("h2", name)]
     for piece in pieces if isinstance(pieces, list | tuple) else [pieces]:
         if isinstance(piece, Figure):
             parts.append(picture(piece, name))
         elif isinstance(piece, str):
-            parts.append(f"<p>{html.escape(piece)}</p>")
+            parts.append(element("p", piece))
+        elif isinstance(piece, Fragility):
+            parts.append(content.of_fragility({"": piece}, words))
+        elif isinstance(piece, Mapping) and piece and all(isinstance(one, Fragility) for one in piece.values()):
+            parts.append(content.of_fragility(dict(piece), words))
         elif callable(made := getattr(piece, "table", None)):
-            parts.append(f"<pre>{html.escape(made())}</pre>")
+            parts += tables(made())
         else:
             raise TypeError(f"sections[{name!r}] = {shown(piece)} is not a text, a figure or a result with a table")
     return parts
 
 
-def results(subject: Reported, responses: Sequence[Response], names: Sequence[str]) -> str:
-    """The tables of results, of ties, of forces that were kept, and the messages."""
-    columns, rows = subject.COLUMNS, subject.results(responses, names)
-    shared, own = content.settings(responses)
-    made = f"<p>Solved with {html.escape(shared)}.</p>" if shared else ""
-    if any(own):
-        columns, rows = (*columns, "solved with"), [(*row, said) for row, said in zip(rows, own, strict=True)]
-    made += table(columns, rows)
-    ties = content.of_ties(responses, names)
-    if ties:
-        of_tie = "response", "tie", "largest force", "drawn out by", "energy taken", "broke at"
-        made += "<p></p>" + table(of_tie, ties)
-    forces = content.of_forces(responses, names)
-    if forces:
-        made += "<p></p>" + table(("response", "largest reaction", "largest force of a joint", "of"), forces)
-    return made + listed(content.of_messages(responses, names), "")
+def tables(text: str) -> list[Markup]:
+    """The table of a result, whose cells stand two spaces apart, and the sentences above and below it."""
+    if "|" in text:  # a head of two levels
+        return [element("div", element("pre", text), kind="wide")]
+    lines = [re.split(r"\s{2,}", line.strip()) for line in text.splitlines()]
+    parts = []
+    for several, some in groupby(lines, lambda cells: len(cells) > 1):
+        rows = list(some)
+        wide = max(map(len, rows))
+        rows = [row + [""] * (wide - len(row)) for row in rows]
+        head = several and not re.search(r"\d", " ".join(rows[0]))
+        parts += [table(rows[0] if head else (), rows[head:])] if several else [element("p", row[0]) for row in rows]
+    return parts
 
 
-def histories(subject: Reported, responses: Sequence[Response], names: Sequence[str]) -> list[str]:
-    """A picture for each ground motion."""
-    left, made = list(zip(responses, names, strict=True)), []
-    while left:
-        first = left[0][0]
-        own = [pair for pair in left if same_ground(first, pair[0])]
-        left = [pair for pair in left if not same_ground(first, pair[0])]
-        motion = first.case.motion
-        over_time = history([response for response, _ in own], labels=[name for _, name in own])
-        made.append(picture(over_time, "No ground motion." if motion is None else f"Ground motion: {motion.name}."))
-    for response, name in zip(responses, names, strict=True):
-        made += [picture(*end) for end in subject.at_end(response, name)]
-    return made
+def appendix(
+    given: Sequence[tuple[str, Sequence[content.Input]]], rests: Mapping[str, str], words: Words
+) -> list[Markup]:
+    """The inputs and what they rest on."""
+    parts = [element("h2", words("inputs"), kind="page")]
+    heads = [words(f"input_{key}") for key in ("name", "value", "basis")]
+    for name, rows in given:
+        if rows:
+            own = [words("computed" if row.computed else "not_given") for row in rows]
+            cells = [(row.name, row.value, rests.get(row.key, said)) for row, said in zip(rows, own, strict=True)]
+            parts += [element("p", element("b", name)), table(heads, cells, kind="inputs")]
+    return parts
 
 
-def heading(text: str) -> str:
-    """A heading."""
-    return f"<h2>{html.escape(text)}</h2>"
-
-
-def listed(texts: Sequence[str], kind: str = "cautions") -> str:
-    """Texts as a list; a sentence where there are none."""
-    if not texts:
-        return "<p>No warnings.</p>"
-    return f'<ul class="{kind}">' + "".join(f"<li>{html.escape(text)}</li>" for text in texts) + "</ul>"
-
-
-def table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table."""
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
-    lines = ("".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows)
-    return f"<table><thead><tr>{head}</tr></thead>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
-
-
-def picture(figure: Figure, caption: str) -> str:
-    """A figure inside the page."""
-    file = BytesIO()
-    figure.savefig(file, format="png", dpi=160, metadata={"Software": None})
-    data, said = base64.b64encode(file.getvalue()).decode("ascii"), html.escape(caption)
-    return f'<figure><img alt="{said}" src="data:image/png;base64,{data}"><figcaption>{said}</figcaption></figure>'
-
-
-def page(title: str, parts: Sequence[str]) -> str:
-    """The whole page."""
-    body = "\n".join(parts)
-    head = f'<meta charset="utf-8"><title>{html.escape(title)}</title><style>{LOOK}</style>'
-    return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n{body}\n</body></html>\n'
+def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup]:
+    """The records, every run, and the versions of the programs."""
+    responses = [run.response for run in runs]
+    parts = []
+    if motions := content.of_motions(responses, words):
+        heads = [words(f"motion_{key}") for key in ("name", "direction", "peak", "peak_g", "duration", "step")]
+        parts += [element("h2", words("motions")), table(heads, motions, right=(2, 3, 4, 5))]
+    variants, ties = any(run.variant for run in runs), any(run.response.ties for run in runs)
+    columns = ["variant"] * variants + ["run", "polarity", *whole.COLUMNS] + ["force", "drawn", "broke"] * ties
+    rows = []
+    for run in runs:
+        own = [run.variant] * variants + [run.label, MINUS if run.turned else "+"]
+        rows.append([*own, *whole.result(run.response, words), *(subject.tied(run.response, words) if ties else [])])
+    heads = [words(f"run_{key}") for key in columns]
+    left = {columns.index(name) for name in ("variant", "run", "polarity", "outcome", "fallen") if name in columns}
+    right = sorted(set(range(len(columns))) - left)
+    parts += [element("h2", words("every_run")), table(heads, rows, right=right, kind="runs")]
+    if forces := subject.forces_kept(runs, words):
+        heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
+        parts.append(table(heads, forces, right=(1, 2)))
+    return [*parts, element("h2", words("versions")), table((), content.versions(words), kind="block")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
@@ -10,48 +11,60 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..plotting.masonry import blocks
-from ..plotting.sketch import sketch
-from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..quantities import named
+from ..quantities import GRAVITY, NAMED, Array
 from ..result.ending import Outcome
 from ..result.response import Response
-from ..result.ties import overdrawn
-from .content import TableRows, broken_ties
+from ..result.ties import Plastic, overdrawn
+from ..study.loading.dynamic import displacements_of
+from .content import Input
+from .pictures import SMALL, WIDE, Run, wall_drawn
+from .texts import DASH, FOUND, Words
+from .verdicts import effect_name
 
-Captioned = tuple[Figure, str]
-"""A picture and what stands below it."""
+ENDS = 6
+"""Most responses whose blocks are drawn as they end."""
 
 
 class Reported(Protocol):
     """A wall or masonry as a report sees it.
 
     Attributes:
-        NAME: what it is.
-        RIGID: what is assumed of it.
-        COLUMNS: of the table of results.
+        KIND: "wall" or "masonry".
+        COLUMNS: keys of the columns of the table of runs.
     """
 
-    NAME: ClassVar[str]
-    RIGID: ClassVar[str]
+    KIND: ClassVar[str]
     COLUMNS: ClassVar[tuple[str, ...]]
 
-    def inputs(self) -> TableRows:
-        """What it is: quantity, value with unit."""
+    def inputs(self, words: Words) -> list[Input]:
+        """What it is."""
 
-    def results(self, responses: Sequence[Response], names: Sequence[str]) -> TableRows:
-        """The row of each response."""
+    def largest(self, response: Response) -> float:
+        """Its largest displacement in a response [m], infinite where it overturned or blocks fell."""
 
-    def cautions(self, responses: Sequence[Response], names: Sequence[str]) -> list[str]:
-        """What to be careful of in these results."""
+    def moved(self, response: Response) -> Array:
+        """Its displacement at the samples of a response [m], shape (n,)."""
 
-    def at_rest(self) -> Captioned:
+    def limit(self) -> float | None:
+        """The displacement from which nothing brings it back, if there is one [m]."""
+
+    def result(self, response: Response, words: Words) -> list[str]:
+        """Its cells in the table of runs."""
+
+    def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
+        """What these results do not say."""
+
+    def by_hand(self, words: Words) -> list[tuple[str, ...]]:
+        """Steps of a check by hand, where there is one."""
+
+    def at_rest(self, words: Words) -> Figure:
         """It as it stands."""
 
-    def at_end(self, response: Response, name: str) -> list[Captioned]:
-        """It as a response ends."""
+    def at_end(self, runs: Sequence[Run], words: Words) -> Figure | None:
+        """It as responses end."""
 
 
 @dataclass(frozen=True)
@@ -59,87 +72,112 @@ class ReportedWall(Reported):
     """A wall, see `Reported`."""
 
     case: Case
-    NAME = "Wall"
-    RIGID = "The wall is rigid and moves in one vertical plane."
-    COLUMNS = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts"
+    KIND = "wall"
+    COLUMNS = "outcome", "largest", "share", "impacts"
 
-    def inputs(self) -> TableRows:
-        """The wall: quantity, value with unit."""
+    def inputs(self, words: Words) -> list[Input]:
+        """The wall."""
         case = self.case
         block, wall = case.block, case.wall
-        rows: TableRows = [
-            ("thickness", f"{2 * block.b:.4g} m"),
-            ("height", f"{2 * block.h:.4g} m"),
-            ("length", f"{block.length:.4g} m"),
-            ("density", f"{block.density:.4g} kg/m³"),
-            ("inset", f"{block.inset:.4g} m"),
-            ("mass, with added masses", f"{wall.mass:.5g} kg"),
-            ("centroid_height", f"{wall.centroid_height:.4g} m"),
-            ("alpha, rotation at which it falls alone", f"{wall.alpha:.4g} rad"),
-            ("overturning_rotation, with effects", f"{case.overturning_rotation:.4g} rad"),
-            ("p, frequency parameter", f"{wall.p:.4g} rad/s"),
-        ]
+        given = {
+            "thickness": (2 * block.b, "m"),
+            "height": (2 * block.h, "m"),
+            "length": (block.length, "m"),
+            "density": (block.density, "kg/m3"),
+            "inset": (block.inset, "m"),
+        }
+        found = {
+            "mass": (wall.mass, "kg"),
+            "centroid_height": (wall.centroid_height, "m"),
+            "alpha": (wall.alpha, "rad"),
+            "overturning_rotation": (case.overturning_rotation, "rad"),
+            "p": (wall.p, "rad/s"),
+        }
+        rows = [Input(key, words(f"in_{key}"), words.quantity(*value)) for key, value in given.items()]
         if block.gable is not None:
-            rows.append(("gable", f"{block.gable.height:.4g} m high, {block.gable.top:.4g} m long at its top"))
+            sizes = {"height": words.quantity(block.gable.height, "m"), "top": words.quantity(block.gable.top, "m")}
+            rows.append(Input("gable", words("in_gable"), words("gable", **sizes)))
         for opening in block.openings:
-            rows.append(
-                (
-                    "round opening" if opening.round else "opening",
-                    f"{opening.width:.4g} x {opening.height:.4g} m, sill {opening.sill:.4g} m",
-                )
-            )
-        stop = "none: the wall rocks to both sides" if case.stop_top is None else f"up to {case.stop_top:.4g} m"
-        return [*rows, ("side_stop", stop)]
+            name = "round_opening" if opening.round else "opening"
+            sizes = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}
+            rows.append(Input(name, words(f"in_{name}"), words("opening", **sizes)))
+        top = case.stop_top
+        stop = words("no_stop") if top is None else words("stop_up_to", top=words.quantity(top, "m"))
+        rows.append(Input("side_stop", words("in_side_stop"), stop))
+        return rows + [
+            Input(key, words(f"in_{key}"), words.quantity(*value, FOUND), True) for key, value in found.items()
+        ]
 
-    def results(self, responses: Sequence[Response], names: Sequence[str]) -> TableRows:
-        """Outcome, peak and impacts of each response."""
-        rows: TableRows = []
-        for response, name in zip(responses, names, strict=True):
-            over, case = response.peak_over_alpha, response.of_wall[0]
-            top = "-" if over == float("inf") else f"{1e3 * over * case.wall.alpha * 2 * case.block.h:.0f} mm"
-            peak = "overturned" if over == float("inf") else f"{over:.3f}"
-            share = "-" if over == float("inf") else f"{response.peak_over_overturning:.3f}"
-            rows.append((name, response.outcome.value, peak, share, top, str(len(response.impacts))))
-        return rows
+    def largest(self, response: Response) -> float:
+        """Of the centroid as the wall turns about its toe, as the dynamic check has it."""
+        return displacements_of(response.of_wall[0], [response.peak_over_alpha])[1][0]
 
-    def cautions(self, responses: Sequence[Response], names: Sequence[str]) -> list[str]:
-        """What to be careful of in these results."""
-        said = []
-        outcomes = {response.outcome for response in responses}
-        if Outcome.OVERTURNED in outcomes and len(outcomes) > 1:
-            said.append("The responses do not agree on whether the wall overturns.")
-        motions = [response.case.motion for response in responses if response.case.motion is not None]
-        if self.case.one_sided and motions and all(motion.reversed() not in motions for motion in motions):
-            said.append(
-                "The wall opens to one side, and no motion is here in both polarities: run the reversed motion too."
-            )
-        said += of_one_motion(motions)
-        if not any(response.solver == "MuJoCo" for response in responses):
-            said.append(
-                "Rocking theory has no stiffness of the base, and is more often the upper bound of the capacity."
-            )
-        if self.case.motion is None and not motions:
-            said.append("There is no ground motion: this is the motion after a release.")
-        for response, name in zip(responses, names, strict=True):
-            if response.outcome is Outcome.TIME_ENDED:
-                share = abs(float(response.theta[-1])) / float(self.case.wall.alpha)
-                said.append(f"{name}: the wall still moves at the end of the run, at {share:.3g} alpha.")
-            for tie, drawn in response.plastic.items():
-                effect = response.case.links[tie]
+    def moved(self, response: Response) -> Array:
+        """Of the centroid."""
+        return np.asarray(response.pose[:, 0, 0])
+
+    def limit(self) -> float | None:
+        """Of the wall without its ties; None of one that they alone hold."""
+        return displacements_of(self.case, ())[0] or None
+
+    def result(self, response: Response, words: Words) -> list[str]:
+        """How it ended, its largest displacement, that over the limit, impacts."""
+        largest = self.largest(response)
+        if math.isinf(largest):
+            return [words("overturned"), DASH, DASH, str(len(response.impacts))]
+        limit = self.limit()
+        share = words.number(largest / limit, FOUND) if limit else DASH
+        said = words.quantity(largest, "m", FOUND), share, str(len(response.impacts))
+        return [words(f"outcome_{response.outcome.name.lower()}"), *said]
+
+    def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
+        """What these results do not say."""
+        said = [words("limit_rigid")]
+        shaken = [run for run in runs if run.response.case.motion is not None]
+        both = {run.record for run in shaken if run.turned}
+        if self.case.one_sided and {run.record for run in shaken} - both:
+            said.append(words("limit_polarity"))
+        if len({run.record for run in shaken}) == 1:
+            said.append(words("limit_one_record"))
+        if not shaken:
+            said.append(words("limit_release"))
+        if {run.response.solver for run in runs} == {"analytical"}:
+            said.append(words("limit_theory"))
+        still = [run for run in runs if run.response.outcome is Outcome.TIME_ENDED]
+        if still:
+            said.append(words("limit_still_moves", count=len(still), of=len(runs)))
+        for run in runs:
+            for tie, drawn in run.response.plastic.items():
+                effect = run.response.case.links[tie]
                 if overdrawn(effect, drawn):
-                    said.append(
-                        f"{name}: {tie}, which never breaks here, was drawn out by {1e3 * drawn.elongation:.3g} mm, "
-                        f"{drawn.elongation / effect.span:.1%} of its length."
-                    )
-        return said + broken_ties(responses, names)
+                    name, d = effect_name(tie, words), words.quantity(drawn.elongation, "m", FOUND)
+                    share = words.share(round(100 * drawn.elongation / effect.span) / 100)
+                    said.append(words("limit_overdrawn", run=run.label, tie=name, d=d, share=share))
+        return said
 
-    def at_rest(self) -> Captioned:
-        """The sketch."""
-        return sketch(self.case), "Section and elevation, true to scale [m]."
+    def by_hand(self, words: Words) -> list[tuple[str, ...]]:
+        """Moments about the toe by which alpha_0 can be checked by hand: what they are, in kN m."""
+        case, wall = self.case, self.case.wall
+        lever = case.block.half_base + wall.centroid_offset
+        weight = wall.mass * GRAVITY
+        turning = weight * wall.centroid_height
+        holding = case.restoring.outer.P
+        rows = [
+            (words("hand_weight"), words.quantity(weight, "N", FOUND)),
+            (words("hand_lever"), words.quantity(lever, "m", FOUND)),
+            (words("hand_height"), words.quantity(wall.centroid_height, "m", FOUND)),
+            (words("hand_holding"), words.quantity(weight * lever, "N m", FOUND)),
+            (words("hand_effects"), words.quantity(holding - weight * lever, "N m", FOUND)),
+            (words("hand_turning"), words.quantity(turning, "N m", FOUND)),
+        ]
+        return [*rows, (words("hand_alpha"), words.number(holding / turning, FOUND))]
 
-    def at_end(self, response: Response, name: str) -> list[Captioned]:
+    def at_rest(self, words: Words) -> Figure:
+        """Section and elevation."""
+        return wall_drawn(self.case, words)
+
+    def at_end(self, runs: Sequence[Run], words: Words) -> None:
         """Nothing: the histories show it."""
-        return []
 
 
 @dataclass(frozen=True)
@@ -147,73 +185,126 @@ class ReportedMasonry(Reported):
     """Masonry, see `Reported`."""
 
     case: MasonryCase
-    NAME = "Masonry"
-    RIGID = "The blocks are rigid."
-    COLUMNS = "response", "outcome", "fallen", "largest rotation", "opening", "sliding"
+    KIND = "masonry"
+    COLUMNS = "outcome", "largest", "opening", "sliding", "fallen"
 
-    def inputs(self) -> TableRows:
-        """Masonry: quantity, value with unit."""
+    def inputs(self, words: Words) -> list[Input]:
+        """Masonry."""
         masonry = self.case.masonry
         mass = float(sum(masonry.blocks[i].mass for i in masonry.free))
-        fewest, most = int(masonry.table.points.min()), int(masonry.table.points.max())
-        rows: TableRows = [
-            ("blocks", f"{len(masonry.free)} free, {len(masonry.blocks) - len(masonry.free)} fixed"),
-            ("joints", f"{len(masonry.joints)}, points = {fewest if fewest == most else f'{fewest} to {most}'}"),
-            ("mass of the free blocks", f"{mass:.5g} kg"),
+        free, fixed = len(masonry.free), len(masonry.blocks) - len(masonry.free)
+        points = self._span(masonry.table.points.astype(float), "", words)
+        rows = [
+            Input("blocks", words("in_blocks"), words("blocks_said", free=free, fixed=fixed)),
+            Input("joints", words("in_joints"), words("joints_said", count=len(masonry.joints), points=points)),
+            Input("mass", words("in_mass"), words.quantity(mass, "kg", FOUND), True),
+            Input("k_n", words("in_k_n"), self._span(masonry.joint_stiffness, "N/m3", words)),
+            Input("k_s", words("in_k_s"), self._span(masonry.joint_shear, "N/m3", words)),
+            Input("friction", words("in_friction"), self._span(masonry.joint_friction, "", words)),
         ]
-        values = {"k_n": masonry.joint_stiffness, "k_s": masonry.joint_shear, "friction": masonry.joint_friction}
-        for name, unit in (("k_n", " N/m³"), ("k_s", " N/m³"), ("friction", "")):
-            low, high = values[name].min(), values[name].max()
-            said = f"{low:.4g}{unit}" if low == high else f"{low:.4g} to {high:.4g}{unit}"
-            rows.append((name, "sticks rigidly" if np.isinf(low) else said))
-        retardation = masonry.retardation
-        rows.append(("damping, c/k", f"{retardation.min():.3g} to {retardation.max():.3g} s"))
-        return rows
+        return [*rows, Input("damping", words("in_damping"), self._span(masonry.retardation, "s", words))]
 
-    def results(self, responses: Sequence[Response], names: Sequence[str]) -> TableRows:
-        """Outcome, fallen blocks and largest motions of each response of masonry."""
-        rows: TableRows = []
-        for response, name in zip(responses, names, strict=True):
-            fell = [f"{block} at {t:.3g} s" for block, t in response.fallen.items()]
-            said = named(fell) if fell else "none"
-            moved = f"{response.peak.max():.3g} rad", f"{1e3 * response.opening.max():.3g} mm"
-            slid = f"{1e3 * response.sliding.max():.3g} mm"
-            rows.append((name, response.outcome.value, said, *moved, slid))
-        return rows
+    @staticmethod
+    def _span(values: Array, unit: str, words: Words) -> str:
+        """The lowest and the highest of values."""
+        low, high = (float(end) for end in (values.min(), values.max()))
+        if np.isinf(low):
+            return words("sticks")
+        said = [words.quantity(value, unit) for value in (low, high)]
+        return said[0] if low == high else words("range", low=said[0], high=said[1])
 
-    def cautions(self, responses: Sequence[Response], names: Sequence[str]) -> list[str]:
-        """What to be careful of in the results of masonry."""
-        said = []
-        if len({bool(response.fallen) for response in responses}) > 1:
-            said.append("The responses do not agree on whether blocks fall.")
-        motions = [response.case.motion for response in responses if response.case.motion is not None]
-        said += of_one_motion(motions)
-        if not any(response.solver == "explicit" for response in responses):
-            said.append("In MuJoCo faces have no end, and blocks that fall meet no others. Explicit steps have both.")
-        said.append("A margin depends on k_n and the points of the joints: repeat it with others.")
-        return said + broken_ties(responses, names)
+    def largest(self, response: Response) -> float:
+        """Of the farthest block."""
+        return math.inf if response.fallen else float(self.moved(response).max())
 
-    def at_rest(self) -> Captioned:
+    def moved(self, response: Response) -> Array:
+        """Of the farthest block."""
+        return np.asarray(np.linalg.norm(response.pose[:, :, : 3 if response.in_space else 2], axis=2).max(axis=1))
+
+    def limit(self) -> None:
+        """None is known."""
+
+    def result(self, response: Response, words: Words) -> list[str]:
+        """How it ended, largest motions, fallen blocks."""
+        largest = float(self.moved(response).max())
+        ended = "blocks_fell" if response.fallen else f"outcome_{response.outcome.name.lower()}"
+        moved = largest, response.opening.max(), response.sliding.max()
+        sizes = [words.quantity(value, "m", FOUND) for value in moved]
+        fell = [words("falls_at", block=block, t=words.quantity(t, "s", FOUND)) for block, t in response.fallen.items()]
+        said = ", ".join(fell[:NAMED]) or DASH
+        return [words(ended), *sizes, words("and_more", names=said, count=len(fell) - NAMED) if fell[NAMED:] else said]
+
+    def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
+        """What these results do not say."""
+        said = [words("limit_rigid_blocks"), words("limit_margin")]
+        if len({run.record for run in runs if run.response.case.motion is not None}) == 1:
+            said.append(words("limit_one_record"))
+        if "explicit" not in {run.response.solver for run in runs}:
+            said.append(words("limit_faces"))
+        return said
+
+    def by_hand(self, words: Words) -> list[tuple[str, ...]]:
+        """None."""
+        return []
+
+    def at_rest(self, words: Words) -> Figure:
         """The blocks."""
-        return drawn(self.case.masonry), "The blocks at rest, fixed ones in grey."
+        return self._drawn([(self.case.masonry, "")])
 
-    def at_end(self, response: Response, name: str) -> list[Captioned]:
-        """The blocks where they are then."""
-        return [(drawn(response), f"{name}: the blocks at {response.t[-1]:.4g} s.")]
+    def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
+        """The blocks as the runs with the largest motion end."""
+        worst = sorted(runs, key=lambda run: -run.largest)[:ENDS]
+        ends = [words.quantity(float(run.response.t[-1]), "s", FOUND) for run in worst]
+        said = [words("at_time", run=run.label, t=t) for run, t in zip(worst, ends, strict=True)]
+        return self._drawn([(run.response, text) for run, text in zip(worst, said, strict=True)])
+
+    def _drawn(self, pieces: Sequence[tuple[Masonry | Response, str]]) -> Figure:
+        """Masonry at rest, or as responses of it end, in panels with titles."""
+        columns = min(2, len(pieces))
+        rows = -(-len(pieces) // columns)
+        figure = Figure(figsize=(WIDE, rows * (3.6 if columns == 1 else 2.6)), layout="constrained")
+        for i, (piece, title) in enumerate(pieces):
+            ax = figure.add_subplot(rows, columns, i + 1, projection="3d" if self.case.in_space else None)
+            blocks(ax, piece)
+            ax.set_title(title, fontsize=SMALL)
+        return figure
 
 
-def of_one_motion(motions: Sequence[GroundMotion]) -> list[str]:
-    """What to be careful of where all motions are one, in both polarities or not."""
-    if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
-        return ["There is one ground motion: rocking is sensitive, and one record proves little."]
-    return []
+def tied(response: Response, words: Words) -> list[str]:
+    """What the ties of a response did: the largest force of one, how far the most drawn out was, the first break."""
+    ties, drawn = response.ties, response.plastic
+    if not ties:
+        return [DASH] * 3
+    force = max(tie.largest_force for tie in ties.values())
+    out = max(drawn.get(name, Plastic(0.0, 0.0)).elongation for name in ties)
+    broke = min(tie.broken for tie in ties.values())
+    said = [words.quantity(force, "N", FOUND), words.quantity(out, "m", FOUND)]
+    return [*said, DASH if math.isinf(broke) else words.quantity(broke, "s", FOUND)]
 
 
-def drawn(masonry: Masonry | Response) -> Figure:
-    """Masonry at rest, or as a response of it ends."""
-    figure = Figure(figsize=(6.3, 4.2), layout="constrained")
-    blocks(figure.add_subplot(projection="3d") if masonry.in_space else figure.subplots(), masonry)
-    return figure
+def broken_ties(runs: Sequence[Run], words: Words) -> list[str]:
+    """In how many runs ties broke, by variant."""
+    said = []
+    for variant in dict.fromkeys(run.variant for run in runs):
+        own = [run for run in runs if run.variant == variant and run.response.ties]
+        broke = [min(tie.broken for tie in run.response.ties.values()) for run in own]
+        count = sum(math.isfinite(t) for t in broke)
+        if count:
+            name, first = variant or words("all_runs"), words.quantity(min(broke), "s", FOUND)
+            said.append(words("ties_broke", name=name, count=count, of=len(own), t=first))
+    return said
+
+
+def forces_kept(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
+    """The largest reaction and the largest normal force of a joint, of each run that has kept its forces."""
+    rows = []
+    for run in runs:
+        if run.response.kept_forces is not None:
+            forces, normal = run.response.forces, run.response.forces.normal.max(axis=0)
+            joint = int(normal.argmax())
+            said = [words.quantity(float(force), "N", FOUND) for force in (forces.largest_reaction, normal[joint])]
+            rows.append((run.label, *said, forces.joints[joint]))
+    return rows
 
 
 def reported(case: AnyCase) -> Reported:

@@ -19,7 +19,21 @@ from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import pulled, yielded
 from ..quantities import ON_ITS_FACE, Array, Integers
 from ..result.motion import interpolated
-from .law import BROKEN, SLACK, TAUT, YIELDING, Push, RockingLaw, Toe, WallTies, acceleration, nystroem, pull_of, pushed
+from .law import (
+    BROKEN,
+    SLACK,
+    TAUT,
+    YIELDING,
+    Push,
+    RockingLaw,
+    Toe,
+    WallTies,
+    acceleration,
+    held_back,
+    nystroem,
+    pull_of,
+    pushed,
+)
 from .motion import RockingMotion
 
 HALVINGS = 50
@@ -148,25 +162,29 @@ class ArcRoom(NamedTuple):
 
 
 @inlined
-def free_moment(toe: Toe, x: float, z: float) -> float:
-    """Moment that holds a resting wall down, over its inertia [1/s2]; a negative one lifts it towards the toe."""
-    return toe.P + toe.Wd * z + toe.side * toe.Wz * x
+def free_moment(toe: Toe, held: float, x: float, z: float) -> float:
+    """Moment that holds a resting wall down, over its inertia [1/s2]; a negative one lifts it towards the toe.
+
+    `held` is that of its ties, likewise.
+    """
+    return toe.P + held + toe.Wd * z + toe.side * toe.Wz * x
 
 
 @inlined
 def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple[float, float]:
     """When a wall that rests at time `t` is lifted, and to which side [s, +1 or -1]. Never is infinity."""
     begun = t
+    outer, inner = -held_back(law.outer, law.ties, 0.0), held_back(law.inner, law.ties, 0.0)
     while t < duration:
         push, end = pushed(law.x, law.z, t)
-        for toe in (law.outer, law.inner):
+        for toe, held in ((law.outer, outer), (law.inner, inner)):
             if toe.side < 0 and one_sided:
                 continue
-            now = free_moment(toe, push.x, push.z)
+            now = free_moment(toe, held, push.x, push.z)
             if now < (-1e-9 * toe.P if t == begun else 0.0):
                 return t, toe.side
             span = min(end, duration) - t
-            then = free_moment(toe, push.x + push.x_rate * span, push.z + push.z_rate * span)
+            then = free_moment(toe, held, push.x + push.x_rate * span, push.z + push.z_rate * span)
             if then < 0 <= now:
                 return t + span * now / (now - then), toe.side
         t = end

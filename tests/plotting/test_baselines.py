@@ -134,6 +134,7 @@ PICTURES = {
         {"a": mr.Push(RISING, 1e4 * RISING * (2 - RISING), 0 * RISING, "", swung(), energy=RISING)}
     ),
     "pushover": lambda: plotting.pushover(pushed()),
+    "record": lambda: plotting.record([MOTION, MOTION.corrected(band=(None, 20.0))]),
     "residuals": lambda: law_pictures.residuals("t", RISING, {"R": (RISING, "log"), "h": (RISING[::-1], "linear")}),
     "rotation": lambda: plotting.rotation(both(), ["a", "b"]),
     "sensitivity": lambda: plotting.single(
@@ -196,7 +197,7 @@ def test_a_picture_is_the_one_that_was_looked_at(name):
     assert difference(name, drawn) < DIFFERENT
 
 
-@pytest.mark.parametrize("missing", ["_elevation", "blocks", "surroundings"])
+@pytest.mark.parametrize("missing", ["elevation", "blocks", "surroundings"])
 def test_a_sketch_without_its_wall_or_what_it_meets_is_another_picture(missing, monkeypatch):
     sketches = importlib.import_module("mjrock.plotting.sketch")
     monkeypatch.setattr(sketches, missing, lambda *given: lambda frame: None)

@@ -1,6 +1,7 @@
 """Blocks as they are drawn: millimetres, and vertices that are off by some tenths of a millimetre."""
 
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -44,7 +45,7 @@ def test_a_file_in_millimetres_is_doubted_and_scaled(tmp_path):
     ]
     path.write_text("\n".join(lines))
     fixed = [FACADE.names[i] for i in range(len(FACADE.blocks)) if i not in FACADE.free]
-    with pytest.warns(mr.Implausible, match="vertices are in m: are they in mm. A file takes scale=0.001"):
+    with pytest.warns(mr.Implausible, match="vertices are in m: are they in mm, 0.35 m. A file takes unit='mm'"):
         mr.Masonry.from_obj(path, fixed, k_n=1e9)
     assert len(mr.Masonry.from_obj(path, fixed, scale=0.001, k_n=1e9).joints) == len(FACADE.joints)
 
@@ -94,3 +95,73 @@ def test_blocks_that_no_tolerance_joins_are_refused_with_their_distance():
     ground, stone = (mr.Polygon([(0, z), (1, z), (1, z + 1), (0, z + 1)], fixed=z < 0) for z in (-1.0, 0.3))
     with pytest.raises(ValueError, match=r"block_1 and block_0 there are 0.3 m, and no tolerance up to 0.1 m joins"):
         mr.Masonry([ground, stone])
+
+
+def test_all_overlaps_are_said_with_the_tolerance_that_takes_them():
+    """Courses that sink by 1, 4 and 2 mm: with the tolerance that is said all three joints are found."""
+    depths, z = (0.001, 0.004, 0.002), 0.0
+    blocks = [mr.Polyhedron.box((2, 2, 1), (0, 0, -0.5), fixed=True)]
+    for deep in depths:
+        z -= deep
+        blocks.append(mr.Polyhedron.box((0.5, 0.5, 0.3), (0, 0, z + 0.15)))
+        z += 0.3
+    outlines = [(b.corners.min(axis=0)[[0, 2]], b.corners.max(axis=0)[[0, 2]]) for b in blocks]
+    flat = [mr.Polygon([(a, c), (b, c), (b, d), (a, d)], fixed=d == 0) for (a, c), (b, d) in outlines]
+    for made in (blocks, flat):
+        with pytest.raises(ValueError, match=r"block_1 and block_2 overlap by 0.004 m, the most of 3 pairs") as refused:
+            mr.Masonry(made)
+        tolerance = float(re.search(r"tolerance = (\S+) m takes them: it finds 3 joints$", str(refused.value))[1])
+        assert 0.004 <= tolerance < 0.0042
+        assert len(mr.Masonry(made, tolerance=tolerance).joints) == 3
+
+
+def test_an_overlap_that_no_tolerance_takes_is_said():
+    ground, deep = (mr.Polygon([(0, z), (1, z), (1, z + 1), (0, z + 1)], fixed=z < -0.7) for z in (-1.0, -0.5))
+    with pytest.raises(ValueError, match=r"overlap by 0.5 m; .*; no tolerance up to 0.1 m takes them"):
+        mr.Masonry([ground, deep])
+
+
+def cards(in_space):
+    """Two cards that lean against each other on the ground, and a slab whose foot is cut flat and whose head is not."""
+    blocks = [mr.Polygon([(-3, -1), (3, -1), (3, 0), (-3, 0)], fixed=True, name="ground")]
+    blocks.append(mr.Polygon([(0, 0), (1, 2), (0.9, 2.05), (-0.1, 0.05)], name="left"))
+    blocks.append(mr.Polygon([(1, 2), (1.95, 0.1), (2.05, 0.15), (1.1, 2.05)], name="right"))
+    return [mr.Polyhedron.prism(block) for block in blocks] if in_space else blocks
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_blocks_that_touch_along_a_line_are_refused_by_that_name(in_space):
+    said = "ground and left touch along a line"
+    with pytest.raises(ValueError, match=f"no two of them touch .*; {said}.*; a joint takes faces: cut the edge"):
+        mr.Masonry(cards(in_space)[:2])
+    post = mr.Polygon([(-2, 0), (-1.5, 0), (-1.5, 1), (-2, 1)], name="post")
+    with pytest.warns(mr.Implausible, match=f"without a joint {said}"):
+        mr.Masonry([*cards(in_space)[:2], mr.Polyhedron.prism(post) if in_space else post])
+
+
+def test_a_corner_on_a_face_is_named_and_edges_that_meet_are_not_doubted():
+    """A cube on its tip stands on a corner. Bricks across a corner touch along an edge, and press in no direction."""
+    turn = np.linalg.qr(np.array([[1.0, 1, 1], [1, -1, 0], [1, 1, -2]]).T)[0].T[[1, 2, 0]]
+    tip = mr.Polyhedron.box((1, 1, 1)).corners @ turn.T
+    ground = mr.Polyhedron.box((5, 5, 1), (0, 0, -0.5), fixed=True, name="ground")
+    with pytest.raises(ValueError, match="ground and tip touch at a corner; a joint takes faces"):
+        mr.Masonry([ground, mr.Polyhedron(tip - [0, 0, tip[:, 2].min()], name="tip")])
+    bond = [mr.Polyhedron.box((1, 1, 1), (x, 0, z + 0.5)) for x, z in ((0, 0), (1, 0), (0, 1))]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(mr.Masonry([ground, *bond]).joints) == 4
+
+
+def test_faces_of_a_file_that_nearly_touch_are_doubted():
+    """0.1 mm between the heads of two stones on the ground is ten times the tolerance."""
+    stones = {"one": (0.0, 1.0), "two": (1.0001, 2.0)}
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    meshes = {
+        name: (np.array([(x, y, z) for x in ends for y in (0.0, 0.5) for z in (0.0, 0.5)]), faces)
+        for name, ends in stones.items()
+    }
+    with pytest.warns(
+        mr.Implausible, match=r"1 pairs .* lie less than 0.0002 m apart, such as one\|two; tolerance = 0"
+    ):
+        assert len(mr.Masonry.from_meshes(meshes, ground=True).joints) == 2
+    assert len(mr.Masonry.from_meshes(meshes, ground=True, tolerance=2e-4).joints) == 3

@@ -92,7 +92,10 @@ def arc(space):
             lambda space: space.add_lwpolyline([(0, 0), (2, 0), (2, 2), (1, 0.5)], close=True),
             "block 0_0, which begins at 0, 0 m: vertices",
         ),
-        (lambda space: space.add_polyline3d(box(0, 1, 0, 1), close=True), "not in the plane x, y"),
+        (
+            lambda space: space.add_polyline3d([(0, 0, 0), (1, 0, 0), (1, 1, 1)], close=True),
+            "block 0_0, .*: it is not in the plane of the drawing; up='z' takes one in the plane x, z",
+        ),
     ],
 )
 def test_drawings_that_are_no_masonry(tmp_path, draw, complaint):
@@ -200,3 +203,77 @@ def test_arguments_are_checked(tmp_path):
     )
     assert masonry.joint_friction.tolist() == [0.5]
     assert math.isclose(masonry.blocks[1].area, 0.25)
+
+
+def test_layers_are_chosen_and_what_is_left_out_is_said(tmp_path):
+    """A frame with an open polyline is another layer; a spline and a hatch are no polylines."""
+    document = ezdxf.new(units=units.CM)
+    space = document.modelspace()
+    space.add_lwpolyline(box(0, 40, 0, 50), close=True, dxfattribs={"layer": "stone"})
+    space.add_lwpolyline(box(-90, 90, -90, 90), dxfattribs={"layer": "frame"})
+    document.saveas(tmp_path / "a.dxf")
+    with pytest.raises(ValueError, match=r"layer frame: .* is open: close it; or give the layers that hold blocks by"):
+        mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True)
+    assert mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, layers=["stone"]).blocks[1].area == pytest.approx(0.2)
+    with pytest.raises(ValueError, match=r"layers = 'brick' holds nothing in .*a.dxf; the layers are stone, frame"):
+        mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, layers=["brick"])
+    with pytest.raises(TypeError, match="layers = 'stone' of type str is not a list of names"):
+        mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, layers="stone")
+    space.add_spline([(0, 0), (1, 1), (2, 0)], dxfattribs={"layer": "stone"})
+    space.add_hatch(dxfattribs={"layer": "stone"}).paths.add_polyline_path(box(0, 1, 0, 1))
+    document.saveas(tmp_path / "a.dxf")
+    with pytest.warns(UserWarning, match=r"only closed polylines are read; left out are 1 HATCH, 1 SPLINE"):
+        mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, layers=["stone"])
+
+
+def test_an_elevation_in_the_plane_x_z_and_a_unit_other_than_that_of_the_header(tmp_path):
+    document = ezdxf.new(units=units.IN)
+    corners = [(0, 7, 0), (40, 7, 0), (40, 7, 90), (0, 7, 90)]
+    document.modelspace().add_polyline3d(corners, close=True)
+    document.saveas(tmp_path / "a.dxf")
+    masonry = mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, up="z", unit="cm")
+    np.testing.assert_allclose(masonry.blocks[1].corners, [(0, 0), (0.4, 0), (0.4, 0.9), (0, 0.9)], atol=1e-12)
+    own = mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, up="z")
+    assert own.blocks[1].area == pytest.approx(0.36 * 2.54**2)
+
+
+def test_inserts_without_a_scale_along_z_and_drawings_of_lines(tmp_path):
+    """Plane drawings of some programs insert blocks with a scale of nought along z."""
+    document = ezdxf.new(units=units.M)
+    document.blocks.new("s").add_lwpolyline(box(0, 1, 0, 2), close=True)
+    document.modelspace().add_blockref("s", (5, 0), dxfattribs={"zscale": 0.0})
+    document.saveas(tmp_path / "a.dxf")
+    assert mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True).blocks[1].area == pytest.approx(2.0)
+    document = ezdxf.new()
+    for start, end in (((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 0))):
+        document.modelspace().add_line(start, end)
+    document.saveas(tmp_path / "b.dxf")
+    with pytest.raises(ValueError, match="there is 3 LINE; join its lines to closed polylines"):
+        mr.Masonry.from_dxf(tmp_path / "b.dxf", ground=True)
+
+
+def test_outlines_that_are_not_convex_are_cut_or_filled(tmp_path):
+    """An L of 4 m2 is two parts of a unit; its hull has 5 m2. It keeps its place among the blocks."""
+    shape = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
+    path = drawing(tmp_path / "a.dxf", ("L", shape), ("stone", box(2, 3, 0, 1)))
+    with pytest.raises(ValueError, match=r"block L_0, .* points inwards; a block is convex; convex='parts' cuts it"):
+        mr.Masonry.from_dxf(path, ground=True)
+    cut = mr.Masonry.from_dxf(path, ground=True, convex="parts", density={"L": 1000.0, "stone": 2000.0}, length=0.5)
+    assert isinstance(cut.blocks[1], mr.Compound)
+    assert cut.names == ("ground", "L_0", "stone_0")
+    assert [block.mass for block in cut.blocks[1:]] == pytest.approx([2000.0, 1000.0])
+    assert len(cut.joints) == 3
+    with pytest.warns(UserWarning, match=r"convex='hull' adds volume to 1 bodies: L_0 25.00%"):
+        filled = mr.Masonry.from_dxf(path, ["L"], convex="hull")
+    assert filled.blocks[0].area == pytest.approx(5.0)
+    assert [block.fixed for block in filled.blocks] == [True, False]
+
+
+@pytest.mark.parametrize(("unit", "said"), [(units.IN, "0.0254 m"), (units.MM, "0.001 m")])
+def test_a_header_that_states_another_unit_than_the_drawing_has_is_named(tmp_path, unit, said):
+    """Bricks that are drawn in mm and in m under the default of a template."""
+    high = 250.0 if unit == units.IN else 0.4
+    outlines = [("brick", box(0, 2 * high, i * high, (i + 1) * high)) for i in range(5)]
+    path = drawing(tmp_path / "a.dxf", *outlines, unit=unit)
+    with pytest.warns(UserWarning, match=f"a.dxf: its header says that its unit is {said}; unit= takes another"):
+        mr.Masonry.from_dxf(path, ground=True)

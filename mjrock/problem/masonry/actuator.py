@@ -115,7 +115,7 @@ class Actuator(Effect):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         far = max(self.displacement[1], key=abs)
         where = "all blocks" if self.at is None else f"z = {self.height:g} m"
         return f"{where},\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:.4g} kN/mm"

@@ -27,12 +27,12 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from ..wall.case import Case
-from ..wall.effect import Anchored, Effect, require_in_plane
+from ..wall.effect import Anchored, Effect, require_only
 from ..wall.effects import EFFECT_KINDS, Carrying, Load
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
-from .effects import laden, numbered, placed, require_anchored, require_in_space, require_pushing
+from .effects import laden, numbered, placed, require_anchored, require_placed, require_pushing
 from .histories import Support, supports_of, tilt_of
 from .laws.bond import Bond
 from .masonry import Masonry
@@ -151,10 +151,10 @@ class MasonryCase(Carrying):
             if isinstance(effect, Actuator):
                 require_pushing(name, effect, self.masonry)
                 continue
-            if self.masonry.in_space:
-                require_in_space(name, effect, self.masonry)
+            require_only(name, effect, "masonry", *["masonry in space"] * self.masonry.in_space)
+            if self.masonry.in_space or effect.at is not None:
+                require_placed(name, effect, self.masonry)
                 continue
-            require_in_plane(name, effect, but="anchor_block")
             require_anchored(name, effect, self.masonry)
             low, high = block.corners.min(axis=0) - 1e-9, block.corners.max(axis=0) + 1e-9
             require_within(f"{name}, height", effect.height, float(low[1]), float(high[1]), "m")
@@ -206,6 +206,11 @@ class MasonryCase(Carrying):
     def bodies(self) -> tuple[str, ...]:
         """Names of the blocks that are not fixed, in their order."""
         return tuple(self.masonry.names[i] for i in self.masonry.free)
+
+    @cached_property
+    def masses(self) -> Array:
+        """Mass of each block with its added masses [kg], shape (blocks,)."""
+        return laden(self.masonry, self.effects)[0]
 
     @cached_property
     def centroids(self) -> Array:

@@ -4,17 +4,30 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, named
+from ...geometry.hull import Convex
+from ...quantities import Array, Integers, named
 from .blocks.compound import AnyBlock
-from .blocks.joints import Joint
-from .blocks.joints_in_space import SpaceJoint
+from .blocks.joints import SHORTEST, Joint, neighbours
+from .blocks.joints_in_space import BLUNT, SpaceJoint
+from .files.bodies import UNITS
 
 LARGEST, SMALLEST = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
+LARGE, MANY = 5.0, 5
+"""Size that half of the free blocks of masonry exceed which are probably not in m, where there are so many [m, -]."""
+USUAL, STONE = (0.04, 3.0), 0.35
+"""Sizes of blocks that a unit is named for, and that of which the nearest is named first [m]."""
+NEARLY = 20.0
+"""Gap over the tolerance up to which faces of a file that have no joint are doubted [-]."""
+LIES, ON_GROUND, ALONG = 0.25, 0.5, 2.0
+"""Free blocks of a file lie along y from fixed ones by this share of the extent, and half of them lie on the ground
+while joints across y have twice the area of all others, where y may be the axis that points upwards [-]."""
 WIDEST = 0.1
 """Largest tolerance of masonry [m]."""
 FINE = 1.05
@@ -29,6 +42,14 @@ Finder = Callable[[float], Sequence[Joint | SpaceJoint]]
 """The joints that a tolerance gives [m]."""
 ALIKE = 0.99
 """Cosine of the angle between the normals of two joints of the same two blocks, which convex blocks cannot have [-]."""
+
+
+class Touch(NamedTuple):
+    """Numbers of two blocks that touch without a joint, and where: "at a corner" or "along a line"."""
+
+    block: int
+    other: int
+    where: str
 
 
 def odd_damping(xi: Array) -> str:
@@ -53,14 +74,146 @@ def odd_frequency(xi: float, frequency: float, lowest: float) -> str:
     )
 
 
-def odd_sizes(blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:
-    """What is odd about the sizes of the free blocks, in words, empty where nothing is."""
-    sizes = {name: 2 * block.size for block, name in zip(blocks, names, strict=True) if not block.fixed}
-    least, most = min(sizes, key=sizes.__getitem__), max(sizes, key=sizes.__getitem__)
-    if sizes[most] >= SMALLEST and sizes[least] <= LARGEST:
+def odd_sizes(sizes: Mapping[str, float]) -> str:
+    """What is odd about the sizes of free blocks by their names [m], in words, empty where nothing is."""
+    if not sizes:
         return ""
-    name = least if sizes[least] > LARGEST else most
-    return f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in mm? A file takes scale=0.001"
+    ordered = sorted(sizes, key=sizes.__getitem__)
+    median = sizes[ordered[len(ordered) // 2]]
+    if sizes[ordered[0]] > LARGEST:
+        name = ordered[0]
+    elif sizes[ordered[-1]] < SMALLEST:
+        return f"{ordered[-1]} is {sizes[ordered[-1]]:.4g} m across: is the unit too small? A file takes unit='m'"
+    elif len(sizes) >= MANY and median > LARGE:
+        name = ordered[len(ordered) // 2]
+    else:
+        return ""
+    found = {unit: sizes[name] * scale for unit, scale in UNITS.items()}
+    likely = [unit for unit, size in found.items() if unit != "m" and USUAL[0] <= size <= USUAL[1]] or ["mm"]
+    likely.sort(key=lambda unit: abs(math.log(found[unit] / STONE)))
+    asked = " or ".join(f"{unit}, {found[unit]:.2g} m" for unit in likely)
+    return (
+        f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in {asked}? A file takes unit={likely[0]!r}"
+    )
+
+
+def with_sizes(error: ValueError, drawn: Mapping[str, Array], turn: Array) -> ValueError:
+    """What is wrong with a file, and what is odd about the sizes of its bodies.
+
+    Args:
+        error: what is wrong.
+        drawn: vertices of the bodies by name, in the units and axes of the file, shape (n, 3).
+        turn: what takes these to m with z upwards, shape (3, 3).
+    """
+    turned = {name: np.abs(turn) @ np.ptp(places, axis=0) for name, places in drawn.items() if len(places)}
+    sizes = {name: float(np.linalg.norm(extents)) for name, extents in turned.items()}
+    odd = odd_sizes({name: size for name, size in sizes.items() if 0 < size < np.inf})
+    return ValueError(f"{error}; {odd}" if odd else str(error))
+
+
+def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: bool) -> str:
+    """What says that blocks of a file stand along another axis than z, in words, empty where nothing does.
+
+    Free blocks lie beside all fixed ones and not above them; or, where ground was put under the file, most of them lie
+    on it and are stacked sideways, as a wall that has been laid on its face.
+    """
+    free = [i for i, block in enumerate(blocks) if not block.fixed]
+    held = [i for i, block in enumerate(blocks) if block.fixed]
+    extent = np.ptp(np.concatenate([blocks[i].corners for i in free]), axis=0)
+    said = "z points upwards: does {0} in this file? up={0!r} turns it, and up='z' says that all is well"
+    if not ground:
+        centroids = np.array([block.centroid for block in blocks])
+        beyond = (centroids[free].mean(axis=0) - centroids[held].mean(axis=0)) / extent.max()
+        axis = 0 if beyond[0] > beyond[1] else 1
+        if beyond[axis] > LIES and beyond[2] < 0.1 * beyond[axis]:
+            return f"the free blocks lie along {'xy'[axis]} from the fixed ones and not above them; " + said.format(
+                "xy"[axis]
+            )
+        return ""
+    inner = [joint for joint in joints if joint.below not in held]
+    areas = sum((joint.area * np.abs(joint.normal) for joint in inner), np.zeros(3))
+    lying = len({joint.above for joint in joints if joint.below in held})
+    axis = 0 if areas[0] > areas[1] else 1
+    if len(inner) > 1 and lying >= ON_GROUND * len(free) and areas[axis] > ALONG * (areas.sum() - areas[axis]):
+        return f"{lying} of {len(free)} blocks lie on the ground, side by side along {'xy'[axis]}; " + said.format(
+            "xy"[axis]
+        )
+    return ""
+
+
+def remedy(deepest: float, joints_within: Finder, blocks: Sequence[AnyBlock]) -> str:
+    """The tolerance that takes blocks which overlap by at most so much [m], and the joints that it finds."""
+    tolerance = rounded_up(deepest)
+    if tolerance > WIDEST:
+        return f"no tolerance up to {WIDEST:g} m takes them"
+    joints = joints_within(tolerance)
+    touching = {i for joint in joints for i in (joint.below, joint.above)}
+    if loose := sum(i not in touching and not block.fixed for i, block in enumerate(blocks)):
+        return f"with tolerance = {tolerance:g} m, which takes them, {loose} blocks have no joint: mend the file"
+    return f"tolerance = {tolerance:g} m takes them: it finds {len(joints)} joints"
+
+
+def rounded_up(value: float) -> float:
+    """A positive value with two digits that is no less."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return float(f"{digit * math.ceil(value / digit):.2g}")
+
+
+def not_joined(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], tolerance: float) -> Integers:
+    """Pairs of blocks whose bounds touch within a tolerance [m] and that have no joint, shape (pairs, 2)."""
+    joined = {tuple(sorted((joint.below, joint.above))) for joint in joints}
+    pairs = neighbours(blocks, tolerance)
+    return pairs[[tuple(pair) not in joined for pair in pairs.tolist()]]
+
+
+def nearly(names: Sequence[str], wider: float) -> str:
+    """What is odd about joints of a file that only a wider tolerance finds [m], in words, empty where none are."""
+    if not names:
+        return ""
+    return (
+        f"{len(names)} pairs of blocks have no joint and lie less than {wider:g} m apart, such as {named(names)}; "
+        f"tolerance = {wider:g} m joins them"
+    )
+
+
+def along_lines(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], tolerance: float) -> list[Touch]:
+    """Pairs of blocks that touch without a joint: an edge or a corner of one lies within a face of the other.
+
+    The planes between them all have one normal then. Blocks that meet edge on edge, as bricks across a corner do, have
+    several, and press on each other in none.
+    """
+    touches = []
+    for i, j in not_joined(blocks, joints, tolerance).tolist():
+        for one, other in product(blocks[i].solids, blocks[j].solids):
+            if where := _touch(one, other, tolerance, blocks[i].in_space):
+                touches.append(Touch(i, j, where))
+                break
+    return touches
+
+
+def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
+    """Where two convex bodies touch without a common face, empty where they do not."""
+    across = np.cross(one.edges[:, None], other.edges[None]).reshape(-1, 3)
+    lengths = np.linalg.norm(across, axis=1)
+    ways = np.concatenate([one.normals, other.normals, across[lengths > BLUNT] / lengths[lengths > BLUNT, None]])
+    along, beside = one.corners @ ways.T, other.corners @ ways.T
+    apart = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
+    if abs(apart.max()) > tolerance:
+        return ""
+    between = ways[apart > -SHORTEST * tolerance]
+    if np.abs(between @ between[0]).min() < ALIKE:
+        return ""
+    way = int(apart.argmax())
+    sense = 1 if along[:, way].mean() > beside[:, way].mean() else -1
+    low, high = sense * along[:, way], sense * beside[:, way]
+    fewest = min((low < low.min() + tolerance).sum(), (high > high.max() - tolerance).sum())
+    return "at a corner" if in_space and fewest == 1 else "along a line"
+
+
+def said_of(touches: Sequence[Touch], names: Sequence[str]) -> str:
+    """Blocks that touch without a joint, in words."""
+    pairs = named([f"{names[touch.block]} and {names[touch.other]} touch {touch.where}" for touch in touches])
+    return f"{pairs}; a joint takes faces: cut the edge or the corner back to a small face"
 
 
 def gaps(
@@ -79,7 +232,11 @@ def gaps(
     apart[np.arange(len(loose)), loose] = np.inf
     one, other = divmod(int(apart.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
-    said = f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
+    touches = [touch for touch in along_lines(blocks, (), tolerance) if {touch.block, touch.other} & set(loose)]
+    said = f"{said_of(touches, names)}; " if touches else ""
+    if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
+        return said.removesuffix("; ")
+    said += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
     needed = needed_tolerance(loose, joints_within, tolerance)
     if needed is None:
         return f"{said}, and no tolerance up to {WIDEST:g} m joins all of them"
@@ -100,8 +257,7 @@ def needed_tolerance(loose: Sequence[int], joints_within: Finder, given: float) 
     while high > FINE * low:
         middle = math.sqrt(low * high)
         low, high = (low, middle) if joins(middle) else (middle, high)
-    digit = 10.0 ** (math.floor(math.log10(high)) - 1)
-    rounded = min(digit * math.ceil(high / digit), WIDEST)
+    rounded = min(rounded_up(high), WIDEST)
     return rounded if joins(rounded) else high
 
 

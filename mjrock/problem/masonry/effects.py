@@ -122,22 +122,28 @@ def require_pushing(name: str, actuator: Actuator, masonry: Masonry) -> None:
         )
 
 
-def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
-    """Raise a ValueError that names the field, unless an effect acts on its block and is anchored on another.
+def require_placed(name: str, effect: Effect, masonry: Masonry) -> None:
+    """Raise a ValueError that names the field, unless an effect that is placed by its point acts on its block and is
+    anchored on another, in the plane or in space.
 
     An added mass may lie outside its block.
     """
+    d, letters = (3, "(x, y, z)") if masonry.in_space else (2, "(x, z)")
     if effect.at is None:
         raise ValueError(
             f"{name}, height = {effect.height:g} m is for masonry in the plane; in space give at=(x, y, z)"
         )
+    for field in ("at", "anchor"):
+        given = getattr(effect, field, None)
+        if given is not None and len(given) != d:
+            raise ValueError(f"{name}, {field} = {given} m has {len(given)} numbers; this masonry takes {letters}")
     if effect.offset:
-        raise ValueError(f"{name}, offset = {effect.offset:g} m is for masonry in the plane; at has it")
-    block = masonry.polyhedra[effect.block]
+        raise ValueError(f"{name}, offset = {effect.offset:g} m goes with a height; at has it")
     if effect.on_block:
-        _require_on(f"{name}, at", effect.at, block)
+        _require_on(f"{name}, at", effect.at, masonry.blocks[effect.block])
     require_anchored(name, effect, masonry)
-    if isinstance(effect, Anchored) and np.linalg.norm(held_at(effect) - effect.anchor_of(held_at(effect))) < 1e-2:
+    held = held_at(effect)
+    if isinstance(effect, Anchored) and np.linalg.norm(held - effect.anchor_of(held)) < 1e-2:
         raise ValueError(f"{name}, anchor = {effect.anchor} m lies at the point that is held; the least is 0.01 m")
 
 
@@ -163,5 +169,5 @@ def _require_on(name: str, point: tuple[float, ...], block: AnyBlock) -> None:
 
 
 def held_at(effect: Effect) -> Array:
-    """The point where an effect acts, at rest [m], shape (3,), of an actuator in the plane (2,)."""
+    """The point where an effect acts, at rest [m], shape (2,) or (3,)."""
     return np.array(effect.at)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
@@ -29,7 +29,6 @@ from ...quantities import (
     require_flag,
     require_kind,
     require_path,
-    require_text,
     require_whole,
     shown,
 )
@@ -39,7 +38,7 @@ from ..wall.block import Block
 from ..wall.effects import SideStop
 from ..wall.section import Opening
 from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
-from .blocks.joints import Joint, joints_in_plane, names_of
+from .blocks.joints import Joint, OverlapError, joints_in_plane, names_of
 from .blocks.joints_in_space import SpaceJoint, joints_in_space
 from .blocks.polygon import Polygon
 from .blocks.polyhedron import Polyhedron
@@ -66,10 +65,26 @@ from .builders.in_space import (
     walls_of,
 )
 from .builders.vaults import Span, barrel_of, bridge_of, groin_of
-from .drawing import WIDEST, gaps, odd_damping, odd_frequency, odd_sizes, split_faces
+from .drawing import (
+    NEARLY,
+    WIDEST,
+    along_lines,
+    gaps,
+    nearly,
+    not_joined,
+    odd_axis,
+    odd_damping,
+    odd_frequency,
+    odd_sizes,
+    remedy,
+    said_of,
+    split_faces,
+    with_sizes,
+)
+from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
 from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
-from .files.meshes import Mesh, blocks_of, obj_text, read_obj, read_stl
+from .files.meshes import obj_text, read_obj, read_ply, read_stl
 from .laws.bond import Bond
 from .laws.dry import Dry, Properties
 from .laws.joint_table import (
@@ -154,8 +169,8 @@ class Masonry(Drawn):
 
     Warns:
         Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for an xi
-            above 1 without one, for blocks so large or small that they are probably not in m, and for faces that
-            rounded vertices have split.
+            above 1 without one, for blocks so large or small that they are probably not in m, for faces that rounded
+            vertices have split, and for blocks that touch along a line or at a corner alone, where no joint is.
 
     Examples:
         >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9, joints=mr.Dry(k_n=1e10, friction=0.7))
@@ -271,13 +286,16 @@ class Masonry(Drawn):
     @cached_property
     def joints(self) -> tuple[Joint | SpaceJoint, ...]:
         """The joints, in the order of the blocks: `Joint`, or `SpaceJoint` of blocks in space."""
-        return self._joints_within(self.tolerance)
+        try:
+            return self._joints_within(self.tolerance)
+        except OverlapError as error:
+            raise ValueError(f"{error}; {remedy(error.deepest, self._joints_within, self.blocks)}") from None
 
-    def _joints_within(self, tolerance: float) -> tuple[Joint | SpaceJoint, ...]:
-        """The joints of another tolerance [m]."""
+    def _joints_within(self, tolerance: float, pairs: Integers | None = None) -> tuple[Joint | SpaceJoint, ...]:
+        """The joints of another tolerance [m], of all blocks or of some pairs."""
         if self.in_space:
-            return joints_in_space(self.polyhedra, tolerance)
-        return joints_in_plane(self.polygons, tolerance)
+            return joints_in_space(self.polyhedra, tolerance, pairs)
+        return joints_in_plane(self.polygons, tolerance, pairs)
 
     @cached_property
     def table(self) -> JointTable:
@@ -345,6 +363,11 @@ class Masonry(Drawn):
         along = self.table.k_s[self.lines.joint] * self.areas_of(self.lines.k, self.lines.joint)
         return lowest_frequency(self.blocks, self.lines, self.table.friction, along)
 
+    @cached_property
+    def _odd_sizes(self) -> str:
+        """What is odd about the sizes of its free blocks, in words, empty where nothing is."""
+        return odd_sizes({self.names[i]: 2 * self.blocks[i].size for i in self.free})
+
     def _doubts(self) -> list[str]:
         """What is odd about it, in words, empty where nothing is. Its table is made, and so checked, for that."""
         xi, frequency = self.table.xi, self.table.frequency
@@ -353,8 +376,10 @@ class Masonry(Drawn):
             i = int(np.where(own, -1.0, xi / frequency).argmax())
             lowest = self._lowest_frequency if xi[i] else 0.0
             odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
-        sizes, faces = odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)
-        return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces) if doubt]
+        sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
+        touches = along_lines(self.blocks, self.joints, self.tolerance)
+        alone = f"without a joint {said_of(touches, self.names)}" if touches else ""
+        return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
 
     @classmethod
     def stack(
@@ -847,26 +872,41 @@ class Masonry(Drawn):
         *,
         ground: bool = False,
         density: Density = 2000.0,
-        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
+        scale: Scale = None,
+        unit: str | None = None,
+        up: str | None = None,
+        convex: str | None = None,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of a Wavefront OBJ file: its objects, or the groups of them.
 
-        Every body has to be closed and convex, and to touch another within the `tolerance`.
+        Every body has to be closed, and to touch another within the `tolerance`. A support may be an open plate: it
+        becomes a fixed block behind its face, a tenth of its extent thick.
 
         Args:
             path: of the file. Several bodies of one object are numbered.
             fixed: names of the bodies that are fixed.
             ground: whether fixed ground is put under the lowest point.
             density: mass density of blocks whose file says none [kg/m3], 100 to 30000.
-            scale: length of a unit of the file [m], 1e-6 to 1e3: 0.001 for millimetres. The z axis points upwards.
+            scale: length of a unit of the file [m], 1e-6 to 1e3: 0.001 for millimetres. None takes the `unit`.
+            unit: of the file, "m", "cm", "mm", "in" or "ft", in the place of `scale`. None is m.
+            up: axis of the file that points upwards, "x", "y" or "z": the file is turned until that is z. Blender and
+                glTF have "y". None is "z", and odd masonry is doubted.
+            convex: what becomes of a body that is not convex. "hull" takes its convex hull and warns of the volume that
+                is added. "parts" cuts it along the planes of its faces into a `Compound`, which fills the same volume.
+                None refuses it.
             options: further arguments of `Masonry`.
 
         Raises:
-            ValueError: if the file is not valid, or a body is not a convex block or touches no other; the message names
+            ValueError: if the file is not valid, or a body is open, not convex or touches no other; the message names
                 both. Or as `Masonry` does.
+
+        Warns:
+            UserWarning: of volume that hulls add.
+            Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
+                as little apart as twenty tolerances.
         """
-        return cls._read(read_obj, path, fixed, ground, density, scale, options)
+        return cls._read(read_obj, path, density, Given(fixed, ground, scale, unit, up, convex), options)
 
     @classmethod
     def from_stl(
@@ -876,19 +916,47 @@ class Masonry(Drawn):
         *,
         ground: bool = False,
         density: Density = 2000.0,
-        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
+        scale: Scale = None,
+        unit: str | None = None,
+        up: str | None = None,
+        convex: str | None = None,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Blocks of an STL file, binary or text: its solids, or the closed bodies that it lists one after the other.
 
         Args:
             path: of the file. Bodies without a name are `body_0` and so on.
-            fixed, ground, density, scale, options: as of `from_obj`.
+            fixed, ground, density, scale, unit, up, convex, options: as of `from_obj`.
 
         Raises:
             ValueError: as `from_obj` does.
         """
-        return cls._read(read_stl, path, fixed, ground, density, scale, options)
+        return cls._read(read_stl, path, density, Given(fixed, ground, scale, unit, up, convex), options)
+
+    @classmethod
+    def from_ply(
+        cls,
+        path: AnyPath,
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: Density = 2000.0,
+        scale: Scale = None,
+        unit: str | None = None,
+        up: str | None = None,
+        convex: str | None = None,
+        **options: Unpack[JointOptions],
+    ) -> Self:
+        """Blocks of a PLY file, binary or text: the closed bodies that it lists one after the other.
+
+        Args:
+            path: of the file. Bodies are `body_0` and so on, or `body` where there is one.
+            fixed, ground, density, scale, unit, up, convex, options: as of `from_obj`.
+
+        Raises:
+            ValueError: as `from_obj` does.
+        """
+        return cls._read(read_ply, path, density, Given(fixed, ground, scale, unit, up, convex), options)
 
     @classmethod
     def from_compas(
@@ -898,21 +966,50 @@ class Masonry(Drawn):
         *,
         ground: bool = False,
         density: Density = 2000.0,
-        scale: Annotated[float, Within(1e-6, 1e3, "m")] = 1.0,
+        scale: Scale = None,
+        unit: str | None = None,
+        up: str | None = None,
+        convex: str | None = None,
         **options: Unpack[JointOptions],
     ) -> Self:
-        """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, or an `Assembly` of
-        compas_assembly. Its supports are fixed.
+        """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, an `Assembly` of
+        compas_assembly, also of COMPAS 0 and 1, or a list of meshes. Its supports are fixed.
 
         Args:
             path: of the file.
             fixed: names of further bodies that are fixed.
-            ground, density, scale, options: as of `from_obj`. A density of the material of a block comes first.
+            ground, density, scale, unit, up, convex, options: as of `from_obj`. A density of the material of a block
+                comes first.
 
         Raises:
             ValueError: as `from_obj` does.
         """
-        return cls._read(read_compas, path, fixed, ground, density, scale, options)
+        return cls._read(read_compas, path, density, Given(fixed, ground, scale, unit, up, convex), options)
+
+    @classmethod
+    def from_meshes(
+        cls,
+        meshes: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]],
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: Density = 2000.0,
+        scale: Scale = None,
+        unit: str | None = None,
+        up: str | None = None,
+        convex: str | None = None,
+        **options: Unpack[JointOptions],
+    ) -> Self:
+        """Blocks of meshes that another library has read, such as those of IFC, glTF or Blender.
+
+        Args:
+            meshes: by the names of bodies, vertices, shape (n, 3), and faces, numbers of the vertices around each.
+            fixed, ground, density, scale, unit, up, convex, options: as of `from_obj`.
+
+        Raises:
+            TypeError, ValueError: for what is no mesh, or as `from_obj` does.
+        """
+        return cls._of_meshes(meshes_of(meshes), density, Given(fixed, ground, scale, unit, up, convex), options)
 
     @classmethod
     def from_dxf(
@@ -923,10 +1020,14 @@ class Masonry(Drawn):
         ground: bool = False,
         density: OfLayer = 2000.0,
         length: OfLayer = 1.0,
-        scale: Annotated[float | None, Within(1e-6, 1e3, "m")] = None,
+        scale: Scale = None,
+        unit: str | None = None,
+        up: str | None = None,
+        convex: str | None = None,
+        layers: Sequence[str] | None = None,
         **options: Unpack[JointOptions],
     ) -> Self:
-        """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install 'mjrock[dxf]'`.
+        """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install ezdxf`.
 
         x of the drawing is x, and y points upwards. A block has the name of its layer and a number, `stone_0`, by which
         functions of the joint know it. Inserted blocks of the drawing are taken too, and all else is left out.
@@ -937,7 +1038,10 @@ class Masonry(Drawn):
             ground: whether fixed ground is put under the lowest point.
             density: mass density [kg/m3], 100 to 30000; or one for each layer, {"stone": 2400.0, "brick": 1800.0}.
             length: out of the plane [m], 1e-3 to 1000, or one for each layer.
-            scale: length of a unit of the drawing [m], 1e-6 to 1e3; None takes what its header says, or m.
+            scale, unit: of the drawing, as of `from_obj`; None takes what its header says, or m.
+            up: axis of the drawing that points upwards; None is "y". With "z" an elevation is drawn in the plane x, z.
+            convex: what becomes of an outline that is not convex, as of `from_obj`.
+            layers: those that are read; None reads all.
             options: further arguments of `Masonry`.
 
         Raises:
@@ -947,19 +1051,24 @@ class Masonry(Drawn):
                 it. Or as `Masonry` does.
 
         Warns:
-            UserWarning: if the drawing is damaged and was repaired while it was read.
+            UserWarning: if the drawing is damaged and was repaired while it was read, or holds splines, hatches or
+                other areas, which are left out.
         """
-        fixed, path = _names(fixed), require_path("path", path)
-        ground = require_flag("ground", ground)
-        outlines, unit = read_dxf(path)
-        unit = unit if scale is None else scale
+        given = Given(fixed, ground, scale, unit, up, convex).checked()
+        drawing = read_dxf(require_path("path", path), None if layers is None else names_of_list("layers", layers))
         try:
-            blocks = polygons_of(outlines, fixed, density, length, unit)
-            if ground:
+            blocks = polygons_of(drawing, given, density, length)
+            if given.ground:
                 blocks.insert(0, ground_below_all(blocks))
-            return cls(blocks, **options)._touching()
+            masonry = cls(blocks, **options)._touching()
         except ValueError as error:
-            raise ValueError(f"path = {path}: {error}") from None
+            drawn = {outline.name: outline.corners for outline in drawing.outlines}
+            raise ValueError(f"path = {path}: {with_sizes(error, drawn, given.matrix(drawing.unit or 1.0))}") from None
+        if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
+            warnings.warn(
+                f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another", stacklevel=4
+            )
+        return masonry
 
     def to_obj(self, path: AnyPath) -> Path:
         """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
@@ -982,24 +1091,33 @@ class Masonry(Drawn):
         cls,
         read: Callable[[Path], list[Mesh]],
         path: AnyPath,
-        fixed: Sequence[str],
-        ground: bool,
         density: float,
-        scale: float,
+        given: Given,
         options: JointOptions,
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
-        fixed = _names(fixed)
-        ground, path = require_flag("ground", ground), require_path("path", path)
-        meshes = [mesh._replace(vertices=scale * mesh.vertices) for mesh in read(path)]
+        given, path = given.checked(), require_path("path", path)
+        meshes = read(path)
         try:
-            blocks = blocks_of(meshes, density, fixed)
-            if ground:
-                corners = np.concatenate([block.corners for block in blocks])
-                blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
-            return cls(blocks, **options)._touching()
+            return cls._of_meshes(meshes, density, given, options)
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None
+
+    @classmethod
+    def _of_meshes(cls, meshes: Sequence[Mesh], density: float, given: Given, options: JointOptions) -> Self:
+        """Masonry of meshes."""
+        given = given.checked()
+        try:
+            blocks = blocks_of(meshes, density, given)
+            if given.ground:
+                corners = np.concatenate([block.corners for block in blocks])
+                blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
+            masonry = cls(blocks, **options)._touching()
+        except ValueError as error:
+            raise with_sizes(error, {mesh.name: mesh.vertices for mesh in meshes}, given.matrix()) from None
+        if given.up is None and (odd := odd_axis(masonry.blocks, masonry.space_joints, given.ground)):
+            warnings.warn(odd, Implausible, stacklevel=5)
+        return masonry
 
     def convex_in_space(self, what: str) -> list[Polyhedron]:
         """The blocks. A ValueError says what takes convex blocks in space alone, if they are in the plane or not
@@ -1011,7 +1129,10 @@ class Masonry(Drawn):
         return [block for block in self.blocks if isinstance(block, Polyhedron)]
 
     def _touching(self) -> Self:
-        """Itself. A ValueError names the blocks that are not fixed and have no joint, and the nearest gap."""
+        """Itself. A ValueError names the blocks that are not fixed and have no joint, and the nearest gap.
+
+        It warns of faces that lie a little farther apart than the tolerance.
+        """
         touching = {i for joint in self.joints for i in (joint.below, joint.above)}
         loose = [i for i in self.free if i not in touching]
         if loose:
@@ -1019,6 +1140,10 @@ class Masonry(Drawn):
                 f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
                 f"{self.tolerance:g} m; {gaps(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
             )
+        wider = min(NEARLY * self.tolerance, WIDEST)
+        apart = not_joined(self.blocks, self.joints, wider)
+        if odd := nearly([joint.name for joint in self._joints_within(wider, apart)], wider):
+            warnings.warn(odd, Implausible, stacklevel=6)
         return self
 
 
@@ -1059,12 +1184,3 @@ def _halved(halves: Bond | None, options: JointOptions) -> Properties:
     require_kind("halves", halves, Bond, type(None))
     given = one_by_one(options)
     return given if halves is None else given | {"bond": Halved(given["bond"], halves)}
-
-
-def _names(fixed: Sequence[str]) -> Sequence[str]:
-    """Names of what is fixed, checked."""
-    if not isinstance(fixed, list | tuple):
-        raise TypeError(f"fixed = {shown(fixed)} is not a list of names")
-    for name in fixed:
-        require_text("fixed", name)
-    return fixed

@@ -25,7 +25,7 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from .block import Block
-from .effect import Anchored, Effect, require_in_plane
+from .effect import Anchored, Effect, require_only
 from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, forces_of
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
@@ -61,6 +61,7 @@ class Case(Carrying):
     supports: ClassVar[tuple[()]] = ()
     actuators: ClassVar[dict[str, Never]] = {}
     settled: ClassVar[bool] = True
+    tilt: ClassVar[None] = None
     joints: ClassVar[tuple[()]] = ()
     bonds: ClassVar[tuple[()]] = ()
     in_space: ClassVar[bool] = False
@@ -107,7 +108,7 @@ class Case(Carrying):
                 raise ValueError(
                     f"effects[{i}], block = {effect.block}, is outside the valid range: a wall has block 0"
                 )
-            require_in_plane(f"effects[{i}]", effect)
+            require_only(f"effects[{i}]", effect)
             require_within(f"effects[{i}], height of the {type(effect).__name__}", effect.height, 0.0, top, "m")
             if isinstance(effect, Load):
                 require_within(f"effects[{i}], offset of the Load", effect.offset, -b, b, "m")
@@ -145,6 +146,11 @@ class Case(Carrying):
     def centroids(self) -> Array:
         """Centroid of the wall with its added masses at rest, x and z [m], shape (1, 2)."""
         return np.array([[self.wall.centroid_offset, self.wall.centroid_height]])
+
+    @property
+    def masses(self) -> Array:
+        """Mass of the wall with its added masses [kg], shape (1,)."""
+        return np.array([self.wall.mass])
 
     @property
     def rests(self) -> Array:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, Literal
 
 from ...quantities import Within, keep_declared
-from .effect import IN_SPACE, Anchored, LinkLaw, Point, keep_place
+from .effect import OF_MASONRY, Anchored, LinkLaw, Place, keep_place
 
 
 @dataclass(frozen=True, repr=False)
@@ -20,8 +20,8 @@ class Damper(Anchored):
         c: damping coefficient [N s/m], 0 to 1e9.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
         block: the block that it holds.
-        at: in space, the point that it holds, x, y, z at rest [m]; it takes the place of the height.
-        anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
+        at: of masonry, the point that it holds, x, z or x, y, z at rest [m]; it takes the place of the height.
+        anchor: of masonry, its other end at rest [m]. None is `length` behind the point.
         anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
             plane the end lies `length` to the left.
 
@@ -42,9 +42,9 @@ class Damper(Anchored):
     c: Annotated[float, Within(0, 1e9, "N s/m", "coefficient c of the damper")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
-    anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:
         keep_place(self, "damper")
@@ -57,7 +57,7 @@ class Damper(Anchored):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, c = {self.c / 1e3:g} kN s/m"
 
 
@@ -75,8 +75,8 @@ class FrictionDamper(Anchored):
         slip_force: force at which it slips [N], 1e-3 to 1e9.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
         block: the block that it holds.
-        at: in space, the point that it holds, x, y, z at rest [m]; it takes the place of the height.
-        anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
+        at: of masonry, the point that it holds, x, z or x, y, z at rest [m]; it takes the place of the height.
+        anchor: of masonry, its other end at rest [m]. None is `length` behind the point.
         anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
             plane the end lies `length` to the left.
 
@@ -94,9 +94,9 @@ class FrictionDamper(Anchored):
     slip_force: Annotated[float, Within(1e-3, 1e9, "N")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
-    anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:
         keep_place(self, "friction damper")
@@ -109,6 +109,6 @@ class FrictionDamper(Anchored):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         said = f"z = {self.height:g} m,\nk = {self.stiffness / 1e6:.4g} kN/mm"
         return f"{said}, slips at {self.slip_force / 1e3:g} kN"

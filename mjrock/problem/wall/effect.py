@@ -16,37 +16,43 @@ import numpy as np
 from ...quantities import Array, keep, require_array, require_whole, require_within, short_repr
 
 Point = tuple[float, float, float]
+Place = tuple[float, ...]
+"""A point x, z of the plane or x, y, z of space [m]."""
 HIGHEST = 200.0
 """Largest height of a wall, and so of an effect [m]."""
 BLOCKS = 100_000
 """Largest number of a block."""
 FARTHEST = 1e4
 """Largest coordinate of a point [m]."""
-IN_SPACE = {"in space": True}
-"""Metadata of a field of an effect that only masonry in space takes."""
+OF_MASONRY, IN_SPACE = {"of": "masonry"}, {"of": "masonry in space"}
+"""Metadata of a field of an effect that only masonry takes, and of one that only masonry in space takes."""
 
 
-def point_or_none(name: str, value: Any) -> Point | None:
-    """A point in space as a tuple, or None.
+def place_or_none(name: str, value: Any, least: int = 2) -> Place | None:
+    """A point as a tuple, or None.
 
     Raises:
-        TypeError, ValueError: with the name, unless it is three numbers within -10000 to 10000 m.
+        TypeError, ValueError: with the name, unless it is two or three numbers, at least `least`, within -10000 to
+            10000 m.
     """
     if value is None:
         return None
-    x, y, z = (require_within(name, each, -FARTHEST, FARTHEST, "m") for each in require_array(name, value, (3,)))
-    return x, y, z
+    shape = np.shape(value)
+    count = 2 if shape == (2,) and least == 2 else 3
+    return tuple(require_within(name, each, -FARTHEST, FARTHEST, "m") for each in require_array(name, value, (count,)))
 
 
 def keep_place(effect: Any, kind: str) -> None:
-    """Check and keep where an effect is: its block, its height or point in space, and the anchor of a tie or damper.
+    """Check and keep where an effect is: its block, its height or point, and the anchor of a tie or damper.
 
     Raises:
         TypeError, ValueError: with the name and the kind of effect, for what is not a number or point, or out of range.
     """
     for name in ("at", "anchor"):
         if hasattr(effect, name):
-            keep(effect, **{name: point_or_none(f"{name} of the {kind}", getattr(effect, name))})
+            keep(effect, **{name: place_or_none(f"{name} of the {kind}", getattr(effect, name))})
+    if effect.at is None and getattr(effect, "anchor", None) is not None:
+        raise ValueError(f"anchor of the {kind} = {effect.anchor} m goes with at, the point that is held; give it too")
     if getattr(effect, "anchor_block", None) is not None:
         keep(effect, anchor_block=_block(f"anchor_block of the {kind}", effect.anchor_block))
     keep(
@@ -61,21 +67,21 @@ def _block(name: str, given: Any) -> Any:
     return given if isinstance(given, str) else require_whole(name, given, 0, BLOCKS)
 
 
-def _height(kind: str, height: float | None, at: Point | None) -> float:
-    """The height of an effect, that of its point in space where it has one [m]."""
+def _height(kind: str, height: float | None, at: Place | None) -> float:
+    """The height of an effect, that of its point where it has one [m]."""
     if at is None:
         return require_within(f"height of the {kind}", height, 0.0, HIGHEST, "m")
-    if height is not None and require_within(f"height of the {kind}", height, -FARTHEST, FARTHEST, "m") != at[2]:
+    if height is not None and require_within(f"height of the {kind}", height, -FARTHEST, FARTHEST, "m") != at[-1]:
         raise ValueError(f"height of the {kind} = {height} m is given with at = {at} m; leave it out")
-    return at[2]
+    return at[-1]
 
 
-def require_in_plane(name: str, effect: Any, but: str = "") -> None:
-    """Raise a ValueError that names the field, if an effect has one that only masonry in space takes, `but` for one."""
+def require_only(name: str, effect: Any, *kinds: str) -> None:
+    """Raise a ValueError that names the field, if an effect has one that is for none of these kinds of problem."""
     for entry in fields(effect):
-        if entry.metadata.get("in space") and entry.name != but and getattr(effect, entry.name) is not None:
-            given = getattr(effect, entry.name)
-            raise ValueError(f"{name}, {entry.name} = {given} is for masonry in space; in the plane give height")
+        given, of = getattr(effect, entry.name), entry.metadata.get("of")
+        if given is not None and of is not None and of not in kinds:
+            raise ValueError(f"{name}, {entry.name} = {given} is for {of}; leave it out, and give height")
 
 
 class LinkLaw(NamedTuple):
@@ -142,7 +148,7 @@ class Effect:
     on_block: ClassVar[bool] = True
     height: float
     block: int
-    at: Point | None
+    at: Place | None
     offset: float = 0.0
 
     __repr__ = short_repr
@@ -170,7 +176,7 @@ class Anchored(Effect):
         colour, dashes: how its line is drawn, in the ways of matplotlib.
         limit: name of its argument that is the force at which it yields.
         length: distance from the inner face to the anchor [m].
-        anchor: in space, the anchor at rest [m]; None is `length` behind the point.
+        anchor: of masonry, the anchor at rest [m]; None is `length` behind the point.
         anchor_block: of masonry, the block that it moves with; None is the ground.
     """
 
@@ -179,7 +185,7 @@ class Anchored(Effect):
     dashes: ClassVar[Literal["-", "--", "-."]] = "-"
     limit: ClassVar[str] = "strength"
     length: float
-    anchor: Point | None
+    anchor: Place | None
     anchor_block: int | None
 
     @property

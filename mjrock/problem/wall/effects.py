@@ -16,7 +16,7 @@ from ...notebook import Drawn
 from ...quantities import Within, keep, keep_declared, short_repr, shown
 from ..ground.motion import GroundMotion
 from .damper import Damper, FrictionDamper
-from .effect import HIGHEST, IN_SPACE, Anchored, Effect, Point, keep_place, point_or_none
+from .effect import HIGHEST, IN_SPACE, OF_MASONRY, Anchored, Effect, Place, Point, keep_place, place_or_none
 from .tie import Tie
 
 
@@ -28,7 +28,7 @@ class Thrust(Effect):
         height: where it acts, on the middle of the wall [m].
         force: its size on the whole length of the wall, positive outwards [N], -1e9 to 1e9.
         block: the block that it pushes.
-        at: in space, the point where it acts, x, y, z at rest [m]; it takes the place of the height.
+        at: of masonry, the point where it acts, x, z or x, y, z at rest [m]; it takes the place of the height.
         direction: in space, the direction of the force, a vector of any length; None is x, out of the facade.
 
     Raises:
@@ -45,11 +45,11 @@ class Thrust(Effect):
     height: float = None  # type: ignore[assignment]
     force: Annotated[float, Within(-1e9, 1e9, "N")] = None  # type: ignore[assignment]
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     direction: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
-        if (given := point_or_none("direction of the thrust", self.direction)) is not None:
+        if (given := place_or_none("direction of the thrust", self.direction, least=3)) is not None:
             length = math.hypot(*given)
             if not length > 1e-9:
                 name = f"direction of the thrust = {given}"
@@ -68,7 +68,7 @@ class Thrust(Effect):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, {self.force / 1e3:g} kN outwards"
 
 
@@ -81,7 +81,7 @@ class Load(Effect):
         height: where it acts [m].
         offset: from the middle of the base, outwards [m], -10 to 10.
         block: the block that it rests on.
-        at: in space, the point where it acts, x, y, z at rest [m]; it takes the place of height and offset.
+        at: of masonry, the point where it acts, x, z or x, y, z at rest [m]; it takes the place of height and offset.
 
     Raises:
         ValueError: for a value outside its range.
@@ -98,7 +98,7 @@ class Load(Effect):
     height: float = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-10, 10, "m")] = 0.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:
         keep_place(self, "load")
@@ -111,7 +111,7 @@ class Load(Effect):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, x = {self.offset:g} m,\n{self.force / 1e3:g} kN downwards"
 
 
@@ -124,7 +124,7 @@ class AddedMass(Effect):
         height: where it is [m].
         offset: from the middle of the base, outwards [m], -13 to 13.
         block: the block that it moves with.
-        at: in space, where it is, x, y, z at rest [m]; it takes the place of height and offset.
+        at: of masonry, where it is, x, z or x, y, z at rest [m]; it takes the place of height and offset.
 
     Raises:
         ValueError: for a value outside its range.
@@ -137,7 +137,7 @@ class AddedMass(Effect):
     height: float = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-13, 13, "m")] = 0.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:
         keep_place(self, "added mass")
@@ -150,7 +150,7 @@ class AddedMass(Effect):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, x = {self.offset:g} m, {self.mass:g} kg"
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
 from ...quantities import Within, keep, keep_declared, require_array, require_real, require_within, within_ranges
-from .effect import HIGHEST, IN_SPACE, Anchored, LinkLaw, Point, keep_place
+from .effect import HIGHEST, OF_MASONRY, Anchored, LinkLaw, Place, keep_place
 
 GOVERNING = ("bar", "punching", "bearing")
 """What the strength of a tie with an anchor plate may be that of."""
@@ -24,7 +24,8 @@ class Tie(Anchored):
     """A tie that holds the inner face of the wall back: it pulls, never pushes, yields plastically, and may break.
 
     The tie runs horizontally from the inner face to an anchor behind the wall, unless `anchor_height` says otherwise.
-    Its force is min(strength, stiffness times elongation), the elongation beyond the slack and beyond what has yielded.
+    Its force is min(strength, prestress plus stiffness times elongation), the elongation beyond the slack and beyond
+    what has yielded.
     A tie that has yielded by `ultimate` breaks: it pulls no more, and its elastic energy is lost.
 
     Args:
@@ -37,15 +38,18 @@ class Tie(Anchored):
         block: the block that it holds.
         ultimate: plastic elongation at which it breaks [m], 0 to 10, such as the slip at which an anchor plate is
             pulled through; 0 for one that breaks as it begins to yield. None never breaks.
-        at: in space, the point that it holds, x, y, z at rest [m]; it takes the place of the height.
-        anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
+        at: of masonry, the point that it holds, x, z or x, y, z at rest [m]; it takes the place of the height.
+        anchor: of masonry, its other end at rest [m]. None is `length` behind the point.
         anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
             plane the end lies `length` to the left.
+        prestress: its force at rest [N], 0 to 1e9 and below the strength; without slack. It pulls with so much before
+            anything moves.
         governed_by: what its strength is that of, "bar", "punching" or "bearing", for sketch and report; `of_bar` sets
             it. None does not say.
 
     Raises:
-        ValueError: for a value outside its range, or an `ultimate` without a finite strength.
+        ValueError: for a value outside its range, an `ultimate` without a finite strength, or a prestress that the
+            tie cannot have.
 
     Examples:
         >>> tie = mr.Tie(height=3.8, stiffness=20e6, strength=40e3)
@@ -63,10 +67,11 @@ class Tie(Anchored):
     anchor_height: Annotated[float | None, Within(-HIGHEST, HIGHEST, "m", "height of the anchor")] = None
     block: int = 0
     ultimate: Annotated[float | None, Within(0, 10, "m")] = None
-    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
-    anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     governed_by: str | None = field(default=None, kw_only=True)
+    prestress: Annotated[float, Within(0, 1e9, "N")] = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         keep_place(self, "tie")
@@ -78,6 +83,9 @@ class Tie(Anchored):
             )
         if self.governed_by is not None and not (isinstance(self.governed_by, str) and self.governed_by in GOVERNING):
             raise ValueError(f"governed_by of the tie = {self.governed_by!r} is none of {', '.join(GOVERNING)}")
+        if self.prestress and (self.slack or self.prestress >= self.strength):
+            beside = f"slack = {self.slack:g} m" if self.slack else f"strength = {self.strength:g} N"
+            raise ValueError(f"prestress of the tie = {self.prestress:g} N does not go with its {beside}")
         if self.ultimate is not None and self.strength == math.inf:
             raise ValueError(
                 f"ultimate of the tie = {self.ultimate:g} m, and its strength is infinite: it does not yield and "
@@ -143,7 +151,7 @@ class Tie(Anchored):
     @property
     def reach(self) -> float:
         """Length up to which the tie is slack [m]."""
-        return self.span + self.slack
+        return self.span + self.slack - self.prestress / self.stiffness
 
     @property
     def stretch(self) -> float:
@@ -162,9 +170,11 @@ class Tie(Anchored):
 
     @property
     def said(self) -> str:
-        """For sketch and report."""
+        """For sketches, and for reports that have no words for it."""
         said = f"z = {self.height:g} m, {self.length:g} m long,\n"
         said += f"k = {self.stiffness / 1e6:.4g} kN/mm, slack {1e3 * self.slack:g} mm"
+        if self.prestress:
+            said += f", prestress {self.prestress / 1e3:.4g} kN"
         if self.strength < math.inf:
             said += f",\nyields at {self.strength / 1e3:.4g} kN"
         if self.governed_by is not None:

@@ -12,7 +12,6 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from ...notebook import html_of
-from ...problem.ground.motion import GroundMotion
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
 from ...problem.masonry.effects import laden
 from ...problem.wall.block import Block
@@ -34,12 +33,14 @@ class RunMaximum(NamedTuple):
     Args:
         name: of its horizontal motion.
         record: number of its record, the same in both polarities.
+        turned: whether its motion is that of the first run of its record, reversed.
         solver: which solver ran it.
         d: largest displacement of the centroid [m], infinite for a wall that has overturned.
     """
 
     name: str
     record: int
+    turned: bool
     solver: str
     d: float
 
@@ -54,14 +55,38 @@ class DynamicCheck:
         runs: the largest displacement of each run.
         restitution: |e| of all impacts of the responses [-], shape (n,); none is known of masonry and of rows of a
             campaign.
-        lacking: what C8.7.1.2.1.9 asks for and the runs do not have, in words.
+        natural: whether the records were recorded; None is not known.
     """
 
     limit_state: str
     d_0: float
     runs: tuple[RunMaximum, ...]
     restitution: tuple[float, ...]
-    lacking: tuple[str, ...]
+    natural: bool | None
+
+    @property
+    def records(self) -> int:
+        """How many records the runs have."""
+        return max(run.record for run in self.runs) + 1
+
+    @property
+    def in_one_polarity(self) -> int:
+        """How many of the records were run in one polarity alone."""
+        return 2 * self.records - len({(run.record, run.turned) for run in self.runs})
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """What C8.7.1.2.1.9 asks for and the runs do not have, in words."""
+        count, lacking = self.records, list[str]()
+        if count < LEAST:
+            more = f"and more than the {LEAST - 1} of the global response (NTC 2018, 7.3.5) count"
+            lacking.append(f"{count} records, {more}")
+        if self.in_one_polarity:
+            lacking.append(f"{self.in_one_polarity} of {count} records in one polarity alone")
+        if not self.natural:
+            made = "are artificial" if self.natural is False else "are not said to be"
+            lacking.append(f"natural records, and these {made}")
+        return tuple(lacking)
 
     @property
     def worse(self) -> tuple[float, ...]:
@@ -177,28 +202,27 @@ def dynamic_check(
     if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):
         raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
     cases = _cases_of(given, curve)
-    motions, numbers = [case.motion for case in cases if case.motion is not None], _records(cases)
+    motions = [case.motion for case in cases if case.motion is not None]
     responses = [run for run in given if isinstance(run, Response)]
     if responses and store is not None:
         raise ValueError("store is for the tasks of a campaign, and runs are responses; leave it out")
     if curve is None:
-        d_0, maxima = _of_wall(cast(Case, cases[0]), _shares(given, store))
+        d_0, maxima = displacements_of(cast(Case, cases[0]), _shares(given, store))
     else:
         d_0, maxima = curve.d_0, [_along(run, cast(MasonryCase, run.case), curve.way) for run in responses]
     found = tuple(
-        RunMaximum(motion.name, number, run.solver, d)
-        for motion, number, run, d in zip(motions, numbers, given, maxima, strict=True)
+        RunMaximum(motion.name, *signal, run.solver, d)
+        for motion, signal, run, d in zip(motions, signals_of(cases), given, maxima, strict=True)
     )
     impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
-    lacking = _lacking(motions, numbers, natural)
     known = tuple(e for e in impacts if not math.isnan(e))
-    check = DynamicCheck(limit_state, d_0, found, known, lacking)
-    if lacking:
-        warnings.warn(f"C8.7.1.2.1.9 asks for more: {'; '.join(lacking)}", Implausible, stacklevel=2)
+    check = DynamicCheck(limit_state, d_0, found, known, natural)
+    if check.lacking:
+        warnings.warn(f"C8.7.1.2.1.9 asks for more: {'; '.join(check.lacking)}", Implausible, stacklevel=2)
     return check
 
 
-def _of_wall(case: Case, shares: Sequence[float]) -> tuple[float, list[float]]:
+def displacements_of(case: Case, shares: Sequence[float]) -> tuple[float, list[float]]:
     """d_0 of a wall and the largest displacements of its centroid [m], from its largest rotations over alpha [-]."""
     outer, inner = case.restoring
     alone = max(outer.alpha if case.side_stop else min(outer.alpha, inner.alpha), 0.0)
@@ -213,8 +237,8 @@ def _moved(wall: Block, rotation: float) -> float:
 def _along(run: Response, case: MasonryCase, way: Array) -> float:
     """Largest displacement of the centroid of the free blocks along a direction [m], infinite where a block fell."""
     mass = laden(case.masonry, case.effects)[0][list(case.masonry.free)]
-    moved = (run.pose[:, :, : len(way)] @ way) @ mass / mass.sum()
-    return math.inf if run.fallen else max(float(moved.max()), 0.0)
+    along = (run.pose[:, :, : len(way)] @ way) @ mass / mass.sum()
+    return math.inf if run.fallen else max(float(along.max()), 0.0)
 
 
 def _cases_of(runs: Sequence[Response | Analysis], curve: Push | None) -> list[AnyCase]:
@@ -269,26 +293,13 @@ def _same(one: AnyCase, other: AnyCase) -> bool:
     )
 
 
-def _records(cases: Sequence[AnyCase]) -> list[int]:
-    """The number of the record of each case."""
+def signals_of(cases: Sequence[AnyCase]) -> list[tuple[int, bool]]:
+    """The number of the record of each case, and whether its motion is that of the first such case, reversed."""
     firsts: list[AnyCase] = []
-    numbers = []
+    signals = []
     for case in cases:
         number = next((i for i, first in enumerate(firsts) if _same(first, case)), len(firsts))
         if number == len(firsts):
             firsts.append(case)
-        numbers.append(number)
-    return numbers
-
-
-def _lacking(motions: Sequence[GroundMotion], numbers: Sequence[int], natural: bool | None) -> tuple[str, ...]:
-    """What the clause asks for and the runs do not have."""
-    count, lacking = max(numbers) + 1, list[str]()
-    if count < LEAST:
-        lacking.append(f"{count} records, and more than the {LEAST - 1} of the global response (NTC 2018, 7.3.5) count")
-    ways = [{motion for i, motion in zip(numbers, motions, strict=True) if i == n} for n in range(count)]
-    if single := sum(len(way) < 2 for way in ways):
-        lacking.append(f"{single} of {count} records in one polarity alone")
-    if not natural:
-        lacking.append("natural records, and these " + ("are artificial" if natural is False else "are not said to be"))
-    return tuple(lacking)
+        signals.append((number, case.motion != firsts[number].motion))
+    return signals

@@ -45,6 +45,47 @@ Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
 
 
+class Step(NamedTuple):
+    """One step of a check.
+
+    Args:
+        key: which it is, see `SAID`.
+        value: in the unit.
+        clause: where it stands in the Circolare; none of a ratio.
+        unit: of the value.
+        of: the tie or the limit state that it is of.
+    """
+
+    key: str
+    value: float
+    clause: str = ""
+    unit: str = ""
+    of: str = ""
+
+
+SAID = {
+    "alpha_0": ("multiplier alpha_0", 4),
+    "participation": ("participating mass e*", 4),
+    "confidence_factor": ("confidence factor FC", 2),
+    "a_0": ("a_0 = alpha_0 g / (e* FC), SLD", 4),
+    "linear": ("linear SLV, q a_0 with q = 2", 4),
+    "alpha_tied": ("alpha_0, ties at their strength", 4),
+    "linear_tied": ("linear SLV, ties at their strength", 4),
+    "peak": ("peak of the demand, a_g S or a_Z", 4),
+    "linear_ratio": ("capacity over demand SLV, linear", 2),
+    "elastic_period": ("elastic branch up to the curve, T_0", 3),
+    "d_0": ("d_0", 4),
+    "yields": ("{of} yields at d", 4),
+    "breaks": ("{of} breaks at d", 4),
+    "capacity": ("d_{of} = {share:.1f} d_0", 4),
+    "period": ("T_{of}", 3),
+    "demand": ("demand, xi = {damping:.0%}", 4),
+    "ratio": ("capacity over demand {of}", 2),
+    "ground_ratio": ("a_g,SLV / a_g, at least a_g,SLD / a_g", 2),
+}
+"""What a table says of each step, and its decimals."""
+
+
 class Verdict(NamedTuple):
     """One condition of a check.
 
@@ -205,48 +246,63 @@ class MechanismCheck:
         """Spectral acceleration of a multiplier [m/s2], equation C8.7.1.8."""
         return multiplier * GRAVITY / (self.participation * self.confidence_factor)
 
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """Every step with its clause, in the order of the check."""
+        found = [
+            Step("alpha_0", self.alpha_0, "C8.7.1.1"),
+            Step("participation", self.participation, "C8.7.1.5"),
+            Step("confidence_factor", self.confidence_factor, "C8.7.1.2.1.3"),
+            Step("a_0", self.a_0 / GRAVITY, "C8.7.1.8", "g"),
+            Step("linear", self.linear / GRAVITY, "C8.7.1.2.1.7", "g"),
+        ]
+        if self.alpha_tied is not None and self.linear_tied is not None:
+            found.append(Step("alpha_tied", self.alpha_tied, "C8.7.1.1"))
+            found.append(Step("linear_tied", self.linear_tied / GRAVITY, "C8.7.1.2.1.7", "g"))
+        if self.peak is not None and self.linear_ratio is not None:
+            found.append(Step("peak", self.peak / GRAVITY, "C8.7.1.2.1.7", "g"))
+            found.append(Step("linear_ratio", self.linear_ratio))
+        if self.elastic_period is not None:
+            found.append(Step("elastic_period", self.elastic_period, "C8.7.1.6", "s"))
+        found.append(Step("d_0", self.d_0, "C8.7.1.4", "m"))
+        found += [Step("yields", d, "", "m", tie) for tie, d in self.yielding.items()]
+        found += [Step("breaks", d, "", "m", tie) for tie, d in self.breaking.items()]
+        for name, state in self.states.items():
+            found += [
+                Step("capacity", state.capacity, "C8.7.1.2.1.6", "m", name),
+                Step("period", state.period, "C8.7.1.10" if name == "SLV" else "C8.7.1.11", "s", name),
+                Step("demand", state.demand, "C8.7.1.2.1.8", "m", name),
+                Step("ratio", state.ratio, "", "", name),
+            ]
+        if self.ground_ratio > self.states["SLV"].ratio:
+            found.append(Step("ground_ratio", self.ground_ratio, "C8.7.1.2.1.8"))
+        return tuple(found)
+
+    def broken_before(self, limit_state: str) -> list[str]:
+        """Names of the ties that have broken at the capacity of a limit state."""
+        return [tie for tie, d in self.breaking.items() if d <= self.states[limit_state].capacity]
+
     def table(self) -> str:
         """The steps with their clauses, as text. Capacity over demand is followed by HOLDS or FAILS."""
-        return "\n".join(line.rstrip() for line in aligned(self._steps(), "<><"))
+        return "\n".join(line.rstrip() for line in aligned(self._rows(), "<><"))
 
     def _repr_html_(self) -> str:
-        return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), self._steps())
+        return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), self._rows())
 
-    def _steps(self) -> list[tuple[str, str, str]]:
+    def _rows(self) -> list[tuple[str, str, str]]:
         """The steps: what it is, its value, and its clause or its verdict."""
         *linear, slv, slc = self.verdicts
         floored = self.ground_ratio > self.states["SLV"].ratio
-        said = {"SLV": "see a_g,SLV" if floored else slv.said, "SLC": slc.said}
-        rows = [
-            ("multiplier alpha_0", f"{self.alpha_0:.4f}", "C8.7.1.1"),
-            ("participating mass e*", f"{self.participation:.4f}", "C8.7.1.5"),
-            ("confidence factor FC", f"{self.confidence_factor:.2f}", "C8.7.1.2.1.3"),
-            ("a_0 = alpha_0 g / (e* FC) [g], SLD", f"{self.a_0 / GRAVITY:.4f}", "C8.7.1.8"),
-            ("linear SLV, q a_0 with q = 2 [g]", f"{self.linear / GRAVITY:.4f}", "C8.7.1.2.1.7"),
-        ]
-        if self.alpha_tied is not None and self.linear_tied is not None:
-            rows.append(("alpha_0, ties at their strength", f"{self.alpha_tied:.4f}", "C8.7.1.1"))
-            rows.append(("linear SLV, ties at their strength [g]", f"{self.linear_tied / GRAVITY:.4f}", "C8.7.1.2.1.7"))
-        if self.peak is not None:
-            rows.append(("peak of the demand, a_g S or a_Z [g]", f"{self.peak / GRAVITY:.4f}", "C8.7.1.2.1.7"))
-            rows.append(("capacity over demand SLV, linear", f"{self.linear_ratio:.2f}", linear[0].said))
-        if self.elastic_period is not None:
-            rows.append(("elastic branch up to the curve, T_0 [s]", f"{self.elastic_period:.3f}", "C8.7.1.6"))
-        rows.append(("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"))
-        rows += [(f"{tie} yields at d [m]", f"{d:.4f}", "") for tie, d in self.yielding.items()]
-        rows += [(f"{tie} breaks at d [m]", f"{d:.4f}", "") for tie, d in self.breaking.items()]
-        for name, state in self.states.items():
-            gone = [tie for tie, d in self.breaking.items() if d <= state.capacity]
-            broken = f", without {', '.join(gone)}, broken" if gone else ""
-            rows += [
-                (f"d_{name} = {SHARE[name]:.1f} d_0 [m]", f"{state.capacity:.4f}", "C8.7.1.2.1.6"),
-                (f"T_{name} [s]", f"{state.period:.3f}", "C8.7.1.10" if name == "SLV" else "C8.7.1.11"),
-                (f"demand, xi = {DAMPING[name]:.0%} [m]", f"{state.demand:.4f}", "C8.7.1.2.1.8"),
-                (f"capacity over demand {name}", f"{state.ratio:.2f}", said[name] + broken),
-            ]
-        if floored:
-            least = f"{slv.said}, C8.7.1.2.1.8"
-            rows.append(("a_g,SLV / a_g, at least a_g,SLD / a_g", f"{self.ground_ratio:.2f}", least))
+        said = {"ratio SLV": "see a_g,SLV" if floored else slv.said, "ratio SLC": slc.said}
+        said |= {"linear_ratio": linear[0].said if linear else "", "ground_ratio": f"{slv.said}, C8.7.1.2.1.8"}
+        rows = []
+        for step in self.steps:
+            what, digits = SAID[step.key]
+            what = what.format(of=step.of, share=SHARE.get(step.of, 0.0), damping=DAMPING.get(step.of, 0.0))
+            note = said.get(f"{step.key} {step.of}".strip(), step.clause)
+            if step.key == "ratio" and (gone := self.broken_before(step.of)):
+                note += f", without {', '.join(gone)}, broken"
+            rows.append((what + (f" [{step.unit}]" if step.unit else ""), f"{step.value:.{digits}f}", note))
         return rows
 
     def __repr__(self) -> str:

@@ -177,24 +177,27 @@ class Meetings(NamedTuple):
     travel: Array
 
 
-def joints_in_plane(blocks: Sequence[Flat], tolerance: float) -> tuple[Joint, ...]:
-    """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
+def joints_in_plane(blocks: Sequence[Flat], tolerance: float, pairs: Integers | None = None) -> tuple[Joint, ...]:
+    """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
 
     Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance [m], which
-    is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
+    is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none. Pairs are the
+    numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
-    names, edges, pairs = names_of(blocks), Edges.of(blocks), neighbours(blocks, tolerance)
+    names, edges = names_of(blocks), Edges.of(blocks)
+    pairs = neighbours(blocks, tolerance) if pairs is None else pairs
     first, number = numbered_parts(blocks)
     of_parts = edges if number.max() == 1 else Edges.of(list(chain.from_iterable(block.parts for block in blocks)))
     joints: list[Joint] = []
+    overlaps: list[tuple[float, int, int]] = []
     for some in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)):
         pair, one, other = each_with_each(first, number, some)
         both = np.column_stack([one, other])
         depth = np.minimum(of_parts.sunk(both), of_parts.sunk(both[:, ::-1]))
-        for worst in np.flatnonzero(depth > tolerance)[:1]:
-            i, j = some[pair[worst]].tolist()
-            require_apart(names[i], names[j], float(depth[worst]), tolerance)
+        deep = depth > tolerance
+        overlaps += [(how, i, j) for how, (i, j) in zip(depth[deep].tolist(), some[pair[deep]].tolist(), strict=True)]
         joints += _joints(blocks, edges, meetings(edges, some, tolerance), names, tolerance)
+    require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
 
 
@@ -271,11 +274,29 @@ def _cross(a: Array, b: Array) -> Array:
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
-def require_apart(name: str, other: str, deep: float, tolerance: float) -> None:
-    """Raise a ValueError that names two blocks, if they overlap by more than the tolerance [m]."""
-    if deep > tolerance:
-        overlap = f"blocks {name} and {other} overlap by {deep:.3g} m"
-        raise ValueError(f"{overlap}; the valid range is up to the tolerance, {tolerance:g} m")
+class OverlapError(ValueError):
+    """Blocks that overlap by more than the tolerance, and by how much the most of them do [m]."""
+
+    def __init__(self, message: str, deepest: float) -> None:
+        super().__init__(message)
+        self.deepest = deepest
+
+
+def require_apart(overlaps: Sequence[tuple[float, int, int]], names: Sequence[str], tolerance: float) -> None:
+    """Raise an `OverlapError` that names the two blocks that overlap most, and how many pairs do.
+
+    Overlaps are depths above the tolerance [m], with the numbers of the two blocks.
+    """
+    if not overlaps:
+        return
+    deepest, i, j = max(overlaps, key=lambda overlap: overlap[0])
+    pairs = len({(one, other) for _, one, other in overlaps})
+    most = f", the most of {pairs} pairs of blocks" if pairs > 1 else ""
+    raise OverlapError(
+        f"blocks {names[i]} and {names[j]} overlap by {deepest:.3g} m{most}; the valid range is up to the tolerance, "
+        f"{tolerance:g} m",
+        deepest,
+    )
 
 
 def neighbours(blocks: Sequence[Shape], tolerance: float) -> Integers:

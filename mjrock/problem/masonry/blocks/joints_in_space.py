@@ -11,7 +11,7 @@ import numpy as np
 
 from ....geometry import convex
 from ....geometry.hull import Convex, Side
-from ....quantities import Array, frozen, short_repr
+from ....quantities import Array, Integers, frozen, short_repr
 from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart, unlike_named
 from .polyhedron import Vertices
 from .shape import Shape
@@ -129,24 +129,28 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     return first, np.cross(normals, first)
 
 
-def joints_in_space(blocks: Sequence[Shape], tolerance: float) -> tuple[SpaceJoint, ...]:
-    """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
+def joints_in_space(blocks: Sequence[Shape], tolerance: float, pairs: Integers | None = None) -> tuple[SpaceJoint, ...]:
+    """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
 
     Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
-    which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
+    which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none. Pairs
+    are the numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
     names = names_of(blocks)
     faces = [facing(block.sides) for block in blocks]
     normals = [np.array([face.normal for face in of_block]) for of_block in faces]
     solids = [block.solids for block in blocks]
     joints: list[SpaceJoint] = []
-    for i, j in neighbours(blocks, tolerance).tolist():
+    overlaps: list[tuple[float, int, int]] = []
+    for i, j in (neighbours(blocks, tolerance) if pairs is None else pairs).tolist():
         deep = max(_depth(part, other, tolerance) for part in solids[i] for other in solids[j])
         if deep < -tolerance:
             continue
-        require_apart(names[i], names[j], deep, tolerance)
+        if deep > tolerance:
+            overlaps.append((deep, i, j))
         for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
             joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), (side, other), names, tolerance)
+    require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
 
 

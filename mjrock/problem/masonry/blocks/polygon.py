@@ -165,6 +165,10 @@ class Polygon:
         return float(np.hypot(*(self.corners - self.centroid).T).max())
 
 
+class InwardsError(ValueError):
+    """An outline that is not convex."""
+
+
 def checked_name(name: str | None) -> str | None:
     """The name of a block, or None; a TypeError or ValueError says what is wrong with it."""
     if name is not None and (require_text("name", name).splitlines() != [name] or "|" in name or name == "world"):
@@ -202,7 +206,7 @@ def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     inwards = np.flatnonzero(np.sign(area) * turns < -BEND)
     if inwards.size:
         i = int(inwards[0])
-        raise ValueError(f"vertices: the corner {i} at {corners[i].tolist()} m points inwards; a block is convex")
+        raise InwardsError(f"vertices: the corner {i} at {corners[i].tolist()} m points inwards; a block is convex")
     winding = float(np.arctan2(turns, (before * unit).sum(axis=1)).sum()) / (2 * math.pi)
     if abs(abs(winding) - 1) > 0.1:
         raise ValueError("vertices: the edges cross; give the vertices in order around the block")

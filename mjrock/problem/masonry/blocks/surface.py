@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -143,7 +142,8 @@ def _merged(sides: list[Side], close: float) -> list[Side]:
     """Sides of which those that lie in one plane and make a convex one are one."""
     sides = list(sides)
     while True:
-        for i, j in combinations(range(len(sides)), 2):
+        normals = np.array([side.normal for side in sides])
+        for i, j in np.argwhere(np.triu(normals @ normals.T > LIKE - 1e-12, 1)).tolist():
             if (both := _both(sides[i], sides[j], close)) is not None:
                 sides = [both, *(side for k, side in enumerate(sides) if k not in (i, j))]
                 break

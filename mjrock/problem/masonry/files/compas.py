@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from ..blocks.polyhedron import Polyhedron
-from .meshes import Mesh, plain, text_of
+from .bodies import Mesh, plain
+from .meshes import text_of
 
 
 def guid_of(kind: str, name: object) -> str:
@@ -31,22 +32,21 @@ def held(kind: str, data: object, guid: str) -> dict[str, Any]:
 def read_compas(path: Path) -> list[Mesh]:
     """The blocks of a file, each of which is a mesh, with their supports and the densities of their materials."""
     try:
-        content = json.loads(text_of(path))["data"]
-        content = content["model"]["data"] if "model" in content else content  # a problem up to compas_dem 0.5 has it
-        assembled = "elements" not in content
-        parts = content["graph"]["data"]["node"] if assembled else content["elements"]
-        pairs = list(parts.items() if isinstance(parts, dict) else enumerate(parts))
+        content = _inside(json.loads(text_of(path)))
+        content = _inside(content["model"]) if "model" in content else content  # a problem up to compas_dem 0.5 has it
+        pairs = _parts(content)
     except (json.JSONDecodeError, RecursionError) as error:
         raise ValueError(f"path = {path} is not JSON, or is cut short: {error}") from None
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, AttributeError):
         raise ValueError(
-            f"path = {path} is not a COMPAS model: it has no data.elements, and no data.graph as an assembly has"
+            f"path = {path} is not a COMPAS model: it has no data.elements, no data.graph as an assembly has, and is "
+            "no list of meshes"
         ) from None
-    materials = content.get("materials") or {}
+    materials = content.get("materials") or {} if isinstance(content, dict) else {}
     meshes = []
     for key, part in pairs:
         try:
-            meshes.append(_block(part, key) if assembled else _element(part["data"], materials))
+            meshes.append(_block(_inside(part), key, materials))
         except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
             raise ValueError(
                 f"path = {path}: the element {key} is not a block with a mesh: {type(error).__name__} {error}"
@@ -56,27 +56,53 @@ def read_compas(path: Path) -> list[Mesh]:
     return meshes
 
 
-def _block(node: dict[str, Any], key: object) -> Mesh:
-    """A block of an assembly, at a node of its graph."""
-    return Mesh(f"block_{key}", *_shape(node["block"]["data"]), bool(node.get("is_support", False)))
+def _inside(thing: Any) -> Any:
+    """What a part of a file holds: under `data` since COMPAS 2, under `value` before, and at times in a list of one."""
+    while True:
+        if isinstance(thing, list) and len(thing) == 1:
+            thing = thing[0]
+        elif isinstance(thing, dict) and ("dtype" in thing or "datatype" in thing or set(thing) == {"data"}):
+            thing = thing["data"] if "data" in thing else thing["value"]
+        else:
+            return thing
 
 
-def _shape(mesh: dict[str, Any]) -> tuple[Any, list[tuple[int, ...]]]:
-    """Vertices [m] and faces of a mesh."""
-    order = {key: i for i, key in enumerate(mesh["vertex"])}
-    places = np.array([[float(vertex[axis]) for axis in "xyz"] for vertex in mesh["vertex"].values()])
-    return places, [tuple(order[str(vertex)] for vertex in face) for face in mesh["face"].values()]
+def _parts(content: Any) -> list[tuple[object, Any]]:
+    """The blocks of a model, an assembly or a list with their keys, or the only one.
+
+    Assemblies are graphs whose nodes hold the blocks. Those of COMPAS 0 are blocks beside a network, which says what
+    is a support.
+    """
+    if isinstance(content, list):
+        if not all(isinstance(_inside(part), dict) for part in content):
+            raise TypeError
+        return list(enumerate(content))
+    if "vertex" in content and "face" in content:
+        return [(0, content)]
+    if "elements" in content:
+        parts = content["elements"]
+        return list(parts.items() if isinstance(parts, dict) else enumerate(parts))
+    if "blocks" in content:
+        network = content.get("assembly") or {}
+        nodes, blocks = network.get("node") or network.get("vertex") or {}, content["blocks"]
+        pairs = list(blocks.items() if isinstance(blocks, dict) else enumerate(blocks))
+        return [(key, {"block": block, **(nodes.get(str(key)) or {})}) for key, block in pairs]
+    return list((_inside(content["graph"]) if "graph" in content else content)["node"].items())
 
 
-def _element(element: dict[str, Any], materials: dict[str, Any]) -> Mesh:
-    """A block of a COMPAS model."""
-    places, faces = _shape(element["geometry"]["data"])
-    if element.get("transformation"):
-        matrix = np.array(element["transformation"]["data"]["matrix"], dtype=float)
+def _block(part: dict[str, Any], key: object, materials: dict[str, Any]) -> Mesh:
+    """A block: an element of a model, a node of an assembly, or a mesh."""
+    held = next((name for name in ("geometry", "shape", "block") if name in part), None)
+    shape = _inside(part if held is None else part[held])
+    order = {str(vertex): i for i, vertex in enumerate(shape["vertex"])}
+    places = np.array([[float(vertex[axis]) for axis in "xyz"] for vertex in shape["vertex"].values()])
+    faces = [tuple(order[str(vertex)] for vertex in face) for face in shape["face"].values()]
+    if part.get("transformation"):
+        matrix = np.array(_inside(part["transformation"])["matrix"], dtype=float)
         places = places @ matrix[:3, :3].T + matrix[:3, 3]
-    density = materials.get(str(element.get("material")), {}).get("data", {}).get("density")
-    name = plain(str(element.get("name") or ""), "block")
-    return Mesh(name, places, faces, bool(element.get("is_support", False)), density)
+    density = _inside(materials.get(str(part.get("material")), {})).get("density")
+    name = plain(str(part.get("name") or ""), "block" if held == "geometry" else f"block_{key}")
+    return Mesh(name, places, faces, bool(part.get("is_support", False)), density)
 
 
 def model_guid(names: Sequence[str]) -> str:

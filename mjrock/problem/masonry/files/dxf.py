@@ -5,15 +5,19 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ....geometry.hull import prism
 from ....quantities import Array, named, shown
-from ..blocks.polygon import Polygon
+from ..blocks.compound import Compound, FlatBlock, SolidBlock
+from ..blocks.polygon import InwardsError, Polygon
 from ..builders.in_plane import MOST_BLOCKS
-from .meshes import bytes_of, plain
+from .bodies import Given, Mesh, blocks_of, plain
+from .meshes import bytes_of
 
 SHORT = 1e-9
 """Distance of the ends of a polyline that count as one, over its extent [-]."""
@@ -30,39 +34,50 @@ NO_DRAWING = {
 }
 """What a file is that begins so, and is given for a drawing in DXF."""
 
+AREAS = ("SPLINE", "HATCH", "CIRCLE", "ELLIPSE", "REGION", "SOLID", "TRACE", "MPOLYGON", "3DFACE", "3DSOLID", "MESH")
+"""What may be the outline of a block beside a polyline, and is not read."""
+
 OfLayer = float | Mapping[str, float]
 """A number, or one for each layer."""
 
 
 class Outline(NamedTuple):
-    """The outline of a block: its name, which is its layer and a number, the layer, and corners, shape (n, 2)."""
+    """The outline of a block: its name, which is its layer and a number, the layer, and corners in the units and axes
+    of the drawing, shape (n, 3)."""
 
     name: str
     layer: str
     corners: Array
 
 
-def read_dxf(path: Path) -> tuple[list[Outline], float]:
-    """The outlines of a drawing in the order in which they are drawn, and its unit [m], 1 where it names none.
+class Drawing(NamedTuple):
+    """The outlines of a drawing in the order in which they are drawn, and its unit [m], None where it names none."""
+
+    outlines: list[Outline]
+    unit: float | None
+
+
+def read_dxf(path: Path, layers: Sequence[str] | None) -> Drawing:
+    """The outlines of a drawing on some layers, or on all.
 
     Raises:
         ImportError: if ezdxf is missing.
         ValueError: with the path, for what is no drawing or is damaged, for inserted blocks that hold each other or are
-            too many, for a polyline that is open or has arcs, and where none is.
+            too many, for a polyline that is open or has arcs, for a layer that holds nothing, and where no polyline is.
 
     Warns:
-        UserWarning: of what the library repairs while it reads the drawing.
+        UserWarning: of what the library repairs while it reads the drawing, and of areas that are left out.
     """
     try:
         from ezdxf import recover, units
         from ezdxf.enums import InsertUnits
     except ImportError as error:
-        raise ImportError(f"{error}; ezdxf reads drawings: pip install 'mjrock[dxf]'") from error
+        raise ImportError(f"{error}; ezdxf reads drawings: pip install ezdxf") from error
     for start, what in NO_DRAWING.items():
         if bytes_of(path).startswith(start):
             raise ValueError(f"path = {path} is {what}, and no drawing in DXF; save it as text in DXF")
     document, auditor = _sound(path, recover.readfile, str(path))
-    unit = 1.0
+    unit = None
     if document.units:
         unit = _sound(path, lambda: units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters))
     space = document.modelspace()
@@ -70,8 +85,22 @@ def read_dxf(path: Path) -> tuple[list[Outline], float]:
         _sound(path, _require_few, document, space)
     except InsertError as error:
         raise ValueError(f"path = {path}: {error}") from None
+    entities = _sound(path, lambda: list(_inserted(space)))
+    found = {entity.dxf.layer: None for entity in entities}
+    for layer in layers or ():
+        if layer not in found:
+            raise ValueError(f"layers = {layer!r} holds nothing in {path}; the layers are {named(list(found))}")
+    outlines, others = _outlines(path, [each for each in entities if layers is None or each.dxf.layer in layers])
+    _warn_of_repairs(path, [*auditor.errors, *auditor.fixes])
+    if left := {kind: count for kind, count in others.items() if kind in AREAS}:
+        warnings.warn(f"path = {path}: only closed polylines are read; left out are {_counted(left)}", stacklevel=4)
+    return Drawing(outlines, unit)
+
+
+def _outlines(path: Path, entities: Sequence[Any]) -> tuple[list[Outline], Counter[str]]:
+    """The outlines among things of a drawing, and how many there are of each other kind."""
     outlines, counts, others = [], Counter[str](), Counter[str]()
-    for entity in _sound(path, lambda: list(_inserted(space))):
+    for entity in entities:
         if entity.dxftype() not in OUTLINES:
             others[entity.dxftype()] += 1
             continue
@@ -79,14 +108,20 @@ def read_dxf(path: Path) -> tuple[list[Outline], float]:
         try:
             corners = _sound(path, _corners, entity)
         except OutlineError as error:
-            raise ValueError(f"path = {path}, layer {layer}: {error}") from None
+            raise ValueError(
+                f"path = {path}, layer {layer}: {error}; or give the layers that hold blocks by layers="
+            ) from None
         outlines.append(Outline(f"{plain(layer, 'layer')}_{counts[layer]}", layer, corners))
         counts[layer] += 1
     if not outlines:
-        found = ", ".join(f"{count} {kind}" for kind, count in sorted(others.items())) or "nothing"
-        raise ValueError(f"path = {path} has no closed polyline; there is {found}")
-    _warn_of_repairs(path, [*auditor.errors, *auditor.fixes])
-    return outlines, float(unit)
+        join = "; join its lines to closed polylines" if others["LINE"] > 2 else ""
+        raise ValueError(f"path = {path} has no closed polyline; there is {_counted(others) or 'nothing'}{join}")
+    return outlines, others
+
+
+def _counted(kinds: Mapping[str, int]) -> str:
+    """Kinds of things and how many of each, in words."""
+    return ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
 
 
 class OutlineError(ValueError):
@@ -159,17 +194,20 @@ def _inserted(entities: Iterable[Any]) -> Iterator[Any]:
     for entity in entities:
         if entity.dxftype() != "INSERT":
             yield entity
-        elif entity.mcount > 1:
+            continue
+        if entity.dxf.zscale == 0.0:  # as some programs write it into plane drawings, and the library cannot turn it
+            entity.dxf.zscale = 1.0
+        if entity.mcount > 1:
             yield from _inserted(entity.multi_insert())
         else:
             yield from _inserted(entity.virtual_entities())
 
 
 def _corners(polyline: Any) -> Array:
-    """Corners of a closed polyline in the plane x, y of the drawing, shape (n, 2)."""
-    if polyline.dxftype() == "POLYLINE" and not polyline.is_2d_polyline:
-        raise OutlineError("a polyline is not in the plane x, y")
+    """Corners of a closed polyline in the axes of the drawing, shape (n, 3)."""
     light = polyline.dxftype() == "LWPOLYLINE"
+    if not light and not (polyline.is_2d_polyline or polyline.is_3d_polyline):
+        raise OutlineError("a polyline is a mesh, and no outline")
     places = np.array([tuple(at) for at in (polyline.vertices_in_wcs() if light else polyline.points_in_wcs())])
     at = f"the polyline that begins at {places[0, 0]:g}, {places[0, 1]:g}" if len(places) else "a polyline"
     extent = float(np.ptp(places, axis=0).max()) if len(places) else 0.0
@@ -179,28 +217,26 @@ def _corners(polyline: Any) -> Array:
         raise OutlineError(f"{at} is open: close it")
     if polyline.has_arc:
         raise OutlineError(f"{at} has arcs: draw them as short straight edges")
-    if len(places) < 3 or np.ptp(places[:, 2]) > SHORT * extent:
-        raise OutlineError(f"{at} has {len(places)} corners, and needs three or more in the plane x, y")
-    return np.asarray(places[:, :2])
+    if len(places) < 3:
+        raise OutlineError(f"{at} has {len(places)} corners, and needs three or more")
+    return places
 
 
-def polygons_of(
-    outlines: Sequence[Outline], fixed: Sequence[str], density: OfLayer, length: OfLayer, scale: float
-) -> list[Polygon]:
-    """The blocks of outlines.
+def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
+    """The blocks of a drawing, in m with z upwards.
 
     Args:
-        outlines: of a drawing.
-        fixed: layers and names of blocks that are fixed.
+        drawing: the outlines and their unit.
+        given: what the caller says of the file; layers, and names of blocks, are fixed.
         density: [kg/m3].
         length: out of the plane [m].
-        scale: length of a unit of the drawing [m].
 
     Raises:
         ValueError: with the name of the block or layer, for what is no convex block, or is not there.
     """
-    layers = {outline.layer: None for outline in outlines}
-    known = {*layers, *(outline.name for outline in outlines)}
+    turn, fixed = given.matrix(1.0 if drawing.unit is None else drawing.unit, "y"), given.fixed
+    layers = {outline.layer: None for outline in drawing.outlines}
+    known = {*layers, *(outline.name for outline in drawing.outlines)}
     for name in fixed:
         if name not in known:
             raise ValueError(f"fixed = {name!r} is neither a layer nor a block; the layers are {named(list(layers))}")
@@ -212,13 +248,38 @@ def polygons_of(
             raise ValueError(f"{what} = {shown(value)} has nothing for the layer {layer!r}")
         return value[layer]
 
-    polygons = []
-    for outline in outlines:
-        held = outline.layer in fixed or outline.name in fixed
-        numbers = of("density", density, outline.layer), of("length", length, outline.layer)
+    polygons: dict[str, FlatBlock] = {}
+    dented: dict[str, tuple[Mesh, tuple[float, float]]] = {}
+    for outline in drawing.outlines:
+        held, layer = outline.layer in fixed or outline.name in fixed, outline.layer
+        numbers = of("density", density, layer), of("length", length, layer)
+        corners = outline.corners @ turn.T
+        begins = f"block {outline.name}, which begins at {corners[0, 0]:g}, {corners[0, 2]:g} m"
+        if np.ptp(corners[:, 1]) > SHORT * np.ptp(corners, axis=0).max():
+            raise ValueError(f"{begins}: it is not in the plane of the drawing; up='z' takes one in the plane x, z")
+        ring = corners[:, [0, 2]]
         try:
-            polygons.append(Polygon(scale * outline.corners, *numbers, held, outline.name))
+            polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
+        except InwardsError as error:
+            if given.convex is None:
+                raise ValueError(f"{begins}: {error}; convex='parts' cuts it, and convex='hull' fills it") from None
+            places, faces = prism(ring, 1.0)
+            dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
         except (ValueError, TypeError) as error:
-            x, z = scale * outline.corners[0]
-            raise ValueError(f"block {outline.name}, which begins at {x:g}, {z:g} m: {error}") from None
-    return polygons
+            raise ValueError(f"{begins}: {error}") from None
+    meshes = [mesh for mesh, _ in dented.values()]
+    for block in blocks_of(meshes, 2000.0, Given((), False, None, None, None, given.convex)) if meshes else ():
+        polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])
+    return [polygons[outline.name] for outline in drawing.outlines]
+
+
+def _flat(block: SolidBlock, numbers: tuple[float, float]) -> FlatBlock:
+    """A prism along y as a block of the plane, with its density and length."""
+    polygons = []
+    for part in block.parts:
+        front = part.corners[part.corners[:, 1] < 0][:, [0, 2]]
+        about = front - front.mean(axis=0)
+        polygons.append(Polygon(front[np.argsort(np.arctan2(about[:, 1], about[:, 0]))], *numbers))
+    if len(polygons) > 1:
+        return Compound(polygons, block.fixed, block.name)
+    return replace(polygons[0], fixed=block.fixed, name=block.name)

@@ -1,4 +1,4 @@
-"""Meshes of bodies, the convex blocks that they bound, and their files: Wavefront OBJ and STL.
+"""Files of meshes: Wavefront OBJ, STL and PLY.
 
 What reads a file raises a ValueError with the path, the line where there is one, and what is wrong.
 """
@@ -7,160 +7,15 @@ from __future__ import annotations
 
 import struct
 from collections import Counter
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Callable, Sequence
+from itertools import takewhile
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
-from ....geometry.graph import components
 from ....quantities import Array
 from ..blocks.polyhedron import Polyhedron
-from ..builders.in_plane import MOST_BLOCKS
-
-SAME_VOLUME = 1e-3
-"""Largest difference of the volume of a body from that of its hull, over the latter [-]."""
-
-MeshFaces = list[tuple[int, ...]]
-
-
-class Mesh(NamedTuple):
-    """Faces between vertices, of one body or of several.
-
-    Args:
-        name: of the mesh in its file.
-        vertices: [m], shape (n, 3).
-        faces: numbers of the vertices of each, in order around it.
-        fixed: whether the file says that it is a support.
-        density: what the file says [kg/m3], or None.
-    """
-
-    name: str
-    vertices: Array
-    faces: MeshFaces
-    fixed: bool = False
-    density: float | None = None
-
-
-def used(vertices: Array, faces: MeshFaces) -> tuple[Array, MeshFaces]:
-    """The vertices that faces use, in their order, and the faces with the new numbers of them."""
-    numbers = sorted({vertex for face in faces for vertex in face})
-    where = {vertex: i for i, vertex in enumerate(numbers)}
-    return vertices[numbers], [tuple(where[vertex] for vertex in face) for face in faces]
-
-
-def bodies_of(mesh: Mesh) -> list[Mesh]:
-    """The closed bodies of a mesh; those of one mesh are numbered. A ValueError says if one is open, or they are many.
-
-    Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
-    touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
-    is divided.
-    """
-    places, inverse = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
-    number = inverse.ravel().tolist()
-    faces = [tuple(number[i] for i in face) for face in mesh.faces]
-    faces = [face for face in faces if len(set(face)) == len(face)]
-    parts: list[int] = []  # of each face
-    open_edges: set[tuple[int, int]] = set()
-    part = 0
-    for face in faces:
-        parts.append(part)
-        for i, j in zip(face, face[1:] + face[:1], strict=True):
-            open_edges ^= {(min(i, j), max(i, j))}
-        part += not open_edges
-        if part > MOST_BLOCKS:
-            raise ValueError(f"body {mesh.name} is more than {MOST_BLOCKS} closed bodies, which is the most")
-    if open_edges:
-        raise ValueError(f"body {mesh.name} is open: {len(open_edges)} of its edges belong to one face alone")
-    shells = _apart(faces, parts)
-    if not shells:
-        raise ValueError(f"body {mesh.name} has no faces")
-    bodies = []
-    for i, shell in enumerate(shells):
-        name = mesh.name if len(shells) == 1 else f"{mesh.name}_{i}"
-        vertices, rings = used(places, shell)
-        bodies.append(mesh._replace(name=name, vertices=vertices, faces=rings))
-    return bodies
-
-
-def _apart(faces: MeshFaces, parts: list[int]) -> list[MeshFaces]:
-    """Faces by the bodies that they make: those of one part that hang together by their vertices."""
-    own: dict[tuple[int, int], int] = {}  # a vertex counts once in each part
-    pairs = []
-    for face, part in zip(faces, parts, strict=True):
-        numbers = [own.setdefault((part, vertex), len(own)) for vertex in face]
-        pairs += [(numbers[0], number) for number in numbers]
-    if not pairs:
-        return []
-    labels = components(pairs, len(own)).tolist()
-    shells: dict[int, MeshFaces] = {}
-    for face, part in zip(faces, parts, strict=True):
-        shells.setdefault(labels[own[part, face[0]]], []).append(face)
-    return list(shells.values())
-
-
-def block_of(body: Mesh, density: float, fixed: bool) -> Polyhedron:
-    """The convex block that a closed body is; a ValueError with its name says if it is not one."""
-    try:
-        block = Polyhedron(body.vertices, density if body.density is None else body.density, fixed, body.name)
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"body {body.name}: {error}") from None
-    # about a point inside, the tetrahedra of a convex body fill it once, whichever way its faces turn
-    triangles = np.array([(face[0], i, j) for face in body.faces for i, j in pairwise(face[1:])])
-    volume = float(np.abs(np.linalg.det(body.vertices[triangles] - block.centroid)).sum()) / 6
-    if abs(volume / block.volume - 1) > SAME_VOLUME:
-        raise ValueError(
-            f"body {body.name} is not convex: its faces enclose {enclosed_by(body):.4g} m3 within their hull of "
-            f"{block.volume:.4g} m3; cut it into convex blocks"
-        )
-    return block
-
-
-def enclosed_by(body: Mesh) -> float:
-    """Volume that the faces of a closed body enclose, convex or not, whichever way they turn [m3]."""
-    faces = list(body.faces)
-    of_edge: dict[frozenset[int], list[int]] = {}
-    for number, face in enumerate(faces):
-        for edge in edges_of(face):
-            of_edge.setdefault(frozenset(edge), []).append(number)
-    seen, open_ends = {0}, [0]
-    while open_ends:
-        number = open_ends.pop()
-        for edge in edges_of(faces[number]):
-            for other in of_edge[frozenset(edge)]:
-                if other not in seen:  # beside a face that turns the same way, an edge is passed the other way
-                    faces[other] = faces[other][::-1] if edge in edges_of(faces[other]) else faces[other]
-                    seen.add(other)
-                    open_ends.append(other)
-    triangles = np.array([(face[0], i, j) for face in faces for i, j in pairwise(face[1:])])
-    return abs(float(np.linalg.det(body.vertices[triangles] - body.vertices.mean(axis=0)).sum())) / 6
-
-
-def edges_of(face: tuple[int, ...]) -> list[tuple[int, int]]:
-    """The edges of a face, in its order."""
-    return list(zip(face, (*face[1:], face[0]), strict=True))
-
-
-def blocks_of(meshes: Sequence[Mesh], density: float, fixed: Sequence[str]) -> list[Polyhedron]:
-    """The blocks of meshes; names that several have are numbered.
-
-    The density is that of meshes whose file says none [kg/m3]. Fixed are the names given, and what a file calls a
-    support. A ValueError says which body is open or not convex, or which name no body has.
-    """
-    bodies = [body for mesh in meshes for body in bodies_of(mesh)]
-    count = Counter(body.name for body in bodies)
-    numbered = [body.name if count[body.name] == 1 else f"{body.name}_{i}" for i, body in enumerate(bodies)]
-    for name, times in Counter(fixed).items():
-        if times > 1:
-            raise ValueError(f"fixed has {name!r} {times} times; each body is named once")
-        if name not in numbered:
-            raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(numbered[:10])}")
-    return [
-        block_of(body._replace(name=name), density, body.fixed or name in fixed)
-        for body, name in zip(bodies, numbered, strict=True)
-    ]
-
+from .bodies import Mesh, plain, used
 
 MOST_BYTES = 500_000_000
 """Largest file that is read."""
@@ -251,6 +106,80 @@ def read_stl(path: Path) -> list[Mesh]:
     return meshes
 
 
+PLY = {
+    "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4",
+    "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
+    "float32": "f4", "float64": "f8",
+}  # fmt: skip
+"""Types of numbers in PLY files, as NumPy names them."""
+PLY_ORDER = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+
+
+def read_ply(path: Path) -> list[Mesh]:
+    """The mesh of a PLY file (Turk, The PLY polygon file format, 1994)."""
+    content = bytes_of(path)
+    head, end, body = content.partition(b"end_header")
+    lines = [line.split() for line in head.decode("latin-1").splitlines()]
+    if not end or not lines or lines[0] != ["ply"]:
+        raise ValueError(f"path = {path} is not a PLY file, or is cut short: it has no header from ply to end_header")
+    try:
+        order = PLY_ORDER[next(line[1] for line in lines if line[:1] == ["format"])]
+        take = _words(body) if not order else _numbers(body[body.index(b"\n") + 1 :], order)
+        rows: dict[str, list[dict[str, list[float]]]] = {}
+        for line in lines:
+            if line[:1] == ["element"]:
+                name, count, kinds = line[1], int(line[2]), list[tuple[str, list[str]]]()
+                if not 0 <= count <= len(content):
+                    raise ValueError(f"{count} of {name} in {len(content)} bytes")
+                rows[name], kinds = [], [(p[-1], p[1:-1]) for p in _properties(lines, name)]
+                for _ in range(count):
+                    rows[name].append({each: _value(take, kind) for each, kind in kinds})
+        places = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]])
+        key = "vertex_indices" if "vertex_indices" in rows["face"][0] else "vertex_index"
+        faces = [tuple(map(int, row[key])) for row in rows["face"]]
+        if not all(len(face) > 2 and min(face) >= 0 and max(face) < len(places) for face in faces):
+            raise ValueError("a face is not three or more of the vertices")
+    except (KeyError, IndexError, ValueError, TypeError, OverflowError, StopIteration, struct.error) as error:
+        raise ValueError(
+            f"path = {path} is not a PLY file of vertices and faces, or is cut short: {type(error).__name__} {error}"
+        ) from None
+    return [Mesh("body", places, faces)]
+
+
+def _properties(lines: Sequence[list[str]], element: str) -> list[list[str]]:
+    """The lines of the properties of an element of a PLY file."""
+    start = next(i for i, line in enumerate(lines) if line[:2] == ["element", element])
+    rest = (line for line in lines[start + 1 :] if line[:1] != ["comment"])
+    return list(takewhile(lambda line: line[:1] == ["property"], rest))
+
+
+def _value(take: Callable[[str], float], kind: Sequence[str]) -> list[float]:
+    """A property of a row of a PLY file: one number, or a list with its length before it."""
+    if kind[0] != "list":
+        return [take(kind[0])]
+    return [take(kind[2]) for _ in range(int(take(kind[1])))]
+
+
+def _words(body: bytes) -> Callable[[str], float]:
+    """What takes number after number from the text of a PLY file."""
+    words = iter(body.split())
+    return lambda _: float(next(words))
+
+
+def _numbers(body: bytes, order: str) -> Callable[[str], float]:
+    """What takes number after number of a type from the bytes of a PLY file."""
+    at = 0
+
+    def take(kind: str) -> float:
+        nonlocal at
+        code = np.dtype(order + PLY[kind])
+        value = struct.unpack_from(order + code.char, body, at)[0]
+        at += code.itemsize
+        return float(value)
+
+    return take
+
+
 def _facets(name: str, corners: Array) -> Mesh:
     """A mesh of triangles, from three vertices each."""
     return Mesh(name, corners, [(i, i + 1, i + 2) for i in range(0, len(corners), 3)])
@@ -259,12 +188,6 @@ def _facets(name: str, corners: Array) -> Mesh:
 def _triple(words: Sequence[str]) -> tuple[float, float, float]:
     x, y, z = map(float, words)
     return x, y, z
-
-
-def plain(name: str, otherwise: str) -> str:
-    """A name that a block can have."""
-    name = name.strip().replace("|", "_")
-    return otherwise if name in ("", "world") else name
 
 
 def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:

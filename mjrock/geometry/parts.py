@@ -1,0 +1,155 @@
+"""A body that is not convex, cut along the planes of its own faces into convex parts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import chain, combinations, pairwise
+
+import numpy as np
+
+from ..quantities import Array
+from .hull import Hull, area_vector, bulk_of, hull_of
+
+ON_PLANE = 1e-6
+"""Distance from a plane below which a corner lies on it, over the extent of the body [-]."""
+ONE_PART = 1e-6
+"""Difference of the volume of the hull of two parts from that of both below which they are one, over their sum [-]."""
+CELLS_A_PART = 3
+"""How many cells are cut at most, for each part that may come of them."""
+
+
+def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) -> list[Array]:
+    """The corners of convex parts that fill a closed body, shape (n, 3) each.
+
+    The hull of the body is cut by the plane of the largest face that goes through it, each piece by that of the largest
+    face within it, and so on. A piece that no face goes through is whole or empty, which the winding number about
+    its centroid says. Neighbours whose union is convex are then put together.
+
+    Args:
+        corners: of the body [m], shape (n, 3).
+        faces: numbers of the corners of each, all counterclockwise as seen from outside, or all clockwise. One that is
+            not plane is taken as the triangles with its first corner.
+        most: parts at most.
+
+    Raises:
+        ValueError: for more parts.
+    """
+    origin, extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
+    about = (corners - origin) / extent
+    fans = [about[[(face[0], i, j) for i, j in pairwise(face[1:])]] for face in faces]
+    triangles = np.concatenate(fans)
+    plane = [np.ptp(about[list(face)] @ _normal(about[list(face)])) <= ON_PLANE for face in faces]
+    sides = [[about[list(face)]] if flat else [*fan] for face, fan, flat in zip(faces, fans, plane, strict=True)]
+    open_cells = [(about, list(chain.from_iterable(sides)))]
+    whole: list[Array] = []
+    count = 0
+    while open_cells:
+        cell, polygons = open_cells.pop()
+        try:
+            hull = hull_of(cell)
+        except ValueError:  # what is cut off is thinner than a part can be
+            continue
+        cell = cell[list(hull.corners)]
+        cut = _plane(cell, polygons)
+        if cut is None:
+            if abs(_winding(bulk_of(cell, hull.faces).centroid, triangles)) > 0.5:
+                whole.append(cell)
+            continue
+        count += 1
+        if count > CELLS_A_PART * most:
+            raise ValueError(f"its faces cut it into more than {most} parts")
+        normal, offset = cut
+        for sense in (1.0, -1.0):
+            kept = [_kept(polygon, sense * normal, sense * offset) for polygon in polygons]
+            corners_kept = _half(cell, hull, sense * normal, sense * offset)
+            open_cells.append((corners_kept, [polygon for polygon in kept if len(polygon) > 2]))
+    whole = _together(whole)
+    if len(whole) > most:
+        raise ValueError(f"its faces cut it into {len(whole)} parts, and {most} is the most")
+    return [origin + extent * part for part in whole]
+
+
+def _normal(ring: Array) -> Array:
+    """Unit normal of a polygon."""
+    normal = area_vector(ring)
+    return normal / max(float(np.linalg.norm(normal)), ON_PLANE * ON_PLANE)
+
+
+def _plane(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None:
+    """The plane of the largest polygon that goes through a cell, its unit normal and offset, or None."""
+    areas = np.array([np.linalg.norm(area_vector(polygon)) for polygon in polygons])
+    for i in np.argsort(-areas, kind="stable").tolist():
+        normal = _normal(polygons[i])
+        offset = float((polygons[i] @ normal).mean())
+        beyond = cell @ normal - offset
+        if beyond.min() < -ON_PLANE and beyond.max() > ON_PLANE:
+            return normal, offset
+    return None
+
+
+def _kept(polygon: Array, normal: Array, offset: float) -> Array:
+    """What of a polygon lies on the side of a plane that its normal points to; nothing of one that lies in it."""
+    above = polygon @ normal - offset
+    if above.max() <= ON_PLANE:
+        return np.zeros((0, 3))
+    if above.min() >= -ON_PLANE:
+        return polygon
+    points = []
+    for i in range(len(polygon)):
+        j = (i + 1) % len(polygon)
+        if above[i] >= 0:
+            points.append(polygon[i])
+        if (above[i] >= 0) != (above[j] >= 0):
+            points.append(polygon[i] + above[i] / (above[i] - above[j]) * (polygon[j] - polygon[i]))
+    return np.array(points)
+
+
+def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
+    """Corners of what of a convex cell lies on the side of a plane that its normal points to."""
+    above = cell @ normal - offset
+    above = np.where(np.abs(above) <= ON_PLANE, 0.0, above)
+    points = list(cell[above >= 0])
+    for face in hull.faces:
+        for i, j in zip(face, (*face[1:], face[0]), strict=True):
+            if i < j and above[i] * above[j] < 0:
+                points.append(cell[i] + above[i] / (above[i] - above[j]) * (cell[j] - cell[i]))
+    return np.array(points)
+
+
+def _winding(point: Array, triangles: Array) -> float:
+    """How often triangles go around a point [-] (Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983, 125)."""
+    a, b, c = (triangles - point).transpose(1, 0, 2)
+    lengths = [np.linalg.norm(each, axis=1) for each in (a, b, c)]
+    over = (np.cross(a, b) * c).sum(axis=1)
+    under = lengths[0] * lengths[1] * lengths[2]
+    for (one, other), length in zip(((a, b), (b, c), (c, a)), (lengths[2], lengths[0], lengths[1]), strict=True):
+        under = under + (one * other).sum(axis=1) * length
+    return float(np.arctan2(over, under).sum()) / (2 * np.pi)
+
+
+def _together(parts: list[Array]) -> list[Array]:
+    """Parts of which those whose union is convex are one."""
+    volumes = [_volume(part) for part in parts]
+    while True:
+        for i, j in combinations(range(len(parts)), 2):
+            if not _touch(parts[i], parts[j]):
+                continue
+            both = np.concatenate([parts[i], parts[j]])
+            if (found := _volume(both)) - volumes[i] - volumes[j] <= ONE_PART * found:
+                kept = [k for k in range(len(parts)) if k not in (i, j)]
+                parts = [both[list(hull_of(both).corners)], *(parts[k] for k in kept)]
+                volumes = [found, *(volumes[k] for k in kept)]
+                break
+        else:
+            return parts
+
+
+def _touch(part: Array, other: Array) -> bool:
+    """Whether the bounds of two parts touch."""
+    apart = np.maximum(part.min(axis=0) - other.max(axis=0), other.min(axis=0) - part.max(axis=0))
+    return bool((apart <= ON_PLANE).all())
+
+
+def _volume(points: Array) -> float:
+    hull = hull_of(points)
+    return bulk_of(points[list(hull.corners)], hull.faces).volume

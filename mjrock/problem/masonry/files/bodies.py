@@ -1,0 +1,403 @@
+"""Bodies that meshes bound, in which unit and with which axes they are drawn, and the blocks that they become."""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
+from itertools import pairwise
+from operator import index
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ....geometry.graph import components
+from ....geometry.hull import THINNEST, Hull, bulk_of, hull_of
+from ....geometry.parts import convex_parts
+from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown
+from ..blocks.compound import Compound, SolidBlock
+from ..blocks.polygon import FARTHEST, MOST_VERTICES
+from ..blocks.polyhedron import Polyhedron
+from ..builders.in_plane import MOST_BLOCKS
+
+SAME_VOLUME = 1e-3
+"""Largest difference of the volume of a body from that of its hull, over the latter [-]."""
+SAME_PLANE = 1e-2
+"""Largest distance of a face of a body from a face of its hull, over the extent of the body [-]."""
+SPLINTER = 1e-4
+"""Volume of a part below which it is left out, over that of the body [-]."""
+MOST_CUTS = 64
+"""Most parts that a body is cut into."""
+PLATE = 0.1
+"""Thickness of a support that is drawn as an open plate, over its extent [-]."""
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+"""Length of the units that files are drawn in [m]."""
+TURNS = {
+    "x": ((0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)),
+    "y": ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
+    "z": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+}
+"""Rotations that turn an axis of a file upwards."""
+CONVEX = ("hull", "parts")
+"""What a body that is not convex can become."""
+
+MeshFaces = list[tuple[int, ...]]
+Scale = Annotated[float | None, Within(1e-6, 1e3, "m")]
+"""Length of a unit of a file."""
+
+
+class Mesh(NamedTuple):
+    """Faces between vertices, of one body or of several.
+
+    Args:
+        name: of the mesh in its file.
+        vertices: [m], shape (n, 3).
+        faces: numbers of the vertices of each, in order around it.
+        fixed: whether the file says that it is a support.
+        density: what the file says [kg/m3], or None.
+    """
+
+    name: str
+    vertices: Array
+    faces: MeshFaces
+    fixed: bool = False
+    density: float | None = None
+
+
+class Given(NamedTuple):
+    """What a caller says of a file, see `Masonry.from_obj`."""
+
+    fixed: Sequence[str]
+    ground: bool
+    scale: float | None
+    unit: str | None
+    up: str | None
+    convex: str | None = None
+
+    def checked(self) -> Given:
+        """Itself; a TypeError or ValueError names what is wrong."""
+        if self.convex is not None:
+            _one_of("convex", self.convex, CONVEX)
+        _ = self.matrix()
+        return self._replace(fixed=names_of_list("fixed", self.fixed), ground=require_flag("ground", self.ground))
+
+    def matrix(self, own: float = 1.0, usual: str = "z") -> Array:
+        """What takes places of the file to m with z upwards, shape (3, 3).
+
+        Args:
+            own: unit that the file states [m], taken where no other is given.
+            usual: axis that points upwards where none is given.
+
+        Raises:
+            ValueError: for a unit or an axis that is none, or a unit beside a scale.
+        """
+        scale = own if self.scale is None else self.scale
+        if self.unit is not None:
+            if self.scale is not None:
+                raise ValueError(f"unit = {shown(self.unit)} and scale = {self.scale:g} are both given; give one")
+            scale = UNITS[_one_of("unit", self.unit, UNITS)]
+        return scale * np.array(TURNS[_one_of("up", usual if self.up is None else self.up, TURNS)])
+
+
+def _one_of(name: str, value: str, known: Collection[str]) -> str:
+    """A name; a ValueError lists those that are known if it is another."""
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} = {shown(value)} is none of {', '.join(known)}")
+    return value
+
+
+def names_of_list(what: str, given: Sequence[str]) -> Sequence[str]:
+    """Names that a caller gives in a list, checked."""
+    if not isinstance(given, list | tuple):
+        raise TypeError(f"{what} = {shown(given)} is not a list of names")
+    for name in given:
+        require_text(what, name)
+    return given
+
+
+def meshes_of(given: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) -> list[Mesh]:
+    """Meshes by their names, as meshes; a TypeError or ValueError names what is wrong."""
+    if not isinstance(given, Mapping) or not given:
+        raise TypeError(f"meshes = {shown(given)} is not a dict of vertices and faces by name")
+    meshes = []
+    for name, mesh in given.items():
+        what = f"meshes[{shown(name)}]"
+        if not isinstance(mesh, tuple | list) or len(mesh) != 2:
+            raise TypeError(f"{what} = {shown(mesh)} is not a pair of vertices and faces")
+        vertices = require_reals(what, mesh[0], "vertices of the shape (n, 3)")
+        if vertices.ndim != 2 or vertices.shape[1] != 3:
+            raise ValueError(f"{what}: vertices has the shape {vertices.shape}; (n, 3) is needed")
+        try:
+            faces = [tuple(map(index, face)) for face in mesh[1]]
+        except TypeError:
+            raise TypeError(f"{what}: faces = {shown(mesh[1])} are not lists of numbers of vertices") from None
+        for face in faces:
+            if len(face) < 3 or min(face) < 0 or max(face) >= len(vertices):
+                raise ValueError(f"{what}: the face {face} is not three or more of {len(vertices)} vertices")
+        meshes.append(Mesh(plain(require_text("meshes", name), "body"), vertices, faces))
+    return meshes
+
+
+def plain(name: str, otherwise: str) -> str:
+    """A name that a block can have."""
+    name = name.strip().replace("|", "_")
+    return otherwise if name in ("", "world") else name
+
+
+def used(vertices: Array, faces: MeshFaces) -> tuple[Array, MeshFaces]:
+    """The vertices that faces use, in their order, and the faces with the new numbers of them."""
+    numbers = sorted({vertex for face in faces for vertex in face})
+    where = {vertex: i for i, vertex in enumerate(numbers)}
+    return vertices[numbers], [tuple(where[vertex] for vertex in face) for face in faces]
+
+
+def bodies_of(mesh: Mesh) -> list[Mesh]:
+    """The closed bodies of a mesh, and plane plates that are open.
+
+    Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
+    touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
+    is divided.
+
+    Raises:
+        ValueError: for a body that is open and no plate, or for too many.
+    """
+    places, inverse = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
+    number = inverse.ravel().tolist()
+    faces = [tuple(number[i] for i in face) for face in mesh.faces]
+    faces = [face for face in faces if len(set(face)) == len(face)]
+    parts: list[int] = []  # of each face
+    open_edges: set[tuple[int, int]] = set()
+    part = 0
+    for face in faces:
+        parts.append(part)
+        for i, j in edges_of(face):
+            open_edges ^= {(min(i, j), max(i, j))}
+        part += not open_edges
+        if part > MOST_BLOCKS:
+            raise ValueError(f"body {mesh.name} is more than {MOST_BLOCKS} closed bodies, which is the most")
+    bodies = [mesh._replace(vertices=each, faces=rings) for each, rings in _apart(places, faces, parts)]
+    if not bodies:
+        raise ValueError(f"body {mesh.name} has no faces")
+    if open_edges and not all(is_plate(body) or not _open_edges(body) for body in bodies):
+        raise ValueError(f"body {mesh.name} is open: {len(open_edges)} of its edges belong to one face alone")
+    return bodies
+
+
+def _all_bodies(meshes: Sequence[Mesh]) -> list[Mesh]:
+    """The bodies of all meshes with names of their own. It warns of those with the vertices of one before them, which
+    are left out."""
+    seen: set[bytes] = set()
+    again, bodies = list[Mesh](), list[Mesh]()
+    for mesh in meshes:
+        own = list[Mesh]()
+        for body in bodies_of(mesh):
+            places = np.unique(body.vertices, axis=0).tobytes()
+            (again if places in seen else own).append(body)
+            seen.add(places)
+        bodies += own if len(own) == 1 else [body._replace(name=f"{mesh.name}_{i}") for i, body in enumerate(own)]
+    if again:
+        said = named([body.name for body in again])
+        warnings.warn(f"{len(again)} bodies are drawn twice, and read once: {said}", stacklevel=6)
+    count = Counter(body.name for body in bodies)
+    return [body if count[body.name] == 1 else body._replace(name=f"{body.name}_{i}") for i, body in enumerate(bodies)]
+
+
+def _apart(places: Array, faces: MeshFaces, parts: list[int]) -> list[tuple[Array, MeshFaces]]:
+    """The vertices and faces of bodies: of one part, and hanging together by their vertices."""
+    own: dict[tuple[int, int], int] = {}  # a vertex counts once in each part
+    pairs = []
+    for face, part in zip(faces, parts, strict=True):
+        numbers = [own.setdefault((part, vertex), len(own)) for vertex in face]
+        pairs += [(numbers[0], number) for number in numbers]
+    if not pairs:
+        return []
+    labels = components(pairs, len(own)).tolist()
+    shells: dict[int, MeshFaces] = {}
+    for face, part in zip(faces, parts, strict=True):
+        shells.setdefault(labels[own[part, face[0]]], []).append(face)
+    return [used(places, shell) for shell in shells.values()]
+
+
+def _open_edges(body: Mesh) -> int:
+    """How many edges of a body belong to an odd number of faces."""
+    count = Counter(frozenset(edge) for face in body.faces for edge in edges_of(face))
+    return sum(number % 2 for number in count.values())
+
+
+def is_plate(body: Mesh) -> bool:
+    """Whether the vertices of a body lie in a plane."""
+    about = body.vertices - body.vertices.mean(axis=0)
+    thick = np.abs(about @ np.linalg.svd(about, full_matrices=False)[2][-1]).max()
+    return bool(len(about) < 4 or thick <= THINNEST * np.ptp(about, axis=0).max())
+
+
+def edges_of(face: tuple[int, ...]) -> list[tuple[int, int]]:
+    """The edges of a face, in its order."""
+    return list(zip(face, (*face[1:], face[0]), strict=True))
+
+
+def oriented(body: Mesh) -> Mesh:
+    """A closed body with all its faces counterclockwise from outside, whichever way they turn."""
+    faces = list(body.faces)
+    of_edge: dict[frozenset[int], list[int]] = {}
+    for number, face in enumerate(faces):
+        for edge in edges_of(face):
+            of_edge.setdefault(frozenset(edge), []).append(number)
+    seen, ahead = {0}, [0]
+    while ahead:
+        number = ahead.pop()
+        for edge in edges_of(faces[number]):
+            for other in of_edge[frozenset(edge)]:
+                if other not in seen:  # beside a face that turns the same way, an edge is passed the other way
+                    faces[other] = faces[other][::-1] if edge in edges_of(faces[other]) else faces[other]
+                    seen.add(other)
+                    ahead.append(other)
+    if enclosed_by(body._replace(faces=faces)) < 0:
+        faces = [face[::-1] for face in faces]
+    return body._replace(faces=faces)
+
+
+def enclosed_by(body: Mesh) -> float:
+    """Volume that the faces of a closed body enclose, negative where they are clockwise as seen from outside [m3]."""
+    return float(np.linalg.det(triangles_of(body) - body.vertices.mean(axis=0)).sum()) / 6
+
+
+def triangles_of(body: Mesh) -> Array:
+    """The triangles of the faces of a body with their first vertices [m], shape (n, 3, 3)."""
+    return np.asarray(body.vertices[[(face[0], i, j) for face in body.faces for i, j in pairwise(face[1:])]])
+
+
+class Bound(NamedTuple):
+    """A closed body with its faces outwards, the hull of its vertices, and the volumes of both [m3]."""
+
+    body: Mesh
+    hull: Hull
+    enclosed: float
+    of_hull: float
+
+    @classmethod
+    def of(cls, body: Mesh) -> Bound:
+        """A ValueError names a body whose vertices bound none."""
+        try:
+            hull = hull_of(body.vertices)
+        except ValueError as error:
+            raise ValueError(f"body {body.name}: vertices {error}") from None
+        body = oriented(body)
+        return cls(body, hull, enclosed_by(body), bulk_of(body.vertices[list(hull.corners)], hull.faces).volume)
+
+    @property
+    def added(self) -> float:
+        """Volume that the hull has more, over that of the body [-]."""
+        return self.of_hull / self.enclosed - 1 if self.enclosed > 0 else np.inf
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether the faces enclose what the hull does, and each of their triangles lies on a face of the hull."""
+        if abs(self.enclosed / self.of_hull - 1) > SAME_VOLUME:
+            return False
+        places, extent = self.body.vertices, float(np.ptp(self.body.vertices, axis=0).max())
+        on = places[[self.hull.corners[face[0]] for face in self.hull.faces]]
+        offsets = (on * self.hull.normals).sum(axis=1)
+        off = (np.abs(ring @ self.hull.normals.T - offsets).max(axis=0).min() for ring in triangles_of(self.body))
+        return bool(max(off) <= SAME_PLANE * extent)
+
+
+def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[SolidBlock]:
+    """The blocks of meshes of a file; names that several have are numbered.
+
+    The density is that of meshes whose file says none [kg/m3]. Fixed are the names given, and what a file calls a
+    support.
+
+    Raises:
+        ValueError: with the name of a body that is open or not convex, or a name that no body has.
+
+    Warns:
+        UserWarning: of the volume that hulls add.
+    """
+    turn, fixed, convex = given.matrix(), given.fixed, given.convex
+    with np.errstate(invalid="ignore"):  # an infinite coordinate is named below
+        meshes = [mesh._replace(vertices=mesh.vertices @ turn.T) for mesh in meshes]
+    bodies = _all_bodies(meshes)
+    names = [body.name for body in bodies]
+    for name, times in Counter(fixed).items():
+        if times > 1:
+            raise ValueError(f"fixed has {name!r} {times} times; each body is named once")
+        if name not in names:
+            raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(names[:10])}")
+    bodies = [body._replace(fixed=body.fixed or body.name in fixed) for body in bodies]
+    for body in bodies:
+        if not (np.abs(body.vertices) <= FARTHEST).all():  # a NaN is not
+            raise ValueError(
+                f"body {body.name}: vertices holds a coordinate outside the valid range {-FARTHEST:g} to {FARTHEST:g} m"
+            )
+    middle = np.concatenate([body.vertices for body in bodies]).mean(axis=0)
+    bounds = [Bound.of(_support(body, middle)) for body in bodies]
+    dented = sorted((bound for bound in bounds if not bound.is_convex), key=lambda bound: -bound.added)
+    if dented and convex != "parts":
+        _say_dented(dented, bounds, convex)
+    cut = {bound.body.name for bound in dented} if convex == "parts" else set()
+    return [_cut(bound, density) if bound.body.name in cut else _whole(bound, density) for bound in bounds]
+
+
+def _support(body: Mesh, middle: Array) -> Mesh:
+    """A body; an open plate that is fixed is made a body that lies on the far side of it from the middle of all [m]."""
+    if not is_plate(body) or not _open_edges(body):
+        return body
+    if not body.fixed:
+        raise ValueError(
+            f"body {body.name} is open: it is a plane plate; name it in fixed, and it is the face of a support"
+        )
+    about = body.vertices.mean(axis=0)
+    normal = np.linalg.svd(body.vertices - about)[2][-1]
+    away = -np.sign(normal @ (middle - about)) or 1.0
+    behind = body.vertices + away * PLATE * float(np.ptp(body.vertices, axis=0).max()) * normal
+    hull = hull_of(np.concatenate([body.vertices, behind]))
+    return body._replace(vertices=np.concatenate([body.vertices, behind])[list(hull.corners)], faces=list(hull.faces))
+
+
+def _say_dented(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | None) -> None:
+    """Warn of the volume that the hulls of bodies which are not convex add, or refuse these."""
+    most, total = dented[0], sum(bound.enclosed for bound in bounds)
+    whole = sum(bound.of_hull - bound.enclosed for bound in dented) / total
+    if convex == "hull":
+        said = named([f"{bound.body.name} {bound.added:.2%}" for bound in dented])
+        warnings.warn(f"convex='hull' adds volume to {len(dented)} bodies: {said}; to all {whole:.2%}", stacklevel=5)
+        return
+    others = f", the most of {len(dented)} such bodies of {len(bounds)}" if len(dented) > 1 else ""
+    raise ValueError(
+        f"body {most.body.name} is not convex: its faces enclose {most.enclosed:.4g} m3 within their hull of "
+        f"{most.of_hull:.4g} m3{others}; convex='hull' takes hulls, which adds {whole:.2%} to the volume of all, and "
+        "convex='parts' cuts into convex parts"
+    )
+
+
+def _whole(bound: Bound, density: float) -> Polyhedron:
+    """The hull of a body as a block."""
+    body, corners = bound.body, bound.body.vertices[list(bound.hull.corners)]
+    if len(corners) > MOST_VERTICES:
+        raise ValueError(f"body {body.name}: its hull has {len(corners)} corners; a block has at most {MOST_VERTICES}")
+    try:
+        return Polyhedron(corners, density if body.density is None else body.density, body.fixed, body.name)
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"body {body.name}: {error}") from None
+
+
+def _cut(bound: Bound, density: float) -> SolidBlock:
+    """A body that is not convex as a unit of convex parts, which fill it."""
+    body, parts = bound.body, list[Polyhedron]()
+    try:
+        for part in convex_parts(body.vertices, body.faces, MOST_CUTS):
+            with suppress(ValueError):  # what is too thin for a block is missed by the volume
+                parts.append(Polyhedron(part, density if body.density is None else body.density))
+        parts = [part for part in parts if part.volume > SPLINTER * bound.enclosed]
+        filled = sum(part.volume for part in parts)
+        if abs(filled / bound.enclosed - 1) > SAME_VOLUME:
+            raise ValueError(f"parts fill {filled:.4g} m3 of {bound.enclosed:.4g} m3; do its faces cross?")
+        return Compound(parts, body.fixed, body.name) if len(parts) > 1 else _whole(bound, density)
+    except (ValueError, TypeError) as error:
+        raise ValueError(
+            f"body {body.name} is not convex, and cannot be cut into parts: {error}; convex='hull' takes its hull, "
+            f"which adds {bound.added:.2%} to its volume"
+        ) from None

@@ -1,0 +1,225 @@
+"""The pictures of a report: the wall with its hinge and effects, capacity curves, and the runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ..plotting.bodies import Bodies
+from ..plotting.sketch import elevation, section
+from ..plotting.style import OWN, Look, legend_below, several
+from ..problem.wall.case import Case
+from ..problem.wall.effects import forces_of
+from ..quantities import Array
+from ..result.response import Response
+from ..study.loading.mechanism import MechanismCheck
+from .texts import Words
+from .verdicts import Mechanism, effect_name
+
+WIDE = 7.0
+"""Width of a picture [inch]."""
+SMALL = 8.0
+"""Size of the least type [pt]."""
+TALL = 2.9
+"""Height of the drawing of a wall [inch]."""
+PANELS = 12
+"""Most records whose motion is drawn."""
+FAR = 2.0
+"""A limit that is farther than the motion by this factor would flatten it."""
+NAMED = 5
+"""Most runs of one record that are told apart by their lines."""
+OPENED = 0.06
+"""Rotation at which the mechanism is drawn [rad]."""
+HOLDS, FAILS = "#0b7a4b", "#b3261e"
+"""Colours of what holds and of what fails, which differ in lightness too."""
+
+
+class Run(NamedTuple):
+    """A response as a report names it.
+
+    Args:
+        response: the response.
+        variant: what it is a run of, or empty.
+        label: what it is called.
+        record: number of its record.
+        motion: name of the record, as it was recorded.
+        turned: whether the record is reversed.
+        largest: its largest displacement [m], infinite where it overturned or a block fell.
+    """
+
+    response: Response
+    variant: str
+    label: str
+    record: int
+    motion: str
+    turned: bool
+    largest: float
+
+    @property
+    def line(self) -> str:
+        """What tells it apart from other runs of its record."""
+        return self.variant or self.label
+
+
+def wall_drawn(case: Case, words: Words) -> Figure:
+    """Section and elevation with sizes, the hinge, the mechanism that opens about it, and the names of the effects."""
+    figure = Figure(figsize=(WIDE, TALL))
+    left, right = figure.add_axes((0.0, 0.0, 0.55, 0.94)), figure.add_axes((0.55, 0.0, 0.45, 0.94))
+    section(left, case, words("stop"))
+    loaded = any(force[0] == 0 for _, force in forces_of(case.effects).values())
+    left.set_ylim(-0.13 * 2 * case.block.h, left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h)
+    elevation(right, case, left.get_ylim())
+    wall = case.wall
+    opened = Bodies(np.zeros(1), (wall.outline,), case.centroids, wall.pose(np.array([OPENED]))[None])
+    left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
+    look: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
+    left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **look)
+    for name, effect in case.named.items():
+        x, beside = (left.get_xlim()[0], (12, 3)) if effect.on_face else (case.block.b, (26, -10))
+        note = left.annotate(effect_name(name, words), (x, effect.height), beside, **look)
+        note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
+    for ax, title in ((left, "section"), (right, "elevation")):
+        ax.axis("off")
+        ax.set_aspect("equal", anchor="S")
+        ax.set_title(words(title), fontsize=SMALL)
+        for text in ax.texts:
+            text.set_fontsize(max(SMALL, text.get_fontsize()))
+    return figure
+
+
+def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | None:
+    """The curve of each kinematic check with its capacities and the demands; None without one."""
+    given = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
+    if not given:
+        return None
+    figure, axes = several(len(given), min(2, len(given)), (WIDE / min(2, len(given)), 2.25))
+    for ax, (name, check) in zip(axes.flat, given, strict=False):
+        _curve(ax, check, words)
+        ax.set_title(name, fontsize=9)
+    marks: list[tuple[Look, str]] = [
+        ({"color": "#12406b"}, words("capacity_curve")),
+        ({"marker": "o", "linestyle": "", "color": "0.2"}, words("verdict_capacity")),
+        ({"marker": "D", "linestyle": "", "color": HOLDS}, words("demand_holds")),
+        ({"marker": "D", "linestyle": "", "color": FAILS}, words("demand_fails")),
+    ]
+    handles = [Line2D([], [], **look) for look, _ in marks]
+    legend_below(figure, handles, [said for _, said in marks], 4, fontsize=SMALL)
+    return figure
+
+
+def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
+    """A capacity curve, the period of each limit state, its capacity on the curve, and the demand at its period."""
+    ax.plot(check.d, check.a, color="#12406b", linewidth=1.8)
+    asked = [(2 * math.pi / state.period) ** 2 * state.demand for state in check.states.values()]
+    top = 1.15 * max(float(check.a.max()), *asked)
+    for name, state in check.states.items():
+        held = float(np.interp(state.capacity, check.d, check.a))
+        stiff = (2 * math.pi / state.period) ** 2
+        end = max(state.demand, state.capacity)
+        ax.plot([0.0, end], [0.0, min(stiff * end, top)], color="0.6", linewidth=0.7, linestyle=":")
+        colour = HOLDS if state.ratio >= 1 else FAILS
+        ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
+        ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
+        for d, a, beside in ((state.capacity, held, (-4, -11)), (state.demand, stiff * state.demand, (4, 4))):
+            ax.annotate(words(name), (d, a), beside, textcoords="offset points", fontsize=SMALL, zorder=6)
+    far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
+    ax.set(xlim=(0, 1.05 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
+    _small(ax)
+
+
+def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str, words: Words) -> Figure:
+    """The largest displacement of each run: a row a record, a colour a variant, hollow where the record is reversed.
+
+    Runs without variants have a row each.
+
+    Args:
+        runs: the runs.
+        limits: what may be reached, in words and in numbers [m].
+        beyond: what those runs are called that know no largest displacement.
+        words: of the report.
+    """
+    rows = list(dict.fromkeys(run.label for run in runs))
+    variants = list(dict.fromkeys(run.variant for run in runs))
+    figure = Figure(figsize=(WIDE, min(8.5, 1.5 + 0.24 * len(rows))), layout="constrained")
+    ax = figure.subplots()
+    known = [run.largest for run in runs if math.isfinite(run.largest)]
+    top = 1.08 * max([*known, *(limit for _, limit in limits), 1e-6])
+    for run in runs:
+        order = variants.index(run.variant)
+        colour = OWN[order % len(OWN)]["color"]
+        y = rows.index(run.label) + 0.22 * (order - 0.5 * (len(variants) - 1))
+        x = 1e3 * (run.largest if math.isfinite(run.largest) else 1.06 * top)
+        look = {"marker": "o" if math.isfinite(run.largest) else "X", "color": colour}
+        ax.plot(x, y, linestyle="", markersize=5.5, markerfacecolor="white" if run.turned else colour, **look)
+    ax.axvspan(1e3 * top, 1.12e3 * top, color="0.93", zorder=0)
+    above: Look = {"transform": ax.get_xaxis_transform(), "fontsize": SMALL, "ha": "center", "va": "bottom"}
+    ax.text(1.06e3 * top, 1.01, beyond, **above)
+    for said, limit in limits:
+        ax.axvline(1e3 * limit, color="0.35", linewidth=0.9, linestyle="--", zorder=1)
+        ax.text(1e3 * limit, 1.01, said, **above)
+    ax.set_yticks(range(len(rows)), labels=rows)
+    ax.set(xlim=(0, 1.12e3 * top), ylim=(len(rows) - 0.4, -0.6), xlabel=words("axis_largest"))
+    ax.grid(axis="y", color="0.92")
+    looks = {one: {"color": OWN[i % len(OWN)]["color"]} for i, one in enumerate(variants) if one}
+    looks |= {words("recorded"): {"color": "0.3"}, words("reversed"): {"color": "0.3", "markerfacecolor": "white"}}
+    handles = [Line2D([], [], marker="o", linestyle="", **look) for look in looks.values()]
+    legend_below(figure, handles, list(looks), 5, fontsize=SMALL)
+    _small(ax)
+    return figure
+
+
+def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, words: Words) -> Figure:
+    """Displacement over time in small panels, one a record, those with the largest motion where there are many.
+
+    Args:
+        runs: the runs.
+        moved: displacement of each at its samples [m], shape (n,).
+        limit: displacement from which nothing comes back, or None [m].
+        words: of the report.
+    """
+    lines = list(dict.fromkeys(run.line for run in runs))
+    told = len(lines) <= NAMED
+    worst = sorted(
+        dict.fromkeys(run.record for run in runs), key=lambda n: -max(r.largest for r in runs if r.record == n)
+    )
+    records = sorted(worst[:PANELS])
+    figure, axes = several(
+        len(records), min(2, len(records)), (WIDE / min(2, len(records)), 1.32 if len(records) > 4 else 1.8)
+    )
+    finite = [float(np.abs(path).max()) for run, path in zip(runs, moved, strict=True) if math.isfinite(run.largest)]
+    top = 1.1e3 * max([*finite, 1e-6]) if finite else 1.1e3 * (limit or 1.0)
+    if limit is not None and 1e3 * limit < FAR * top:
+        top = max(top, 1.1e3 * limit)
+    for ax, record in zip(axes.flat, records, strict=False):
+        for run, path in zip(runs, moved, strict=True):
+            if run.record == record:
+                style = OWN[lines.index(run.line) % len(OWN)] if told else {"color": "0.4"}
+                dash = ":" if run.turned else "-"
+                ax.plot(run.response.t, 1e3 * path, color=style["color"], linestyle=dash, linewidth=0.9)
+                name = run.motion
+        if limit is not None:
+            ax.axhline(1e3 * limit, color="0.4", linewidth=0.7, linestyle="--")
+        low = min(float(path.min()) for path in moved)
+        ax.set(ylim=(max(-top, 1.05e3 * low - 0.03 * top), top), xlim=(0, None))
+        ax.set_title(name, fontsize=SMALL, pad=2)
+        _small(ax)
+    for ax in axes[-1]:
+        ax.set_xlabel(words("axis_t"), fontsize=SMALL)
+    figure.supylabel(words("axis_moved"), fontsize=SMALL)
+    if told:
+        handles = [Line2D([], [], color=OWN[i % len(OWN)]["color"]) for i in range(len(lines))]
+        legend_below(figure, handles, lines, 4, fontsize=SMALL)
+    return figure
+
+
+def _small(ax: Axes) -> None:
+    """Type of small panels."""
+    ax.tick_params(labelsize=SMALL)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.label.set_fontsize(SMALL)

@@ -1,0 +1,104 @@
+"""The words of a report in its language, and how it writes numbers."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from decimal import Decimal
+from functools import cache
+from pathlib import Path
+
+from ..quantities import require_kind
+
+FILE = Path(__file__).with_name("texts.toml")
+"""The texts of all languages. A further language is a further line of each."""
+SCALES: dict[str, tuple[tuple[float, float, str], ...]] = {
+    "m": ((0.1, 1, "m"), (0, 1e-3, "mm")),
+    "s": ((0.01, 1, "s"), (0, 1e-3, "ms")),
+    "kg": ((1e4, 1e3, "t"), (0, 1, "kg")),
+    "N": ((1e6, 1e6, "MN"), (0, 1e3, "kN")),
+    "J": ((1e6, 1e6, "MJ"), (1e3, 1e3, "kJ"), (0, 1, "J")),
+    "N m": ((1e6, 1e6, "MN m"), (0, 1e3, "kN m")),
+    "N/m": ((1e6, 1e6, "MN/m"), (0, 1e3, "kN/m")),
+    "N s/m": ((0, 1e3, "kN s/m"),),
+    "N/m3": ((1e9, 1e9, "GN/m³"), (0, 1e6, "MN/m³")),
+    "kg/m3": ((0, 1, "kg/m³"),),
+    "m/s2": ((0, 1, "m/s²"),),
+}
+"""How a unit is written: from which value on, divided by what, and its name then."""
+SMALL = 1e-3
+"""Below it a number is written with a power of ten."""
+POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""Digits of a power."""
+DASH, MINUS = "\u2013", "\u2212"
+"""What stands where there is no value, and the sign of a negative one."""
+GIVEN, FOUND = 4, 3
+"""Digits of what was given, and of what was found."""
+
+
+@cache
+def texts() -> dict[str, dict[str, str]]:
+    """Every text by its key and its language."""
+    return tomllib.loads(FILE.read_text(encoding="utf-8"))
+
+
+def languages() -> list[str]:
+    """The languages that every text has."""
+    return sorted(set.intersection(*(set(text) for text in texts().values())))
+
+
+class Words:
+    """The words of one language.
+
+    Args:
+        language: one of `languages()`.
+
+    Raises:
+        TypeError, ValueError: for any other, with those that there are.
+    """
+
+    def __init__(self, language: str) -> None:
+        require_kind("language", language, str)
+        if language not in languages():
+            raise ValueError(f"language = {language!r} is none of {', '.join(languages())}")
+        self.language = language
+        self.mark = texts()["decimal_mark"][language]
+
+    def __call__(self, key: str, /, **values: object) -> str:
+        """The text of a key, with values in their places."""
+        return texts()[key][self.language].format(**values)
+
+    def or_else(self, key: str, other: str) -> str:
+        """The text of a key, or another one where there is none."""
+        return self(key) if key in texts() else other
+
+    def marked(self, text: str) -> str:
+        """Numbers of a text with the decimal mark of the language."""
+        return text.replace(".", self.mark)
+
+    def number(self, value: float, digits: int = GIVEN) -> str:
+        """A number with so many digits that count; what was found keeps its last zeros."""
+        if not math.isfinite(value):
+            return "∞" if value > 0 else DASH
+        if 0 < abs(value) < SMALL:
+            power = math.floor(math.log10(abs(value)) + 1e-12)
+            return f"{self.number(value / 10**power, digits)}\u00b710{str(power).translate(POWERS)}"
+        said = format(Decimal(f"{value:#.{digits}g}"), "f")
+        if digits != FOUND and "." in said:
+            said = said.rstrip("0").rstrip(".")
+        return self.marked(said).replace("-", MINUS)
+
+    def ratio(self, value: float) -> str:
+        """A ratio with two decimals, cut off and not rounded, so that none below one reads as one."""
+        return "> 99" if value > 99 else self.marked(f"{math.floor(100 * value + 1e-9) / 100:.2f}")
+
+    def quantity(self, value: float, unit: str, digits: int = GIVEN) -> str:
+        """A number with its unit and the prefix that suits it."""
+        scales = SCALES.get(unit, ((0.0, 1.0, unit),))
+        suits = (scale for scale in scales if (abs(value) >= scale[0] if value else scale[1] == 1))
+        _, factor, name = next(suits, scales[-1])
+        return f"{self.number(value / factor, digits)}\u00a0{name}" if name else self.number(value / factor, digits)
+
+    def share(self, value: float) -> str:
+        """A share in per cent."""
+        return f"{self.number(100 * value)}\u00a0%"

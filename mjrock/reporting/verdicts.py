@@ -1,0 +1,237 @@
+"""What a report answers: the verdicts of the checks, their steps clause by clause, and what governs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..quantities import require_kind, require_text, shown
+from ..study.loading.dynamic import LEAST, DynamicCheck
+from ..study.loading.mechanism import DAMPING, PERIOD, SHARE, MechanismCheck, Step, Verdict
+from .markup import Markup, element, formula, table
+from .texts import DASH, FOUND, Words
+
+Check = MechanismCheck | DynamicCheck
+REVERSED = ", reversed"
+"""How the name of a reversed motion ends."""
+ABREAST = 4
+"""Mechanisms whose steps stand beside each other in one table."""
+FORMULAE = {
+    "alpha_0": "alpha_0",
+    "participation": "e^* = {{(Σ P_i δ_i)}^2}/{{(Σ P_i)} {(Σ P_i δ_i^2)}}",
+    "confidence_factor": "FC",
+    "a_0": "a_0 = {alpha_0 g}/{e^* FC}",
+    "linear": "q a_0 , q = 2",
+    "alpha_tied": "alpha_{0,t}",
+    "linear_tied": "q {alpha_{0,t} g}/{e^* FC}",
+    "peak": "a_g S",
+    "linear_ratio": "{q a_0}/{a_g S}",
+    "elastic_period": "T_0",
+    "d_0": "a(d_0) = 0",
+    "capacity": "d_{OF} = SHARE d_0",
+    "period": "T_{OF} = FACTOR π √{{d_{OF}}/{a(d_{OF})}}",
+    "demand": "S_{De}(T_{OF}, ξ = DAMPING %)",
+    "ratio": "{d_{OF}}/{S_{De}}",
+    "ground_ratio": "{a_{g,SLV}}/{a_g} ≥ {a_{g,SLD}}/{a_g}",
+}
+"""The formula of each step, see `formula`."""
+
+
+class Mechanism(NamedTuple):
+    """A mechanism, or a variant of one, and its checks.
+
+    Args:
+        name: what it is called.
+        kinematic: the check on its push-over curve, or None.
+        dynamic: those by dynamic runs.
+    """
+
+    name: str
+    kinematic: MechanismCheck | None
+    dynamic: tuple[DynamicCheck, ...]
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """All conditions."""
+        first = self.kinematic.verdicts if self.kinematic else ()
+        return (*first, *(verdict for check in self.dynamic for verdict in check.verdicts))
+
+
+def required_checks(checks: object, alone: str) -> list[Mechanism]:
+    """Checks by the names of their mechanisms; TypeError for anything else, ValueError for two kinematic ones of one.
+
+    Args:
+        checks: one, several of one mechanism, or a mapping of names to such.
+        alone: the name of the mechanism where none is given.
+    """
+    if checks is None:
+        return []
+    found = []
+    for name, given in (checks if isinstance(checks, Mapping) else {alone: checks}).items():
+        several = [given] if isinstance(given, Check) else given
+        if not isinstance(several, Sequence) or isinstance(several, str):
+            raise TypeError(f"checks = {shown(given)} is no MechanismCheck or DynamicCheck, nor several of them")
+        if not several:
+            raise ValueError(f"checks[{name!r}] is empty; at least one check is needed")
+        for one in several:
+            require_kind(f"checks[{name!r}]", one, MechanismCheck, DynamicCheck)
+        kinematic = [one for one in several if isinstance(one, MechanismCheck)]
+        if len(kinematic) > 1:
+            raise ValueError(f"checks[{name!r}] has {len(kinematic)} kinematic checks; name each mechanism")
+        dynamic = tuple(one for one in several if isinstance(one, DynamicCheck))
+        found.append(Mechanism(require_text("a name of checks", name), kinematic[0] if kinematic else None, dynamic))
+    return found
+
+
+def answers(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """What holds, mechanism by mechanism, and every condition that says so."""
+    rows, columns = [], ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
+    names: dict[str, list[str]] = {"holds": [], "part": [], "fails": []}
+    for mechanism in mechanisms:
+        verdicts = mechanism.verdicts
+        held = sum(verdict.holds for verdict in verdicts)
+        names["holds" if held == len(verdicts) else "part" if held else "fails"].append(mechanism.name)
+        said = words("conditions_held", held=held, count=len(verdicts))
+        name = element("td", element("b", mechanism.name), Markup("<br>"), said, rowspan=str(len(verdicts)))
+        for i, verdict in enumerate(verdicts):
+            rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
+    held_by = [(element("span", words(kind), kind=kind), "; ".join(of)) for kind, of in names.items() if of]
+    lines = [element("p", mark, " ", of) for mark, of in held_by]
+    return [*lines, table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))]
+
+
+def _conditions(verdict: Verdict, words: Words) -> list[str]:
+    """Cells of one condition."""
+
+    def amount(value: float) -> Markup:
+        said = words("overturned") if math.isinf(value) else words.quantity(value, verdict.unit, FOUND)
+        return element("td", said, kind="right")
+
+    kind = "holds" if verdict.holds else "fails"
+    numbers = amount(verdict.demand), amount(verdict.capacity), element("td", words.ratio(verdict.ratio), kind="right")
+    what = words(verdict.what), words(verdict.limit_state)
+    return [*what, *numbers, element("td", words(kind), kind=kind), verdict.clause]
+
+
+def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
+    """The least ratio of each mechanism with its check, and the record with the largest displacement."""
+    rows = []
+    for mechanism in mechanisms:
+        least = min(mechanism.verdicts, key=lambda verdict: verdict.ratio)
+        runs = [run for check in mechanism.dynamic for run in check.runs]
+        record = d = DASH
+        if runs:
+            worst = max(runs, key=lambda run: run.d)
+            record = worst.name.removesuffix(REVERSED)
+            record += f" ({words('reversed')})" if record != worst.name else ""
+            d = words("overturned") if math.isinf(worst.d) else words.quantity(worst.d, "m", FOUND)
+        what = f"{words(least.what)}, {words(least.limit_state)}"
+        rows.append((mechanism.name, words.ratio(least.ratio), what, record, d))
+    columns = ("verdict_mechanism", "least_ratio", "verdict_check", "worst_record", "run_largest")
+    return table([words(name) for name in columns], rows, right=(1, 4))
+
+
+def limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
+    """What the kinematic checks do not say."""
+    said = [words("limit_seat")] if any(mechanism.kinematic for mechanism in mechanisms) else []
+    for name, check, _ in mechanisms:
+        if check and (gone := [words(state) for state in check.states if check.broken_before(state)]):
+            said.append(words("limit_broken", name=name, states=", ".join(gone)))
+    return said
+
+
+def kinematic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The steps of the kinematic checks, a column a mechanism."""
+    given = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
+    made = []
+    for start in range(0, len(given), ABREAST):
+        some = given[start : start + ABREAST]
+        rows = [_step(step, [check for _, check in some], words) for step in _all_steps([check for _, check in some])]
+        heads = [words("step"), words("formula"), *(name for name, _ in some), words("verdict_clause")]
+        made.append(table(heads, rows, right=range(2, 2 + len(some))))
+    return made
+
+
+def _all_steps(checks: Sequence[MechanismCheck]) -> list[Step]:
+    """The steps of several checks, each once: one that the first has not follows the one that stands before it."""
+    merged: list[Step] = []
+    for check in checks:
+        at = 0
+        for step in check.steps:
+            same = [i for i, one in enumerate(merged) if (one.key, one.of) == (step.key, step.of)]
+            if not same:
+                merged.insert(at, step)
+            at = 1 + (same[0] if same else at)
+    return merged
+
+
+def _step(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[str]:
+    """A row: what it is, its formula, its value in each check, and its clause."""
+    share, damping = (words.number(of.get(step.of, 0.0) * by) for of, by in ((SHARE, 1), (DAMPING, 100)))
+    factor = words.number(PERIOD.get(step.of, 0.0) / math.pi, FOUND)
+    shape = FORMULAE.get(step.key, "").replace("SHARE", share).replace("DAMPING", damping)
+    shape = shape.replace("FACTOR", factor).replace("OF", step.of)
+    cells = []
+    for check in checks:
+        found = [one for one in check.steps if (one.key, one.of) == (step.key, step.of)]
+        cells.append(_value(found[0], check, words) if found else DASH)
+    return [words(f"step_{step.key}", of=effect_name(step.of, words)), formula(shape), *cells, step.clause]
+
+
+def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
+    """The cell of a value; a ratio says by its colour whether it holds, if none below takes its place."""
+    if not step.key.endswith("ratio"):
+        return element("td", words.quantity(step.value, step.unit, FOUND), kind="right")
+    counts = step.key != "ratio" or step.of != "SLV" or step.value >= check.ground_ratio
+    kind = f"right {'holds' if step.value >= 1 else 'fails'}" if counts else "right"
+    return element("td", words.ratio(step.value), kind=kind)
+
+
+def effect_name(name: str, words: Words) -> str:
+    """An effect, such as the second of the ties, in words; a limit state as it is."""
+    kind, _, number = name.rpartition("_")
+    known = words.or_else(f"effect_{kind}", "")
+    return f"{known} {int(number) + 1}" if known and number.isdigit() else name
+
+
+def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The conditions of the checks by dynamic runs, a column a check."""
+    given = [(mechanism.name, check) for mechanism in mechanisms for check in mechanism.dynamic]
+    made = []
+    for start in range(0, len(given), ABREAST):
+        columns = [_dynamic(check, words) for _, check in given[start : start + ABREAST]]
+        rows = [[words(f"dynamic_{key}"), *(column[key] for column in columns)] for key in columns[0]]
+        heads = [words("step"), *(name for name, _ in given[start : start + ABREAST])]
+        made.append(table(heads, rows))
+    return made
+
+
+def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
+    """What a check by dynamic runs found, by its key."""
+
+    def length(d: float) -> str:
+        return words("overturned") if math.isinf(d) else words.quantity(d, "m", FOUND)
+
+    e = DASH
+    if check.restitution:
+        low, middle, high = (words.number(one, FOUND) for one in np.percentile(check.restitution, [5, 50, 95]))
+        e = words("restitution_found", middle=middle, low=low, high=high, count=len(check.restitution))
+    lacks = [words("lacks_records", count=check.records, least=LEAST)] if check.records < LEAST else []
+    if check.in_one_polarity:
+        lacks.append(words("lacks_polarity", count=check.in_one_polarity))
+    if not check.natural:
+        lacks.append(words("lacks_natural" if check.natural is False else "lacks_origin"))
+    return {
+        "state": words(check.limit_state),
+        "runs": words("runs_and_records", runs=len(check.runs), records=check.records),
+        "d_0": length(check.d_0),
+        "exceeded": str(len(check.exceeded)),
+        "largest": length(max(run.d for run in check.runs)),
+        "mean": length(check.mean),
+        "capacity": words("share_of", d=length(check.capacity), share=words.number(SHARE[check.limit_state])),
+        "restitution": e,
+        "lacks": "; ".join(lacks) or words("nothing"),
+    }
