@@ -46,7 +46,8 @@ def blocks(
 ) -> Axes:
     """The blocks of masonry to scale, fixed ones in grey, where they rest or at a pose.
 
-    Blocks in space need an `ax` of three dimensions, `figure.add_subplot(projection="3d")`.
+    Blocks in space need an `ax` of three dimensions, `figure.add_subplot(projection="3d")`. They fill it, with a scale
+    bar in place of axes.
 
     Args:
         ax: where to draw.
