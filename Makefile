@@ -94,7 +94,10 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/ida.py --out docs/figures
 	$(BIN)/python scripts/studies/fragility.py --out docs/figures
 	$(BIN)/python scripts/studies/polarity.py --out docs/figures
+	$(BIN)/python scripts/studies/town.py --out docs/figures
 	$(BIN)/python scripts/studies/sensitivity.py --out docs/figures
+	$(BIN)/python scripts/studies/limestone_blocks.py --out docs/figures
+	$(BIN)/python scripts/studies/restitution_spread.py --out docs/figures
 	$(BIN)/python scripts/studies/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/measure/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/studies/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
@@ -111,6 +114,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/plain_models.py --out docs/figures
 	$(BIN)/python scripts/studies/second_opinion.py --out docs/figures
 	$(BIN)/python scripts/studies/in_the_viewer.py --out docs/figures
+	$(BIN)/python scripts/studies/in_the_browser.py --out docs/figures
 	$(BIN)/python scripts/studies/columns_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
 	$(BIN)/python scripts/studies/facade_in_space.py --out docs/figures

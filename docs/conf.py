@@ -19,6 +19,7 @@ HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
 import mjrock  # noqa: E402
+from scripts.studies.in_the_browser import falling_arch  # noqa: E402
 
 matplotlib.use("agg")
 
@@ -133,12 +134,8 @@ def compile_loops() -> None:
 
 def write_live_view() -> None:
     """Write the page that results.md shows: an arch whose support moves away, to be turned and played."""
-    arch = mjrock.Masonry.arch(radius=1.0, thickness=0.25, voussoirs=11, ground=True)
-    t = [0.0, 1.0]
-    spread = {"right_abutment": (t, [0.0, 0.5], [0.0, 0.0])}
-    answer = mjrock.solve_explicit(mjrock.MasonryCase(arch, 2.0, supports=spread), output_step=0.02, forces=True)
     LIVE.mkdir(parents=True, exist_ok=True)
-    mjrock.plotting.view(answer, LIVE / "arch_view.html")
+    mjrock.plotting.view(falling_arch(), LIVE / "arch_view.html")
 
 
 compile_loops()

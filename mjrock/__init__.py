@@ -39,11 +39,11 @@ if TYPE_CHECKING:
     from .problem.damping.interface import Interface, reference_frequency
     from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
     from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
-    from .problem.damping.restitution import Restitution
+    from .problem.damping.restitution import Restitution, ScatteredRestitution
     from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
     from .problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, code_spectrum
     from .problem.ground.motion import GroundMotion
-    from .problem.ground.record_sets import RecordSet, records_in, scaled_together
+    from .problem.ground.record_sets import RecordSet, components_in, records_in, scaled_together
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.actuator import Actuator
     from .problem.masonry.blocks.compound import Compound
@@ -107,17 +107,18 @@ __all__ = [
     "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact",
     "MechanismCheck", "Mortar", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan",
     "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum",
-    "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError",
-    "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__",
-    "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare",
-    "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "dynamic_check",
-    "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes",
-    "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
-    "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of",
-    "overturning_intensity", "paired_ratio", "push", "pushover", "records_in", "reference_frequency", "report",
-    "response_spectrum", "results", "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum",
-    "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical", "solve_compliant",
-    "solve_explicit", "stiffness_range", "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "Restitution", "RigidImpact", "RockingSpectrum", "ScatteredRestitution", "Scene", "Sensitivity", "SideStop",
+    "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "VerticalBending", "Wedge",
+    "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum",
+    "collapse_multiplier", "compare", "components_in", "contact_for", "contact_parameters", "contact_stiffness",
+    "contacts_for", "crushed_inset", "dynamic_check", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida",
+    "inspect_contacts", "inspect_flexes", "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf",
+    "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
+    "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
+    "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
+    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
+    "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_bar", "wall_mjcf",
+    "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)

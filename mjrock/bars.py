@@ -59,6 +59,8 @@ class Bar:
 
     def __exit__(self, *error: object) -> None:
         if self.bar is not None:
+            if self.total is not None and error[0] is None:
+                self.bar.total = self.bar.n  # a run may end before its time, and is whole then
             self.bar.close()
 
     def add(self, more: float = 1.0) -> None:
@@ -70,7 +72,7 @@ class Bar:
         self.n = n if self.total is None else min(n, self.total)
         if self.bar is None and time.time() - self.begun >= DELAY:
             self.bar = shown_bar(self.what, self.unit, self.total, leave=None)
-            self.bar.start_t = self.begun
+            self.bar.start_t = self.bar.last_print_t = self.begun  # the rate is that since then
         if self.bar is not None:
             self.bar.update(self.n - self.bar.n)
 

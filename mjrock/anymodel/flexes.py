@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..quantities import Array
+from ..quantities import Array, short_repr
 from .geoms import compiled_model, label_of
 from .notes import model_spoilers
 from .row_of_model import Mixed, ModelRow
@@ -33,6 +33,8 @@ class FlexContact:
     points: int
     k: Array
     c: Array
+
+    __repr__ = short_repr
 
     def __str__(self) -> str:
         """Its numbers as one line of text."""

@@ -11,6 +11,7 @@ from ..geometry.frames import PLANE
 from ..quantities import Array
 from ..scene.checks import GROUND
 from ..scene.scene import Scene
+from ..scene.tints import BRICKS, told_apart
 from .tags import tag, value_text
 
 BALL = (("x", "slide", "1 0 0"), ("y", "slide", "0 1 0"), ("z", "slide", "0 0 1"))
@@ -18,15 +19,6 @@ BALL = (("x", "slide", "1 0 0"), ("y", "slide", "0 1 0"), ("z", "slide", "0 0 1"
 HINGE = (("x", "slide", "1 0 0"), ("z", "slide", "0 0 1"), ("theta", "hinge", "0 1 0"))
 """The joints of a body of the plane."""
 
-TINTS = (
-    (0.70, 0.33, 0.23, 1.0),
-    (0.79, 0.47, 0.33, 1.0),
-    (0.60, 0.27, 0.19, 1.0),
-    (0.74, 0.40, 0.25, 1.0),
-    (0.65, 0.36, 0.29, 1.0),
-    (0.83, 0.53, 0.40, 1.0),
-)
-"""Colours of the blocks of masonry in space, of which MuJoCo draws no edges."""
 PLATE = 4.0
 """How far the plate of a face reaches from the middle of its joint, over the largest extent of the bodies [-]."""
 LEAST_MOMENT = 1e-14
@@ -56,19 +48,12 @@ def world(scene: Scene) -> Iterator[str]:
 
 def tints(scene: Scene) -> list[dict[str, object]]:
     """Colours of the bodies: where there are several, another one than those of the blocks they touch."""
-    if len(scene.bodies.names) == 1:
-        return [{}] * len(scene.bodies.names)
-    touching: list[set[int]] = [set() for _ in scene.bodies.names]
-    for body, face in zip(scene.contacts.body.tolist(), scene.contacts.face_body.tolist(), strict=True):
-        if face != GROUND:
-            touching[body].add(face)
-            touching[face].add(body)
-    chosen: list[int] = []
-    for j, near in enumerate(touching):
-        taken = {chosen[i] for i in near if i < j}
-        order = [(j + k) % len(TINTS) for k in range(len(TINTS))]
-        chosen.append(next((tint for tint in order if tint not in taken), order[0]))
-    return [{"rgba": TINTS[tint]} for tint in chosen]
+    count, contacts = len(scene.bodies.names), scene.contacts
+    if count == 1:
+        return [{}]
+    touching = zip(contacts.body.tolist(), contacts.face_body.tolist(), strict=True)
+    chosen = told_apart(count, (pair for pair in touching if GROUND not in pair))
+    return [{"rgba": (*BRICKS[tint], 1.0)} for tint in chosen]
 
 
 def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) -> Iterator[str]:

@@ -6,7 +6,7 @@ that imports matplotlib.
 
 from .animation import animate, animate_bodies
 from .browser import view
-from .earthquakes import fragility, incremental, spectra
+from .earthquakes import fragility, incremental, record, spectra
 from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
 from .masonry import blocks, mechanism, thrust
 from .pushing import moment_rotation, push, pushover
@@ -17,5 +17,5 @@ from .tornado import tornado
 __all__ = [
     "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "displacement",
     "energy", "fragility", "grid", "history", "incremental", "mechanism", "moment_rotation", "panels", "push",
-    "pushover", "rotation", "save", "single", "sketch", "spectra", "thrust", "ties", "tornado", "view",
+    "pushover", "record", "rotation", "save", "single", "sketch", "spectra", "thrust", "ties", "tornado", "view",
 ]  # fmt: skip

@@ -2,182 +2,272 @@
 
 from __future__ import annotations
 
+import base64
 import html
+import json
+import zlib
+from collections.abc import Iterator
+from functools import cached_property
+from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from string import Template
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..files import write_text
-from ..geometry.poses import rotations
+from ..geometry.creases import creases_of
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
-from ..problem.wall.standing import in_space
+from ..problem.wall.standing import Solid, in_space
 from ..quantities import Array, Integers, require_path
 from ..result.bodies import Moving, bodies_of, frames_at
 from ..result.response import Response
+from ..scene.tints import BRICKS, told_apart
 from .arguments import kind, picture
-from .forces import CRACKED, NOTHING, Acting, edges_of
-from .perspective import GROUND_COLOUR
-from .section import FORCE
-from .solids import TINTS
+from .forces import LARGE, LONGEST, NOTHING, Acting, edges_of
 
-SUPPORT, TIE = "#bdbdbd", "#1f5f9e"
-THICK = 0.005
-"""Thickness of lines, over the extent of what moves [-]."""
-WAY = np.array([0.7, -0.9, 0.3])
-"""Vector from the middle of what moves to the camera, over its extent [-]."""
-PANEL = """
-const world = K3DInstance.getWorld(), objects = Object.values(world.ObjectsListJson);
-const panel = document.createElement('div'), last = LAST;
-panel.style = 'position:absolute;left:12px;top:12px;font:14px sans-serif;background:#fffd;padding:8px;z-index:99999';
-document.body.appendChild(panel);
-const add = (tag, more, parent) => (parent || panel).appendChild(Object.assign(document.createElement(tag), more));
-const play = add('button', {id: 'play', textContent: 'play'});
-const slider = add('input', {id: 'time', type: 'range', min: FIRST, max: last, step: 'any', value: FIRST});
-const clock = add('span', {id: 'clock'});
-const put = t => { slider.value = t; clock.textContent = t.toFixed(2) + ' s'; return K3DInstance.setTime(t); };
-slider.oninput = () => put(+slider.value);
-let since = null;
-const step = now => {
-  if (play.textContent === 'play') { since = null; return; }
-  const before = since === null ? now : since, t = +slider.value + (now - before) / 1000;
-  since = now;
-  put(t > last ? FIRST : t);
-  requestAnimationFrame(step);
-};
-play.onclick = () => {
-  play.textContent = play.textContent === 'play' ? 'pause' : 'play';
-  if (play.textContent === 'pause') requestAnimationFrame(step);
-};
-for (const group of new Set(objects.map(o => o.group))) {
-  const label = add('label', {style: 'display:block'});
-  const box = add('input', {type: 'checkbox', checked: true, name: group}, label);
-  label.append(group);
-  box.onchange = () => Promise.all(objects.filter(o => o.group === group).map(o => {
-    world.ObjectsListJson[o.id].visible = box.checked;
-    return K3DInstance.reload(world.ObjectsListJson[o.id], null, true);
-  })).then(() => put(+slider.value)).then(() => K3DInstance.render());
-}
-put(FIRST);
-"""
-"""The switches and the slider of the page. The names in capitals are the first and the last time [s]."""
+Json = dict[str, object]
+"""An object in the data of the page."""
+FINE, COARSE = 2.0**-20, 2.0**-13
+"""Steps in which places are kept over the extent of the blocks [-], and of rotations; the same for forces."""
+ON_LEVEL, SUNK = 1e-3, 0.05
+"""How far a fixed block may reach above the lowest corner and be ground, and how far blocks may sink below its top and
+the ground still goes on, over the extent of the blocks [-]."""
+AROUND = 0.6
+"""How far around the blocks at rest the camera looks at those that move, over their extent [-]."""
+BEYOND = 1.3
+"""Radius of the ground, over the farthest distance of a corner from the middle [-]."""
+LAST = 1e30
+"""A time after all runs, for JSON, which has no infinity [s]."""
+POINTS = 1200
+"""Points of a line that shows what the ground does."""
+WAYS = {False: (0.42, -1.0, 0.26), True: (0.75, -1.0, 0.42)}
+"""From the middle of the blocks to the camera, in the plane and in space."""
+GROUNDS = {"motion": "along x", "vertical": "upwards", "transverse": "along y"}
+"""Where the components of the acceleration of the ground point."""
 
 
 @picture(response=kind(Response))
 def view(response: Response, path: str | Path, *, fps: float = 25.0) -> Path:
     """Write a page with the motion of a response that opens in any browser without a network.
 
-    The blocks can be turned, zoomed, scrubbed and played. There is a switch for blocks, ground, supports that move,
-    ties, and for cracks and forces where the run kept forces. Forces in space act inside the blocks: switch the blocks
-    off to see them. Needs `pip install 'mjrock[view]'`.
+    The blocks can be turned, zoomed, scrubbed and played, with what the ground does below the slider. A block that is
+    clicked tells its name, mass and displacement. There is a switch for blocks, ground, supports that move, ties,
+    cracks, and, where the run kept them, for forces. `page.html#t=0.7&forces` opens the page at 0.7 s with forces.
 
     Args:
-        response: of any solver, of a wall or of masonry. Openings of a wall are left out.
-        path: where to, with the ending .html.
-        fps: positions that are kept a second [1/s], 1 to 10000; the page interpolates between them.
+        response: of any solver, of a wall or of masonry.
+        path: where to, with the ending .html. The same response has the same bytes.
+        fps: most samples of a second that are kept [1/s], 1 to 10000; the page interpolates between them.
 
     Returns:
         The path.
 
     Raises:
-        ImportError: if k3d is missing.
         ValueError: for another ending, or a value outside its range.
         OSError: if the file cannot be written.
     """
-    try:
-        import k3d
-    except ImportError as error:
-        raise ImportError(f"{error}; k3d makes this page: pip install 'mjrock[view]'") from error
     path = require_path("path", path)
     if path.suffix != ".html":
         raise ValueError(f"path = {str(path)!r} does not end with .html")
-    page = Page(k3d, response, frames_at(response.t, fps))
-    page.bodies()
-    page.ties()
-    if response.kept_forces is not None:
-        page.forces()
-    return write_text(path, page.text(path.stem))
+    run = json.dumps(Page(response, frames_at(response.t, fps)).run, separators=(",", ":")).replace("<", "\\u003c")
+    parts = files(__package__) / "page"
+    script, three = ((parts / name).read_text("utf-8") for name in ("view.js", "three/three.min.js"))
+    page = Template((parts / "view.html").read_text("utf-8"))
+    return write_text(path, page.substitute(title=html.escape(path.stem), run=run, three=three, script=script))
+
+
+def packed(rows: Array, step: float) -> Json:
+    """Numbers as text, in steps, shape (rows, samples): second differences along each row, which motion has small.
+
+    They are folded to numbers without sign, of four bytes each, of which the lowest bytes of all come first. The script
+    of the page unpacks them.
+    """
+    whole = np.rint(rows / step).astype(np.int64)
+    bent = np.diff(whole, n=2, axis=1, prepend=np.zeros((len(rows), 2), dtype=np.int64)).astype(np.int32)
+    folded = ((bent << 1) ^ (bent >> 31)).astype("<u4")
+    planes = np.ascontiguousarray(folded).view(np.uint8).reshape(-1, 4).T
+    data = base64.b64encode(zlib.compress(planes.tobytes(), 9)).decode()
+    return {"rows": len(rows), "step": step, "data": data}
 
 
 class Page:
     """What a page shows: a response at some of its samples."""
 
-    def __init__(self, k3d: Any, response: Response, samples: Integers) -> None:
-        self.k3d, self.response, self.case, self.samples = k3d, response, response.case, samples
-        self.t, self.pose = response.t[samples], response.pose[samples]
-        self.moving = Moving(self.case, self.t, self.pose)
-        self.all = bodies_of(self.case, self.t, self.pose, response.velocity[samples])
-        corners = np.concatenate([body.corners + body.rest for body in self.all if not body.fixed])
-        self.middle, self.extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
-        self.front = float(corners[:, 1].min()) - 2 * THICK * self.extent
-        self.plot = k3d.plot(
-            grid_visible=False, camera_auto_fit=False, camera_up_axis="z", menu_visibility=False, axes_helper=0.0
-        )
-        self.plot.camera = [*(self.middle + WAY * self.extent), *self.middle, 0.0, 0.0, 1.0]
+    def __init__(self, response: Response, samples: Integers) -> None:
+        self.response, self.case, self.samples = response, response.case, samples
+        self.t, pose = response.t[samples], response.pose[samples]
+        self.moving = Moving(self.case, self.t, pose)
+        self.bodies = bodies_of(self.case, self.t, pose, response.velocity[samples])
+        self.solids = self.case.standing.solids
+        free = [body for body in self.bodies if not body.fixed]
+        self.low, self.high = _ends(np.concatenate([body.rest + body.corners for body in free]))
+        self.reached = _ends(np.concatenate([_ends(body.placed(body.corners)) for body in free]))
+        self.extent = float((self.high - self.low).max())
+        self.digits = max(0, 6 - int(np.floor(np.log10(self.extent))))
 
-    def bodies(self) -> None:
-        """Add blocks, ground and supports."""
-        for i, body in enumerate(self.all):
-            group, colour = "blocks", TINTS[i % len(TINTS)]
-            if body.fixed:
-                group, colour = ("supports", SUPPORT) if body.moves else ("ground", GROUND_COLOUR)
-            mesh = self.k3d.mesh(
-                body.corners.astype(np.float32),
-                np.array(body.triangles, dtype=np.uint32),
-                color=_number(colour),
-                name=body.name,
-                group=group,
+    @property
+    def run(self) -> Json:
+        """All that the script of the page needs."""
+        room = AROUND * self.extent
+        low, high = np.maximum(self.reached[0], self.low - room), np.minimum(self.reached[1], self.high + room)
+        moves = [i for i, body in enumerate(self.bodies) if body.moves]
+        return {
+            "t": [float(f"{t:.9g}") for t in self.t],
+            **self._bodies(),
+            **self._poses(moves),
+            "moving": moves,
+            "tints": BRICKS,
+            "ties": list(self._ties()),
+            "cracks": list(self._cracks()),
+            "forces": None if self.response.kept_forces is None else self._forces(),
+            "track": list(self._track()),
+            "box": [self._rounded(low), self._rounded(high)],
+            "way": WAYS[self.response.in_space],
+            "reach": float(np.abs(self.reached - np.array([low, high])).max() + 2 * self.extent),
+            "ground": self._ground(),
+        }
+
+    def _rounded(self, values: Array) -> list[object]:
+        """Lengths [m] to a millionth of the extent."""
+        rounded: list[object] = (np.round(values, self.digits) + 0.0).tolist()
+        return rounded
+
+    def _bodies(self) -> Json:
+        """The bodies, and their shapes, those that are alike once."""
+        shapes, numbers = list[Json](), dict[str, int]()
+        joined = [(joint.below, joint.above) for joint in self.case.standing.joints]
+        touching = [pair for pair in joined if not any(self.bodies[i].fixed for i in pair)]
+        tints, bodies = told_apart(len(self.bodies), touching), list[Json]()
+        for i, (body, solid) in enumerate(zip(self.bodies, self.solids, strict=True)):
+            corners = self._rounded(body.corners)
+            number = numbers.setdefault(repr((corners, body.faces)), len(shapes))
+            if number == len(shapes):
+                edges = self._rounded(creases_of(solid.parts))
+                shapes.append({"corners": corners, "faces": body.faces, "edges": edges})
+            kind_of = "ground" if i in self.grounds else "supports" if body.fixed else "blocks"
+            bodies.append(
+                {
+                    "name": body.name,
+                    "mass": self._mass(solid),
+                    "shape": number,
+                    "rest": self._rounded(body.rest),
+                    "tint": None if body.fixed else tints[i],
+                    "kind": kind_of,
+                }
             )
-            matrices = np.tile(np.eye(4, dtype=np.float32), (len(self.t), 1, 1))
-            matrices[:, :3, :3], matrices[:, :3, 3] = rotations(body.pose), body.rest + body.pose[:, :3]
-            mesh.model_matrix = self._series(matrices) if body.moves else matrices[0]
-            self.plot += mesh
+        return {"bodies": bodies, "shapes": shapes}
 
-    def ties(self) -> None:
-        """Add a line for each link, until it breaks."""
+    def _mass(self, solid: Solid) -> float | None:
+        """Mass of a block with what is added to it [kg], None of what a wall stands on."""
+        return None if solid.block is None else float(f"{self.case.masses[solid.block]:.6g}")
+
+    @cached_property
+    def grounds(self) -> dict[int, Array]:
+        """Corners of the ground [m], by the numbers of its bodies.
+
+        Ground is what has the lowest top of the fixed bodies that stay where they are, if it is below all that moves.
+        """
+        fixed = {i: body.rest + body.corners for i, body in enumerate(self.bodies) if body.fixed and not body.moves}
+        tops = {i: float(corners[:, 2].max()) for i, corners in fixed.items()}
+        level = min([float(self.low[2]), *tops.values()]) + ON_LEVEL * self.extent
+        return {i: fixed[i] for i, top in tops.items() if top <= level}
+
+    def _ground(self) -> Json | None:
+        """The ground as a disc that reaches beyond all blocks, or None where blocks fall past the edge of it."""
+        if not self.grounds:
+            return None
+        corners = np.concatenate([*self.grounds.values()])
+        level = float(corners[:, 2].max())
+        if self.reached[0, 2] < level - SUNK * self.extent:
+            return None
+        low, high = _ends(np.concatenate([corners, self.reached])[:, :2])
+        radius = 0.5 * BEYOND * float(np.linalg.norm(high - low)) + 0.5 * self.extent
+        return {"level": level - ON_LEVEL * self.extent, "middle": (0.5 * (low + high)).tolist(), "radius": radius}
+
+    def _poses(self, moves: list[int]) -> Json:
+        """Displacements and quaternions of the bodies that move, sample by sample."""
+        poses = np.stack([self.bodies[i].pose for i in moves])
+        turns = poses[..., 3:]
+        along = (turns[:, 1:] * turns[:, :-1]).sum(axis=2)
+        signs = np.cumprod(np.where(along < 0, -1.0, 1.0), axis=1)
+        turns[:, 1:] *= signs[..., None]
+        largest = max(self.extent, float(np.abs(poses[..., :3]).max()))
+        return {
+            "places": packed(_by_row(poses[..., :3]), FINE * largest),
+            "turns": packed(_by_row(turns), FINE),
+        }
+
+    def _ties(self) -> Iterator[Json]:
+        """The two ends of each link, and when it breaks."""
         for name, link in self.case.links.items():
-            held = self.case.held_by(link)
+            held, ties = self.case.held_by(link), self.response.ties
             ends = ((link.block, held), (link.anchor_block, link.anchor_of(held)))
-            placed = [self.moving.placed(block, point[None]) for block, point in ends]
-            lines, ties = in_space(np.stack(placed, axis=2)), self.response.ties
-            lines[self.t >= (ties[name].broken if name in ties else np.inf)] = lines[0, 0, 0]
-            self._lines(name, "ties", lines, TIE)
+            start, end = (self._on_body(block, in_space(point)) for block, point in ends)
+            life = [-LAST, min(float(ties[name].broken), LAST) if name in ties else LAST]
+            bodies = [-1 if block is None else block for block, _ in ends]
+            yield {"name": name, "start": start, "end": end, "bodies": bodies, "life": life}
 
-    def forces(self) -> None:
-        """Add a bar for the force of each joint, in the plane on the front, and the outlines of cracked joints."""
-        acting = Acting(self.response, self.moving)
-        bars = in_space(np.stack([acting.every_bar(frame) for frame in range(len(self.t))]))
-        if not self.response.in_space:
-            bars[..., 1] = self.front
-        self._lines("forces", "forces", bars, FORCE)
-        damage = np.nan_to_num(self.response.forces.damage[self.samples])
-        for i in np.flatnonzero((damage > NOTHING).any(axis=0)):
+    def _cracks(self) -> Iterator[Json]:
+        """The edges of the joints that lose some of their bond, and since when, where the run kept forces."""
+        if self.response.kept_forces is None:
+            return
+        lost = np.nan_to_num(self.response.forces.damage[self.samples]) > NOTHING
+        for i in np.flatnonzero(lost.any(axis=0)):
             joint = self.response.of_masonry.masonry.joints[i]
-            ends = edges_of(outline_of(joint))
-            below = self.all[joint.below]
-            edges = below.placed(ends.reshape(-1, 3) - below.rest).reshape(-1, *ends.shape)
-            edges[damage[:, i] <= NOTHING] = edges[0, 0, 0]
-            self._lines(joint.name, "cracks", edges, CRACKED)
+            bodies, life = [joint.below, joint.below], [float(self.t[lost[:, i].argmax()]), LAST]
+            for ends in edges_of(outline_of(joint)):
+                start, end = (self._on_body(joint.below, point) for point in ends)
+                yield {"name": joint.name, "start": start, "end": end, "bodies": bodies, "life": life}
 
-    def text(self, title: str) -> str:
-        """The page."""
-        first, last = float(self.t[0]), float(self.t[-1])
-        panel = PANEL.replace("FIRST", repr(first)).replace("LAST", repr(last))
-        page = str(self.plot.get_snapshot(additional_js_code=panel))
-        return page.replace("<title>K3D snapshot viewer", f"<title>{html.escape(title)}", 1)
+    def _on_body(self, block: int | None, point: Array) -> list[object]:
+        """A point at rest [m] about the centroid of its block, or as it is on the ground."""
+        return self._rounded(point if block is None else point - self.bodies[block].rest)
 
-    def _lines(self, name: str, group: str, ends: Array, colour: str) -> None:
-        """Add lines that move: ends of shape (n, lines, 2, 3) [m]."""
-        vertices = ends.reshape(len(ends), -1, 3).astype(np.float32)
-        pairs = np.arange(vertices.shape[1], dtype=np.uint32).reshape(-1, 2)
-        options = {"color": _number(colour), "width": THICK * self.extent, "name": name, "group": group}
-        self.plot += self.k3d.lines(self._series(vertices), pairs, indices_type="segment", shader="mesh", **options)
+    def _forces(self) -> Json:
+        """Places and forces of the joints, forces over their scale, and how bars of them are drawn."""
+        acting = Acting(self.response, self.moving)
+        frames = [acting.placed(frame) for frame in range(len(self.t))]
+        places, shares = (in_space(np.stack(part, axis=1)) for part in zip(*frames, strict=True))
+        if not self.response.in_space:  # on the front of the blocks
+            places[..., 1] = self.low[1] - ON_LEVEL * self.extent
+        joints = self.case.standing.joints
+        return {
+            "scale": acting.scale,
+            "longest": LONGEST * acting.extent,
+            "most": LARGE,
+            "joints": [[joint.name, joint.below, joint.above] for joint in joints],
+            "places": packed(_by_row(places), COARSE * self.extent),
+            "shares": packed(_by_row(shares), COARSE),
+        }
 
-    def _series(self, values: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
-        """An array for each time, as k3d takes it."""
-        return {repr(float(t)): row for t, row in zip(self.t, values, strict=True)}
+    def _track(self) -> Iterator[Json]:
+        """What the ground does: its accelerations, the displacements of supports, and the tilt of a table."""
+        t = np.linspace(self.t[0], self.t[-1], POINTS)
+        for name, motion in self.case.grounds.items():
+            yield _line(f"acceleration of the ground {GROUNDS[name]}", "m/s²", motion(t))
+        for support in self.case.supports:
+            moved = support.at(t)
+            yield _line(f"displacement of {support.block}", "m", moved[:, int(np.abs(moved).max(axis=0).argmax())])
+        if self.case.tilt is not None:
+            yield _line("tilt of the table", "rad", np.interp(t, *self.case.tilt))
+
+
+def _by_row(values: Array) -> Array:
+    """Vectors of things at samples, shape (things, samples, d), as rows, shape (things d, samples)."""
+    return np.swapaxes(values, 1, 2).reshape(-1, values.shape[1])
+
+
+def _ends(corners: Array) -> Array:
+    """The lowest and the highest x, y and z of corners [m], shape (..., d), as (2, d)."""
+    every = corners.reshape(-1, corners.shape[-1])
+    return np.array([every.min(axis=0), every.max(axis=0)])
+
+
+def _line(name: str, unit: str, values: Array) -> Json:
+    """A line of what the ground does, over its peak."""
+    peak = float(np.abs(values).max())
+    return {"name": name, "unit": unit, "peak": peak, "values": np.round(values / (peak or 1.0), 3).tolist()}
 
 
 def outline_of(joint: Joint | SpaceJoint) -> Array:
@@ -186,8 +276,3 @@ def outline_of(joint: Joint | SpaceJoint) -> Array:
         return joint.outline
     ends, half = in_space(np.array([joint.start, joint.end])), np.array([0.0, 0.5 * joint.length, 0.0])
     return np.concatenate([ends - half, ends[::-1] + half])
-
-
-def _number(colour: str) -> int:
-    """A colour as one number."""
-    return int(colour[1:], 16)

@@ -8,6 +8,7 @@ from typing import get_args
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from ..problem.ground.code_spectrum import SpectrumOfCode
@@ -19,12 +20,47 @@ from ..study.intensity.fragility import Fragility
 from .arguments import equal_rows, finite_row, kind, listed, picture
 from .style import STYLES, folded
 
+OVERLAID = ("#12406b", "#f0a35e", "#4f8f5b", "#a83232", "0.5")
+"""Colours of motions that are drawn over each other."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
 def of_records(name: str, value: object) -> None:
     """At least one motion, or a set of at least one record."""
     listed(kind(GroundMotion))(name, value.horizontal if isinstance(value, RecordSet) else value)
+
+
+def one_or_more(name: str, value: object) -> None:
+    """A motion, at least one of them, or a set of records."""
+    of_records(name, [value] if isinstance(value, GroundMotion) else value)
+
+
+@picture(motions=one_or_more)
+def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure:
+    """Acceleration, velocity and displacement of the ground over time, with the peaks and where each motion ends.
+
+    It is the first thing to look at of a file. Several motions are drawn over each other, so that it shows what
+    `corrected` does: `record([motion, motion.corrected("linear")])`. Of a set of records it has the horizontal ones.
+    """
+    given = [motions] if isinstance(motions, GroundMotion) else motions
+    given = given.horizontal if isinstance(given, RecordSet) else given
+    figure = Figure(figsize=(6.4, 5.4 + 0.4 * len(given)), layout="constrained")
+    axes = figure.subplots(3, sharex=True)
+    for i, motion in enumerate(given):
+        t = motion.dt * np.arange(len(motion.accel))
+        histories = (motion.accel, motion.velocities, motion.displacements)
+        for ax, history, unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
+            said = f"{motion.name[:90]}: " if ax is axes[0] else f"ends at {history[-1]:.2g}, "
+            peak = float(np.abs(history).max())
+            ax.plot(t, history, color=OVERLAID[i % len(OVERLAID)], linewidth=0.8, label=f"{said}peak {peak:.3g} {unit}")
+    for ax, label in zip(axes, ("acceleration [m/s²]", "velocity [m/s]", "displacement [m]"), strict=True):
+        ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
+        ax.set_ylabel(label)
+        ax.yaxis.set_label_coords(-0.1, 0.5)
+        columns = {"ncols": 1 if ax is axes[0] else 3, "columnspacing": 1.0, "handlelength": 1.0}
+        ax.legend(frameon=False, fontsize=7, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.0, **columns)
+    axes[2].set(xlabel="time $t$ [s]", xlim=(0, max(motion.duration for motion in given)))
+    return figure
 
 
 @picture(motions=of_records, periods=finite_row, target=kind(*get_args(SpectrumOfCode)))

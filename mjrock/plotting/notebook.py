@@ -14,9 +14,11 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
 from ..result.compare import Comparison
 from ..result.response import Response
+from ..study.intensity.fragility import Fragility
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity
+from .earthquakes import fragility
 from .figures import png
 from .histories import history
 from .masonry import blocks, mechanism
@@ -36,6 +38,7 @@ PICTURES: dict[type, Callable[[Any, str], Figure | Axes | None]] = {
     Comparison: lambda pair, said: history([pair.reference, pair.candidate], said),
     Push: lambda curve, said: _titled(push({"": curve}), said),
     PushoverCurve: lambda curve, said: _titled(pushover({"": curve}), said),
+    Fragility: lambda fit, said: _titled(fragility(fit), said),
     Sensitivity: lambda found, said: _titled(tornado(found), said),
 }
 """The picture of each type below its text; None stands for no picture."""

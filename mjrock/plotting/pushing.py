@@ -84,6 +84,7 @@ def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
                 near = int(np.searchsorted(curve.rotation, rotation))
                 at = rotation, float(curve.multiplier[max(near - 2, 0) : near + 1].max())  # before it falls
                 ax.plot(*at, marker, color=line.get_color(), markersize=6, zorder=5)
+                ax.set_ylim(top=max(ax.get_ylim()[1], 1.08 * at[1]))  # room for the text
                 said = f"{named(names)} {what}{'' if len(names) > 1 else 's'}"
                 ax.annotate(said, at, beside, textcoords="offset points", fontsize=7, color=line.get_color(), zorder=6)
 

@@ -16,7 +16,7 @@ from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
 from ..files import write_arrays
 from ..problem.damping.contacts import Contacts
-from ..problem.damping.restitution import Restitution
+from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Implausible, keep, require_kind, shown, spelt
@@ -42,7 +42,7 @@ class Subject(Protocol):
     PEAK: ClassVar[str]
     FALLS: ClassVar[str]
 
-    def require(self, solver: str, e: Restitution | None, contacts: Contacts | None) -> None:
+    def require(self, solver: str, e: AnyRestitution | None, contacts: Contacts | None) -> None:
         """Raise ValueError unless it has what its solver needs, and no more."""
 
     def law(self, solver: str, contacts: Contacts | None) -> str:
@@ -65,7 +65,7 @@ class OfWall(Subject):
     PEAK = "peak_over_alpha"
     FALLS = "wall overturns"
 
-    def require(self, solver: str, e: Restitution | None, contacts: Contacts | None) -> None:
+    def require(self, solver: str, e: AnyRestitution | None, contacts: Contacts | None) -> None:
         """Raise ValueError unless it has the restitution or the contacts that its solver needs."""
         case, by_theory = self.case, solver == "analytical"
         if (e if by_theory else contacts) is None:
@@ -98,7 +98,7 @@ class OfMasonry(Subject):
     PEAK = "largest_rotation_rad"
     FALLS = "masonry falls"
 
-    def require(self, solver: str, e: Restitution | None, contacts: Contacts | None) -> None:
+    def require(self, solver: str, e: AnyRestitution | None, contacts: Contacts | None) -> None:
         """Raise ValueError for restitution or contacts, which are those of its joints."""
         self.case.require_own_joints(e, contacts)
 
@@ -164,14 +164,14 @@ class Analysis:
 
     case: AnyCase
     solver: str = "MuJoCo"
-    e: Restitution | None = None
+    e: AnyRestitution | None = None
     contacts: Contacts | None = None
     options: Mapping[str, object] = field(default_factory=dict)
     labels: Mapping[str, object] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
         require_kind("case", self.case, Case, MasonryCase)
-        require_kind("e", self.e, Restitution, type(None))
+        require_kind("e", self.e, Restitution, ScatteredRestitution, type(None))
         require_kind("contacts", self.contacts, Contacts, type(None))
         for name in ("options", "labels"):
             value = getattr(self, name)

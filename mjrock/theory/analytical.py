@@ -11,7 +11,7 @@ import warnings
 import numpy as np
 
 from ..patience import first_answer
-from ..problem.damping.restitution import Restitution
+from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution, impacts_of
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still
@@ -28,7 +28,7 @@ from .motion import RigidMotion, RockingMotion
 
 def solve_analytical(
     case: Case,
-    e: Restitution,
+    e: AnyRestitution,
     *,
     rtol: float = 1e-10,
     output_step: float | None = None,
@@ -46,7 +46,7 @@ def solve_analytical(
     Args:
         case: the wall, its release, its sides, its ground motion. With a side stop `e.lumped` rules and theta >= 0,
             without one `e.base`.
-        e: the coefficients of restitution.
+        e: the coefficients of restitution, or those from which each impact draws its own.
         rtol: error of the integration, about, over alpha in a fall from alpha/2 [-]. It sets the longest step.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. They are
             evenly spaced, and the last is the end of the run.
@@ -68,7 +68,7 @@ def solve_analytical(
         'at rest'
     """
     require_wall("case", case, "solve_explicit or simulate")
-    require_kind("e", e, Restitution)
+    require_kind("e", e, Restitution, ScatteredRestitution)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
     spacing = required_spacing(output_step, case.duration)
     rest = require_within("rest", rest, 1e-30, 0.1)
@@ -112,7 +112,7 @@ def _outcome(case: Case, motion: RockingMotion) -> Outcome:
     return Outcome.AT_REST if motion.at_rest else Outcome.TIME_ENDED
 
 
-def _require_solvable(case: Case, e: Restitution) -> None:
+def _require_solvable(case: Case, e: AnyRestitution) -> None:
     """Raise ValueError for a case that rocking theory has no answer to."""
     if case.side_stop and not -1 <= e.lumped < 0:
         low = "" if case.stop_top == 2 * case.block.h else f": a stop of {case.stop_top:g} m may be too low"
@@ -137,14 +137,13 @@ def _require_solvable(case: Case, e: Restitution) -> None:
         )
 
 
-def _rocking(case: Case, e: Restitution, rtol: float, rest: float) -> RockingMotion:
+def _rocking(case: Case, e: AnyRestitution, rtol: float, rest: float) -> RockingMotion:
     """The motion from impact to impact."""
-    restitution = e.lumped if case.side_stop else e.base
     shaken = case.motion is not None or case.vertical is not None
     outer, inner = case.restoring
     weaker = outer if case.side_stop or outer.P <= inner.P else inner
     least = rest * (float(weaker.energy(weaker.alpha)) if shaken else case.release_energy)
-    return rock(case, restitution, least, rtol)
+    return rock(case, impacts_of(e, lumped=bool(case.side_stop)), least, rtol)
 
 
 def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:

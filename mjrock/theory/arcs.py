@@ -9,6 +9,7 @@ thousands of samples.) The wall rests until the moment about a free toe turns it
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -113,14 +114,12 @@ class Rules(NamedTuple):
 
     Args:
         one_sided: whether a side stop keeps the rotation from becoming negative.
-        e: restitution of an impact [-], as the root of the energy that is left, with the sign of the velocity.
         rest: an impact that leaves less energy than this leaves the wall at rest [J].
         longest: longest step [s].
         duration: time to follow the motion [s].
     """
 
     one_sided: bool
-    e: float
     rest: float
     longest: float
     duration: float
@@ -139,9 +138,11 @@ class ArcClock(NamedTuple):
 
 
 class ArcRoom(NamedTuple):
-    """Arrays that a run of the loop fills.
+    """Arrays that a run of the loop fills, and the restitution that it reads.
 
     Args:
+        e: restitution of each impact to come [-], as the root of the energy that is left, with the sign of the
+            velocity, shape (n,).
         knots: time [s], rotation [rad], velocity [rad/s] and acceleration [rad/s2] at both ends of each step, shape
             (n, 4).
         impacts: the numbers of each impact, as in `mjrock.result.rocking.Impact`, shape (n, 5).
@@ -149,6 +150,7 @@ class ArcRoom(NamedTuple):
         counts: how many of each there are, shape (3,).
     """
 
+    e: Array
     knots: Array
     impacts: Array
     peaks: Array
@@ -156,7 +158,7 @@ class ArcRoom(NamedTuple):
 
     def filled(self) -> tuple[Array, ...]:
         """Copies of the parts that are filled."""
-        return tuple(array[:count].copy() for array, count in zip(self[:3], self.counts, strict=True))
+        return tuple(array[:count].copy() for array, count in zip(self[1:4], self.counts, strict=True))
 
 
 @inlined
@@ -230,12 +232,13 @@ def noted(room: ArcRoom, t: float, theta: float, omega: float, pulling: float) -
 
 
 @inlined
-def met(room: ArcRoom, law: RockingLaw, rules: Rules, t: float, side: float, omega: float) -> float:
+def met(room: ArcRoom, law: RockingLaw, t: float, side: float, omega: float) -> float:
     """Write an impact, and return the angular velocity after it."""
-    impact, leaving = room.impacts[room.counts[1]], math.copysign(1.0, rules.e * omega)
+    impact, e = room.impacts[room.counts[1]], room.e[room.counts[1]]
+    leaving = math.copysign(1.0, e * omega)
     arriving = (law.outer if side > 0 else law.inner).inertia
     departing = (law.outer if leaving > 0 else law.inner).inertia
-    after = rules.e * omega * math.sqrt(arriving / departing)
+    after: float = e * omega * math.sqrt(arriving / departing)
     impact[0], impact[1], impact[2] = t, omega, after
     impact[3], impact[4] = 0.5 * arriving * omega * omega, 0.5 * departing * after * after
     room.counts[1] += 1
@@ -287,34 +290,37 @@ def rocking_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) 
         t, theta, omega = t + h, new_theta, new_omega
         noted(room, t, theta, omega, k3)
         if hit:
-            omega = met(room, law, rules, t, side, omega)
+            omega = met(room, law, t, side, omega)
             at_rest = room.impacts[room.counts[1] - 1, 4] <= rules.rest
             side = math.copysign(1.0, omega)
         ended = fell or t >= rules.duration
     return t, theta, omega, side, at_rest, fell, ended
 
 
-def rock(case: Case, e: float, least: float, rtol: float) -> RockingMotion:
+def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: float) -> RockingMotion:
     """Rocking of the wall of a case.
 
     Args:
         case: the wall, its release, its ties and its ground motion.
-        e: restitution of an impact [-], as the root of the energy that is left; negative where the wall leaves to the
-            side that it came from.
+        restitutions: gives those of the next so many impacts [-], as the root of the energy that is left; negative
+            where the wall leaves to the side that it came from.
         least: an impact that leaves less energy than this leaves the wall at rest [J].
         rtol: sets the longest step, see NYSTROEM.
     """
     law = RockingLaw.of(case)
-    rules = Rules(case.one_sided, e, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
+    rules = Rules(case.one_sided, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clock = ArcClock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
         take_changes(Toe.of(case, case.direction), law.ties, case.theta0, not case.released_outwards)
     few = CHUNK // 4
-    room, parts = ArcRoom(np.empty((CHUNK, 4)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64)), []
+    e, counts = restitutions(few), np.zeros(3, dtype=np.int64)
+    room, parts = ArcRoom(e, np.empty((CHUNK, 4)), np.empty((few, 5)), np.empty(few), counts), []
     while not clock.ended:
-        room.counts[:] = 0
         clock = ArcClock(*rocking_loop(law, rules, clock, room))
         parts.append(room.filled())
+        past = int(counts[1])
+        e[:] = np.append(e[past:], restitutions(past))
+        counts[:] = 0
     knots, impacts, peaks = map(np.concatenate, zip(*parts, strict=True))
     t, theta = knots[:, 0].copy(), knots[:, 1]
 

@@ -220,7 +220,7 @@ def missing() -> dict[str, str]:
     said = {}
     for code, name in NEEDS.items():
         if not (found_by_debian(name) if code in DEBIAN else importlib.util.find_spec(name) is not None):
-            how = f"apt-get install {DEBIAN[code]} gcc" if code in DEBIAN else "pip install 'mjrock[peers]'"
+            how = f"apt-get install {DEBIAN[code]} gcc" if code in DEBIAN else "pip install pybullet openseespy"
             said[code] = f"{name} is not installed: skipped ({how})"
     return said
 

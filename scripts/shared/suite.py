@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,10 @@ STILL = 0.01
 """Peak rotation below which a wall is said to have stayed at rest, in multiples of alpha [-]."""
 STIFF = 3e9
 """Interface stiffness of base and side for a nearly rigid base [N/m3]: the upper end of the paper's Table 1."""
-READERS = {".at2": mr.GroundMotion.from_at2, ".sac": mr.GroundMotion.from_sac}
+READERS: Mapping[str, Callable[[Path], mr.GroundMotion]] = {
+    ".at2": mr.GroundMotion.from_at2,
+    ".sac": lambda path: mr.GroundMotion.from_sac(path, "cm/s2"),
+}
 SETTLING = 5.0
 """Time that a wall is followed after the record [s]."""
 OPTIONS: Mapping[str, Mapping[str, object]] = {

@@ -3,7 +3,7 @@
 This package draws blocks with matplotlib, from the farthest to the nearest. PyVista and MuJoCo compare depths pixel by
 pixel. Prints what a frame takes, how many pixels inside the blocks show another block than in PyVista, in the order of
 this package and by the mean depth of faces as matplotlib takes it, and how large PyVista is. MuJoCo draws through EGL.
-Writes drawn_in_space.png and .txt. Needs PyVista, which `pip install 'mjrock[docs]'` brings.
+Writes drawn_in_space.png and .txt. Needs PyVista, `pip install pyvista`.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     args = cli.parser(__doc__, "drawn_in_space").parse_args(argv)
     out = cli.folder(args.out)
     if pv is None:
-        raise RuntimeError("PyVista is not installed; pip install 'mjrock[docs]' brings it")
+        raise RuntimeError("PyVista is not installed: pip install pyvista")
     answers = {"facade": (facade_in_space.shaken(facade_in_space.facade(), 0.1 if args.quick else 7.0), (20.0, 38.0))}
     if not args.quick:
         answers["dome"] = dome.growing(dome.dome(0.038, dome.FACETS[-1], dome.STIFFNESSES[0])), (28.0, 35.0)

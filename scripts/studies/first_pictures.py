@@ -1,12 +1,14 @@
-"""The pictures of the first pages: every effect with its arguments, and a façade with and without a tie.
+"""The pictures of the first pages: every effect with its arguments, a façade with and without a tie, a record.
 
-Writes effects.png and tutorial.png and prints how far the tie was drawn out.
+Writes effects.png, tutorial.png and record.png, and prints how far the tie was drawn out and where the record ends.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+
+import numpy as np
 
 import mjrock as mr
 from mjrock import plotting
@@ -38,8 +40,16 @@ def of_the_tutorial(duration: float) -> list[mr.Response]:
     return [mr.simulate(case, contacts, accuracy=1e-4) for case in cases]
 
 
+def of_a_record() -> list[mr.GroundMotion]:
+    """A record that drifts, without its baseline, and then within a band."""
+    made = mr.GroundMotion.synthetic(peak=3.0, duration=20.0, seed=1)
+    drift = 0.02 + 0.001 * made.dt * np.arange(len(made.accel))
+    motion = mr.GroundMotion(made.accel + drift, made.dt, "a record")
+    return [motion, motion.corrected("linear"), motion.corrected("linear", (0.1, 25.0))]
+
+
 def main(argv: Sequence[str] | None = None) -> None:
-    """Draw both."""
+    """Draw them."""
     args = cli.parser(__doc__, "first_pictures").parse_args(argv)
     out = cli.folder(args.out)
     plotting.save(plotting.sketch(with_every_effect(), arguments=True), out / "effects.png")
@@ -47,6 +57,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(plotting.history(responses, labels=["with the tie", "as it is"]), out / "tutorial.png")
     for response in responses:
         print(response.message)
+    motions = of_a_record()
+    plotting.save(plotting.record(motions), out / "record.png")
+    for motion in motions:
+        print(f"{motion.name}: {motion.residual_velocity:.3f} m/s, {motion.residual_displacement:.2f} m")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 VTK reads both files at three times, and PyVista draws what it finds: above the .glb, below the series for ParaView with
 the displacement as colour and the forces of joints as arrows. Prints how many blocks VTK finds in each, and the largest
 distance between a corner there and in the response. Writes opened_in_vtk.txt and, unless it is quick, the picture
-opened_in_vtk.png. Needs PyVista, which `pip install 'mjrock[docs]'` brings.
+opened_in_vtk.png. Needs PyVista, `pip install pyvista`.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     args = cli.parser(__doc__, "opened_in_vtk").parse_args(argv)
     out = cli.folder(args.out)
     if pv is None:
-        raise RuntimeError("PyVista is not installed; pip install 'mjrock[docs]' brings it")
+        raise RuntimeError("PyVista is not installed: pip install pyvista")
     answer = fallen(0.4 if args.quick else 7.0)
     figure, lines = Figure(figsize=(10.5, 6.2), layout="constrained"), []
     axes = figure.subplots(2, 3)

@@ -6,11 +6,12 @@ of 1.292 x 0.21 m, which are one body each since the wall spans one way, four jo
 in every joint, and 10.35 kN on the beam. The runs follow each other, and each starts from the damage that the ones
 before it have left. Nothing is fitted.
 
-The motions of the table are not part of this repository, as theirs names no licence. `--records` is a folder with two
-files of it: `record_tables_full/vel_expfull_T9_run21.txt`, the velocity of the table in the strongest run of HU12, and
-`Friuli_x1.0.csv`, the command of FR76. The other runs are these two by the published scales. The runs of EC40, of
-at most 0.19 g, are left out. Nothing is damped, as in the deck, but by cracks and friction; `--damping` is the ratio of
-a damping of all motion. Prints a table and draws it. `--quick` shakes the wall with a short pulse and needs no records.
+The motions of the table are not part of this repository, as theirs names no licence. `--records` is a folder with files
+of its `record_tables_full`, the velocity of the table in a run: `vel_expfull_T9_run21.txt` for HU12, and those of runs
+22 to 24 for FR76. A run without a file of its own takes that of run 21, by the published scales. The runs of EC40, of
+at most 0.19 g, are left out. Nothing is damped, as in the deck, but by cracks and friction; `--damping` is the ratio
+of a damping of all motion. Prints a table and draws it. `--quick` shakes the wall with a short pulse and needs no
+records.
 """
 
 from __future__ import annotations
@@ -141,14 +142,20 @@ def wall_of(points: int = POINTS) -> mr.Masonry:
     )
 
 
-def table_of(folder: Path) -> dict[str, tuple[Array, float]]:
-    """Acceleration of the table at scale 1 [m/s2], and its time step [s], by the record."""
-    strong = np.loadtxt(folder / "vel_expfull_T9_run21.txt", skiprows=2)
-    step = float(np.diff(strong[:, 0]).mean())
-    smooth = sosfiltfilt(butter(4, CUT, fs=1 / step, output="sos"), strong[:, 1]) / RUNS[21].scale
-    command = np.loadtxt(folder / "Friuli_x1.0.csv", delimiter=",", skiprows=3, usecols=(1, 3))
-    found = {"HU12": (smooth, step), "FR76": (1e-3 * command[:, 0], 0.01)}
-    return {record: (strongest(np.gradient(velocity, step)), step) for record, (velocity, step) in found.items()}
+def motion_of(folder: Path, run: int) -> mr.GroundMotion:
+    """Strong part of the motion of the table in a run, from its own file, or from that of run 21 by its scale.
+
+    Raises:
+        FileNotFoundError: for a run of FR76 without a file.
+    """
+    own = folder / f"vel_expfull_T9_run{run:02d}.txt"
+    scale = 1.0
+    if not own.exists() and RUNS[run].record == RUNS[21].record:
+        own, scale = folder / "vel_expfull_T9_run21.txt", RUNS[run].scale / RUNS[21].scale
+    t, velocity = np.loadtxt(own, skiprows=2).T
+    step = float(np.diff(t).mean())
+    smooth = sosfiltfilt(butter(4, CUT, fs=1 / step, output="sos"), velocity)
+    return mr.GroundMotion(scale * strongest(np.gradient(smooth, step)), step)
 
 
 def strongest(accel: Array) -> Array:
@@ -242,16 +249,15 @@ def judged(found: dict[int, Shaken]) -> str:
 def main(argv: Sequence[str] | None = None) -> None:
     """Shake the wall, print the table and draw."""
     parser = cli.parser(__doc__, "shaken_wall")
-    parser.add_argument("--records", type=Path, default=Path("records"), help="folder with the two files")
+    parser.add_argument("--records", type=Path, default=Path("records"), help="folder with the files")
     parser.add_argument("--damping", type=float, default=0.0, help="damping ratio of all motion at 0.092 s")
     args = parser.parse_args(argv)
     out = cli.folder(args.out)
     runs = list(RUNS)[:1] if args.quick else list(RUNS)
     pulse = np.sin(2 * np.pi * np.arange(0.0, 0.1, 0.005) / 0.1)
-    table = {"HU12": (pulse, 0.005)} if args.quick else table_of(args.records)
     masonry = wall_of(3 if args.quick else POINTS)
     motions = [
-        mr.GroundMotion(RUNS[run].scale * table[RUNS[run].record][0], table[RUNS[run].record][1]) for run in runs
+        mr.GroundMotion(RUNS[run].scale * pulse, 0.005) if args.quick else motion_of(args.records, run) for run in runs
     ]
     motions_shown = tqdm(motions, desc="runs", disable=None, leave=False)
     found = dict(zip(runs, shaken(masonry, motions_shown, args.damping), strict=True))

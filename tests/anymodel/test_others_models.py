@@ -21,7 +21,7 @@ def model_of(path):
     package = path.split("/")[0]
     found = importlib.util.find_spec(package)
     if found is None:
-        pytest.skip(f"{package} is not installed; pip install mjrock[robots]")
+        pytest.skip(f"{package} is not installed; pip install {package}")
     return mujoco.MjSpec.from_file(str(Path(found.origin).parents[1] / path))
 
 

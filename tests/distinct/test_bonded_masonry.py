@@ -1,6 +1,7 @@
 """Masonry with bonds: at rest, by explicit steps, in limit analysis, and what refuses it."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -160,6 +161,30 @@ def test_the_ledger_of_masonry_that_cracks_closes_and_names_what_bonds_took(spac
     crack = answer.cracked["ground|b0"]
     damage = answer.forces.damage[:, masonry.joints.index(next(j for j in masonry.joints if j.name == "ground|b0"))]
     assert damage[answer.t < crack - 2e-3].min() < 0.5 < damage[answer.t > crack + 2e-3].min()
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_what_holds_is_not_damped_where_dashpots_wait_for_cracks(space):
+    """To the last bit as without dashpots: bonds that never break, and a push that shears and opens them."""
+    poses = []
+    for xi, bond in ((0.0, HUGE), (0.5, replace(HUGE, damped=False)), (0.5, HUGE)):
+        masonry = joint(bond, space=space, xi=xi)
+        velocity = [[0.05, 0.0, 0.03, 0.1, 0.2, 0.3]] if space else [[0.05, 0.03, 0.2]]
+        poses.append(mr.solve_explicit(mr.MasonryCase(masonry, 0.004, velocity=velocity), timestep=2e-7).pose)
+    assert np.array_equal(poses[0], poses[1])
+    assert np.abs(poses[2] - poses[0]).max() > 0.1 * np.abs(poses[0] - poses[0][0]).max()
+
+
+def test_dashpots_that_wait_for_cracks_take_nothing_before_the_first_one_and_the_books_close():
+    bond = mr.Bond(0.03e6, 0.05e6, 2.0, 10.0, damped=False)
+    answer = shaken(column(bond, xi=0.2), 1.0, 8.0, ledger=True, forces=True)
+    took = sum(answer.ledger.dashpots.values())
+    whole = answer.forces.damage.max(axis=1) == 0
+    assert 10 < whole.sum() < len(whole)
+    assert took[whole].max() == 0
+    assert took[-1] > 1e-3 * answer.ledger.largest
+    assert (np.diff(took) >= -1e-9 * answer.ledger.largest).all()
+    assert np.abs(answer.ledger.residual).max() < 1e-3 * answer.ledger.largest
 
 
 def test_a_run_carries_on_with_its_bonds():

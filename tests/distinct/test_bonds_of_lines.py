@@ -49,11 +49,30 @@ def copy_of(bond):
 
 
 @BOTH
+@pytest.mark.parametrize("secant", [0.0, 0.25 * K, K])
+def test_dashpots_along_the_face_leave_out_what_holds(d, secant):
+    """A bond whose dashpots wait for cracks has them on the share of its stiffness that has cracked."""
+    whole, _ = bonded_line(d, 0, -0.001, secant=secant)
+    line, bond = whole.lines[0], whole.laws[0].rows[0]
+    meet = contact.where_friction_rubs(met(whole))
+    slip = friction.along_face(meet.normal, contact.relative(whole.bodies, line, whole.supports, meet))
+    drags = []
+    for undamped in (0.0, 1.0):
+        twin = copy_of(bond)
+        twin.undamped = undamped
+        drags.append(np.array(bonds.slide(system(d).bodies, line, twin, meet.normal, slip, 1e5, H)[0]))
+    expected = C_SHEAR * secant / K * np.array(slip)
+    np.testing.assert_allclose(drags[1] - drags[0], expected, rtol=1e-9, atol=1e-9 * np.abs(drags[0]).max())
+
+
+@BOTH
 @FACES
 @pytest.mark.parametrize(("gap", "last"), [(-0.003, -0.001), (0.0005, 0.0002), (0.003, 0.0005), (0.003, -0.0005)])
-def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap, last):
+@pytest.mark.parametrize("undamped", [0.0, 1.0])
+def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap, last, undamped):
     before = 30.0 if d == 2 else 30.0 * ALONG[3]
-    whole, normal = bonded_line(d, face, gap, gap=last, push=80.0, pressed=7.0, dragged=before, grip=before / 1500.0)
+    state = {"gap": last, "push": 80.0, "pressed": 7.0, "dragged": before, "grip": before / 1500.0}
+    whole, normal = bonded_line(d, face, gap, **state, undamped=undamped)
     line, bond, bodies = whole.lines[0], whole.laws[0].rows[0], whole.bodies
     meet = contact.where_friction_rubs(met(whole))
     velocity = contact.relative(bodies, line, whole.supports, meet)
@@ -61,7 +80,8 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     twin, other = copy_of(bond), system(d)
     tear(twin, gap)
     rest = K - twin.secant
-    pulled = -twin.secant * gap - C * twin.secant / K * rate
+    pressed = -(1 - undamped) * C * twin.secant / K * rate
+    pulled = pressed - twin.secant * gap
     dry = max(-rest * gap - C * rest / K * rate, 0.0) if gap < 0 else 0.0
     drag, taken = bonds.slide(other.bodies, line, twin, meet.normal, slip, pulled + dry, H)
     kept = books(whole)
@@ -70,7 +90,7 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     assert bool(bond.secant < K) is (gap == 0.003)
     assert (line.k, line.c) == pytest.approx((rest, C * rest / K), rel=1e-9)
     assert (bond.push, bond.gap) == pytest.approx((pulled, gap), rel=1e-9)
-    assert bond.pressed == pytest.approx(-C * twin.secant / K * rate, rel=1e-9)
+    assert bond.pressed == pytest.approx(pressed, rel=1e-9)
     assert line.widest == pytest.approx(max(gap, 0.0), rel=1e-9)
     np.testing.assert_allclose(bond.dragged, drag, rtol=1e-9)
     np.testing.assert_allclose(bond.grip, twin.grip, rtol=1e-9)

@@ -1,5 +1,6 @@
 """Bars of what takes long: two decimals of seconds, nothing before they are worth it, and widgets in notebooks."""
 
+import contextlib
 import io
 import sys
 import types
@@ -41,8 +42,8 @@ def test_a_bar_says_how_much_of_what_with_its_unit(monkeypatch, unit, total, lin
         assert screen.getvalue() == ""
         now[0] = 1004.0
         bar.to(5.000000000000001)
+        *_, last = screen.getvalue().split("\r")
     before, _, after = line.partition("{bar}")
-    *_, last = screen.getvalue().strip("\n").split("\r")
     assert last.startswith(before)
     assert last.endswith(after)
 
@@ -59,6 +60,18 @@ def test_a_bar_within_another_leaves_no_line(monkeypatch):
     *_, left = screen.getvalue().rstrip("\n").split("\n")
     assert "push: 2 pieces" in left
     assert "explicit" not in left
+
+
+@pytest.mark.parametrize(("error", "left"), [(None, "100%"), (ValueError, " 38%")])
+def test_a_run_that_ends_before_its_time_is_whole_and_one_that_fails_is_not(monkeypatch, error, left):
+    screen, now = screen_and_clock(monkeypatch)
+    with contextlib.suppress(ValueError), bars.Bar("MuJoCo", "s", 13.0) as bar:
+        now[0] = 1004.0
+        bar.to(5.0)
+        if error is not None:
+            raise error
+    *_, last = screen.getvalue().strip("\n").split("\r")
+    assert last.startswith(f"MuJoCo: {left}|")
 
 
 def test_values_are_counted(monkeypatch):

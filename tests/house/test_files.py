@@ -171,7 +171,9 @@ def test_a_file_that_may_not_be_written_stays(tmp_path):
 READERS = {
     "from_at2": mr.GroundMotion.from_at2,
     "from_csv": lambda path: mr.GroundMotion.from_csv(path, "g"),
-    "from_sac": mr.GroundMotion.from_sac,
+    "from_sac": lambda path: mr.GroundMotion.from_sac(path, "g"),
+    "from_file": mr.GroundMotion.from_file,
+    "components_in": lambda path: mr.components_in(path, dt=0.01),
     "law.load": mr.DampingLaw.load,
     "from_obj": mr.Masonry.from_obj,
     "from_stl": mr.Masonry.from_stl,

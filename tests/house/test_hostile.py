@@ -62,6 +62,7 @@ CALLS = OF_NUMBERS | {
     "Wedge": (mr.Wedge, {"angle": 0.4, "thickness": 0.5, "height": 4.0, "number": 2, "density": None}),
     "VerticalBending": (mr.VerticalBending, {"wall": WALL, "load": 2e4, "bearing": None, "crack": None}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
+    "ScatteredRestitution": (mr.ScatteredRestitution, {"mean": E, "sd": 0.01, "seed": 1}),
     "Case": (
         mr.Case,
         {
@@ -499,7 +500,7 @@ def test_every_public_entry_is_tried():
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push", "records_in",
-        "RecordSet",
+        "RecordSet", "components_in",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -15,6 +15,7 @@ import pytest
 import mjrock as mr
 from scripts.paper import compare_wall
 from scripts.shared import cli
+from scripts.studies import in_the_browser, town
 
 SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*/*.py") if path.parent.name != "shared"}
 """Every script by its name."""
@@ -35,6 +36,7 @@ WRITES = {
     "convergence": {"convergence.png", "convergence.txt"},
     "make_models": {"figure3_one_sided"},
     "overturning_spectrum": {f"overturning_spectrum.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "town": {f"town.{ending}" for ending in ("png", "csv", "txt", "sqlite")} | {"town_walls.csv"},
     "ida": {f"ida.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "fragility": {f"fragility.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
@@ -61,6 +63,7 @@ WRITES = {
     "plain_masonry": {f"plain_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "plain_models": {f"plain_models.{ending}" for ending in ("png", "csv", "txt")},
     "in_the_viewer": {"viewer.png"},
+    "in_the_browser": {"view.png"},
     "plain_throughput": {"plain_throughput.txt"},
     "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
@@ -77,6 +80,9 @@ WRITES = {
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
     "arching": {f"arching.{ending}" for ending in ("png", "csv", "txt")},
     "shear_wall": {f"shear_wall.{ending}" for ending in ("png", "csv", "txt")},
+    "limestone_blocks": {f"limestone_blocks.{ending}" for ending in ("png", "csv", "txt")},
+    "restitution_spread": {f"restitution_spread.{ending}" for ending in ("png", "csv", "txt")},
+    "cracked_damping": {f"cracked_damping.{ending}" for ending in ("png", "csv", "txt")},
     "shaken_wall": {f"shaken_wall.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
@@ -94,7 +100,7 @@ WRITES = {
     "fragility_coverage": {"fragility_coverage.txt"},
     "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},
     "sketch": {"sketch.png"},
-    "first_pictures": {"effects.png", "tutorial.png"},
+    "first_pictures": {"effects.png", "tutorial.png", "record.png"},
     "speed": {"speed.txt"},
     "step_cost": {f"step_cost.{ending}" for ending in ("png", "csv", "txt")},
     "step_vectors": {f"step_vectors.{ending}" for ending in ("csv", "txt")},
@@ -189,6 +195,7 @@ LONG = {
     "fragility_coverage",
     "agreement",
     "polarity",
+    "town",
     "overturning_spectrum",
     "ida",
     "effect_costs",
@@ -224,6 +231,9 @@ LONG = {
     "slow_push",
     "opened_in_vtk",
     "drawn_in_space",
+    "limestone_blocks",
+    "cracked_damping",
+    "restitution_spread",
     "shaken_wall",
     "vaults",
     "mechanisms",
@@ -243,6 +253,7 @@ LONG = {
     "plain_models",
     "second_opinion",
     "in_the_viewer",
+    "in_the_browser",
     "plain_throughput",
 }
 """Scripts that take a while even with --quick."""
@@ -262,6 +273,8 @@ def require_pictures_of_mujoco():
 def test_quick(name, tmp_path, capsys):
     if name in ("opened_in_vtk", "drawn_in_space"):
         pytest.importorskip("pyvista", reason="the extra docs is not installed")
+    if name == "in_the_browser" and in_the_browser.BROWSER is None:
+        pytest.skip("no Chromium on this machine")
     if name == "in_the_viewer":
         require_pictures_of_mujoco()
     main_of(name)(["--quick", "--out", str(tmp_path / "deep" / "er")])
@@ -333,3 +346,10 @@ def test_a_full_disk_leaves_the_old_file_whole(tmp_path, monkeypatch):
         cli.write_text(target, "new")
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_the_table_of_the_town_is_drawn_by_its_seed():
+    """Lines of the table in docs/figures, and those of the first walls of any number."""
+    table = (Path(mr.__file__).parents[1] / "docs" / "figures" / "town_walls.csv").read_text(encoding="utf-8")
+    assert cli.csv_text(town.COLUMNS, town.drawn()) == table
+    assert town.drawn(count=20) == town.drawn()[:20]

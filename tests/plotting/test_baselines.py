@@ -134,6 +134,7 @@ PICTURES = {
         {"a": mr.Push(RISING, 1e4 * RISING * (2 - RISING), 0 * RISING, "", swung(), energy=RISING)}
     ),
     "pushover": lambda: plotting.pushover(pushed()),
+    "record": lambda: plotting.record([MOTION, MOTION.corrected(band=(None, 20.0))]),
     "residuals": lambda: law_pictures.residuals("t", RISING, {"R": (RISING, "log"), "h": (RISING[::-1], "linear")}),
     "rotation": lambda: plotting.rotation(both(), ["a", "b"]),
     "sensitivity": lambda: plotting.single(

@@ -20,6 +20,7 @@ SHOWN = {
     "case": lambda: SHAKEN,
     "response": lambda: mr.solve_analytical(SHAKEN, E),
     "comparison": lambda: mr.compare(*(mr.solve_analytical(RELEASED, e) for e in (E, mr.Restitution(0.9, -0.4)))),
+    "fragility": lambda: mr.fit_capacities([0.3, 0.4, 0.5, 0.45, 0.35]),
     "push-over": lambda: mr.pushover(RELEASED),
     "masonry": lambda: BOND,
     "masonry in space": lambda: BOX,

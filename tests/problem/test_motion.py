@@ -127,7 +127,7 @@ def test_the_ledger_closes_on_a_shaken_wall(contacts, accuracy):
 
 
 def test_the_record_of_an_earthquake(contacts):
-    motion = mr.GroundMotion.from_sac(RECORDS / "near_a.sac").scaled(0.3)
+    motion = mr.GroundMotion.from_sac(RECORDS / "near_a.sac", "cm/s2").scaled(0.3)
     case = mr.Case(FIGURE_3, 0.0, 8.0, motion=motion)
     coarse, fine = (mr.simulate(case, contacts, accuracy=a, ledger=True) for a in (1e-3, 1e-4))
     assert fine.theta.max() > 0.05 * FIGURE_3.alpha
@@ -319,7 +319,13 @@ def test_a_word_of_any_length_is_refused_at_once(word, tmp_path):
         (mr.GroundMotion.from_at2, f"{head}NPTS= 2, DT= .01 SEC\n0.1 {word}\n"),
         (mr.GroundMotion.from_at2, f"{head}NPTS= 2, DT= .01{word}\n0.1 0.2\n"),
         (mr.GroundMotion.from_at2, f"\n\nACCELERATION TIME SERIES IN UNITS OF G{word}\n\n0.1 0.2\n"),
-        (mr.GroundMotion.from_sac, f"title\n2 {word}\n0.1 0.2\n"),
+        (lambda path: mr.GroundMotion.from_sac(path, "g"), f"title\n2 {word}\n0.1 0.2\n"),
+        (lambda path: mr.GroundMotion.from_csv(path, "g", dt=0.01), f"time step {word}\n0.1\nx\n"),
+        (
+            mr.GroundMotion.from_file,
+            f"Corrected accelerogram\n 2 points of accel data at .01 sec, cm/s2 ({word}\n1 {word}",
+        ),
+        (mr.GroundMotion.from_file, f"Sampling Freq(Hz) {word}Hz\nMemo.\n1 2\n"),
         (lambda path: mr.GroundMotion.from_csv(path, "g"), f"0,1\n.01,{word}\n"),
     ):
         path.write_text(text)

@@ -87,8 +87,12 @@ def test_flags_names_and_units_of_another_type(tmp_path):
         mr.GroundMotion.ricker(1.0, 1.0, "no")
     with pytest.raises(TypeError, match="name = 3 of type int is not a str"):
         mr.GroundMotion([0.0, 1.0], 0.01, 3)
-    (tmp_path / "a.csv").write_text("0,0\n1,1\n")
-    for unit in (None, ["g"], 9.81, "G"):
+    (tmp_path / "a.csv").write_text("0,0\n.01,1\n")
+    with pytest.raises(ValueError, match=r"a\.csv: the header names no unit; give unit=, one of m/s2, cm/s2, mm/s2, g"):
+        mr.GroundMotion.from_csv(tmp_path / "a.csv")
+    with pytest.raises(ValueError, match=r"a\.csv: unit = 0 m/s2 is outside the valid range"):
+        mr.GroundMotion.from_csv(tmp_path / "a.csv", 0)
+    for unit in (True, ["g"], "G"):
         with pytest.raises(ValueError, match=r"a\.csv: unit = .* is not one of m/s2, cm/s2, mm/s2, g, ft/s2"):
             mr.GroundMotion.from_csv(tmp_path / "a.csv", unit)
         with pytest.raises(ValueError, match=r"a\.csv: time_unit = .* is not one of s, ms"):

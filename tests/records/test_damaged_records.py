@@ -30,10 +30,12 @@ def not_named(folder, ending, texts, complaint):
 
 @FORMATS
 def test_what_is_no_number(tmp_path, ending):
-    """In the first, a middle and the last row. In a file of one column a comma sets two columns apart."""
+    """In the first, a middle and the last row. In a file of one column a comma sets two columns apart, and a table may
+    have quotes."""
     rows, head = body(ending).splitlines(), HEADS[ending]
     texts, complaints = [], []
-    for value in (one for one in NO_NUMBERS if ending != "txt" or "," not in one):
+    left_out = {"csv": '"', "txt": ',"'}.get(ending, "")
+    for value in (one for one in NO_NUMBERS if not set(one) & set(left_out)):
         shown = ascii(value.replace(",", ".") if ending == "csv" else value)
         for i in (0, 2, 5):
             damaged = [*rows]
@@ -45,7 +47,7 @@ def test_what_is_no_number(tmp_path, ending):
 
 
 def test_a_damaged_first_row_is_no_header(tmp_path):
-    damages = ["\u0660\u0661,1", "\x1a0.00,1", "\u200b0.00,1", '"0.00",1', "\x850.00,1", "****,0.1"]
+    damages = ["\u0660\u0661,1", "\x1a0.00,1", "\u200b0.00,1", "\x850.00,1", "****,0.1"]
     texts = [f"time,accel\n{damage}\n0.01,2\n0.02,3\n" for damage in damages]
     assert not_named(tmp_path, "csv", texts, r"a\.csv: line 2: .* is not a finite number") == []
 
@@ -132,7 +134,9 @@ OTHERS = (
 
 @FORMATS
 def test_a_file_of_another_format(tmp_path, ending):
-    complaint = rf"a\.{ending}: .*(not an? [\w ,-]+ file|not the plain text of a SAC|needed|only CR)"
+    complaint = (
+        rf"a\.{ending}: .*(not an? [\w ,-]+ file|none of the formats|not the plain text of a SAC|needed|only CR)"
+    )
     assert not_named(tmp_path, ending, OTHERS, complaint) == []
 
 
@@ -144,11 +148,9 @@ def test_utf_16_is_named(tmp_path, ending):
 
 @FORMATS
 def test_a_unit_off_by_a_thousand_warns(tmp_path, ending):
-    scale = 1e3 if ending == "at2" else 1e5
+    scale = {"at2": 1e3, "geonet": 1e6}.get(ending, 1e5)
     lines = (f"{0.01 * i:.2f},{scale * x:g}" if ending == "csv" else f"{scale * x:g}" for i, x in enumerate(SAMPLES))
-    with pytest.warns(
-        UserWarning, match=r"(a|IT AMT HGE EMSC.*) peaks at [\d.]+ m/s2 = [\d.]+ g; accelerations are in m/s2"
-    ):
+    with pytest.warns(UserWarning, match=r"\w.* peaks at [\d.]+ m/s2 = [\d.]+ g; accelerations are in m/s2"):
         READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + "\n".join(lines)))
 
 

@@ -146,14 +146,9 @@ CYCLE = np.sin(2 * np.pi * T / T[-1])
         ("0,0\n0.01,one\n0.02,2\n", "g", "line 2: .*'one'"),
         ("0,zero\n0.01,1\n0.02,2\n", "g", "line 1: .*'zero'"),
         ("0,0,0\n0.01,1,0\n", "g", "line 1 has 3 columns"),
-        (
-            "0,00\t-0,300\n0,01\t0,1\n",
-            "g",
-            "line 1 has 3 columns, .* write decimal points, since",
-        ),
         ("0,0\n0.01,1e308\n0.02,1\n", "g", r"accel\[1\] = inf m/s2 is not finite"),
-        ("0\n1\n2\n", "g", "line 1 has 1 columns, '0'; two are needed"),
-        ("time,accel\n", "g", "0 rows of time and acceleration in 2 lines, the first of them 'time,accel'"),
+        ("0\n1\n2\n", "g", "line 1 has one column of accelerations; give its time step dt"),
+        ("time,accel\n", "g", "0 rows of numbers in 2 lines, the first of them 'time,accel'"),
         ("", "g", "an empty file"),
         ("0,1\x00", "g", "a binary file"),
     ],
@@ -171,11 +166,11 @@ def test_one_column_needs_its_step(tmp_path):
         motion = mr.GroundMotion.from_csv(path, "m/s2", dt=dt, time_unit=unit)
         np.testing.assert_array_equal(motion.accel, [0.0, 1.0, -2.0])
         assert motion.dt == pytest.approx(0.005, rel=1e-12)
-    with pytest.raises(ValueError, match=r"line 2 has 1 columns, '0'; two are needed, .*; one column needs its .* dt"):
+    with pytest.raises(ValueError, match=r"line 2 has one column of accelerations; give its time step dt"):
         mr.GroundMotion.from_csv(path, "m/s2")
     with pytest.raises(ValueError, match=r"dt = 5 s is outside the valid range"):
         mr.GroundMotion.from_csv(path, "m/s2", dt=5.0)
-    with pytest.raises(ValueError, match="line 1 has 2 columns, '0,1'; one is needed, the acceleration"):
+    with pytest.raises(ValueError, match=r"line 1 has 2 columns; choose with columns=, .* columns='rows' for samples"):
         mr.GroundMotion.from_csv(written(tmp_path / "b.csv", "0,1\n1,2\n"), "m/s2", dt=0.01)
 
 
@@ -265,9 +260,9 @@ def test_sac(tmp_path, head, complaint):
     path.write_text(f"STA fn  Somewhere\n{head}\n" + " ".join(str(1000 * x) for x in SAMPLES))
     if complaint:
         with pytest.raises(ValueError, match=rf"STA\.sac: .*{complaint}"):
-            mr.GroundMotion.from_sac(path)
+            mr.GroundMotion.from_sac(path, "cm/s2")
     else:
-        motion = mr.GroundMotion.from_sac(path)
+        motion = mr.GroundMotion.from_sac(path, "cm/s2")
         np.testing.assert_allclose(motion.accel, 10 * np.array(SAMPLES), rtol=1e-14)
         assert (motion.dt, motion.name) == (0.005, "STA")
 

@@ -286,7 +286,7 @@ def test_an_analysis_keeps_its_options(wall, contacts):
     [
         ({"case": None}, "case = None is not a Case or MasonryCase"),
         ({"contacts": "CALIBRATED"}, "contacts = 'CALIBRATED' of type str is not a Contacts or None"),
-        ({"e": 0.9}, "e = 0.9 of type float is not a Restitution or None"),
+        ({"e": 0.9}, "e = 0.9 of type float is not a Restitution or ScatteredRestitution or None"),
         ({"options": ["accuracy"]}, "options = .* is not a mapping"),
     ],
 )

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import warnings
 
 import pytest
 from campaign_tasks import Square
@@ -32,7 +33,7 @@ def test_the_last_line_and_the_status(tmp_path, capsys):
     assert first == f"{path}: 3 rows, 2 done, 1 failed"
     assert outcomes == "outcomes: 1 overturned, 1 time ended"
     assert version.startswith(f"made by: 3 mjrock {mr.__version__}")
-    assert failed.startswith("failed 1 times: ")
+    assert failed.startswith("failed once: ")
 
 
 def test_a_campaign_that_was_broken_off_says_what_is_left():
@@ -57,3 +58,34 @@ def test_the_command_line(tmp_path):
     assert asked("status", "none.sqlite").returncode == 2
     assert "invalid choice: 'stat'" in asked("stat").stderr
     assert asked().returncode == 2
+
+
+def test_reading_rows_does_not_warn_again_of_what_the_run_has_warned_of(tmp_path):
+    """A grid makes its tasks anew, and a weak record is doubted as its case is made."""
+
+    def build(peak):
+        motion = mr.GroundMotion.sine(peak, 0.5)
+        return mr.Analysis(mr.Case(WALL, 0.0, 1.0, motion=motion), "analytical", e=E)
+
+    grid = mr.Grid(build, peak=[0.05, 3.0])
+    mr.campaign(grid, tmp_path / "walls.sqlite", workers=1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rows = mr.results(grid, tmp_path / "walls.sqlite")
+    assert [row["peak"] for row in rows] == [0.05, 3.0]
+
+
+def test_errors_of_a_grid_are_counted_by_their_kind(tmp_path):
+    """Two walls of different numbers and points fail alike, a third by another error."""
+
+    def build(wall, share):
+        if wall == "other":
+            raise ValueError("another error")
+        return released(share)
+
+    path = tmp_path / "walls.sqlite"
+    mr.campaign(mr.Grid(build, wall=["a", "b", "other"], share=[50.0, 60.0]), path, workers=1)
+    *_, often, seldom = status(path).splitlines()
+    assert often.startswith("failed 4 times, first: ValueError: release rotation theta0 = ")
+    assert "(at wall = a, share = 50.0)" in often
+    assert seldom.startswith("failed 2 times, first: ValueError: another error")

@@ -105,6 +105,26 @@ def two_blocks_leave(masonry, before, heights):
     return np.linalg.solve(matrix, known)
 
 
+@pytest.mark.parametrize(("thickness", "height", "load"), [(0.3, 4.0, 20e3), (0.21, 2.58, 10e3), (0.4, 3.0, 1e3)])
+def test_a_strip_between_floors_that_cracks_at_half_its_height(thickness, height, load):
+    """Two equal bodies of m, I, width 2b and height 2h turn at the same rate against each other, with a hinge at the
+    edge of the crack, and lift the floor of the mass M by 4b. Of the velocity with the hinges on one side the impact
+    leaves its part along that with the hinges on the other,
+
+        e = (2 m h^2 - 10 m b^2 + 2 I - 16 M b^2) / (2 m h^2 + 10 m b^2 + 2 I + 16 M b^2).
+    """
+    masonry = mr.Masonry.between_floors(mr.Block.from_size(thickness, height), load=load, crack=height / 2)
+    b, h = thickness / 2, height / 4
+    m, inertia, mass = masses(masonry)[0, 0], masses(masonry)[0, 2], masses(masonry)[2, 0]
+    before = -np.array([[h, b, 1.0], [h, 3 * b, -1.0], [0.0, 4 * b, 0.0]])
+    e = (2 * m * h**2 - 10 * m * b**2 + 2 * inertia - 16 * mass * b**2) / (
+        2 * m * h**2 + 10 * m * b**2 + 2 * inertia + 16 * mass * b**2
+    )
+    found = mr.rigid_impact(masonry, before)
+    assert found.velocity == pytest.approx(-e * np.array([[h, -b, 1.0], [h, -3 * b, -1.0], [0.0, -4 * b, 0.0]]))
+    assert found.kept == pytest.approx(e**2)
+
+
 @pytest.mark.parametrize("heights", [(2.1, 2.1), (1.2, 3.0), (3.4, 0.8)])
 @pytest.mark.parametrize("upper", [-1.2, -1.5, -2.5, -6.0])
 def test_two_blocks(heights, upper):

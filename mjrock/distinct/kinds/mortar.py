@@ -46,6 +46,7 @@ class Bonds(JointLaw, Table):
         *numbers("peak", "hardening"),  # strength in crushing at its peak [N], plastic closing there, zero for none [m]
         *numbers("largest_gap", "crack", "crushed"),  # so far, opening of the crack and plastic closing so far [m]
         *numbers("secant"),  # stiffness that holds both ways [N/m]
+        *numbers("undamped"),  # 1 where dashpots leave out what holds, or 0 [-]
         *numbers("age"),  # time that it has held until it cracked [s]
     ]
     bond: ClassVar[type[Bond]] = Bond
@@ -62,6 +63,7 @@ class Bonds(JointLaw, Table):
             "cohesion": bond.cohesion * area,
             "residual": residual,
             "friction_drop": friction - residual,
+            "undamped": float(not bond.damped),
             "opening_rate": bond.tension / bond.opening_energy,
             "slip_rate": bond.cohesion / bond.slip_energy,
         }
@@ -165,7 +167,8 @@ def slide(
     limit = bonded_limit(bond, push)
     trial = stretched(bodies, line.face, bond.grip, normal, scaled(h, slip))
     grip = shortened(trial, limit / bond.k_s)
-    drag = shortened(minus(scaled(-bond.k_s, grip), scaled(bond.c_s, slip)), limit)
+    c_s = bond.c_s * (1 - bond.undamped * bond.secant / bond.k)
+    drag = shortened(minus(scaled(-bond.k_s, grip), scaled(c_s, slip)), limit)
     slid = minus(trial, grip)
     taken = wear(bond, math.sqrt(dot(slid, slid)))
     if line.face >= 0:
@@ -192,7 +195,7 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
                 books.totals[0].tension += 0.5 * before * gap * (secant - bond.secant)
     velocity = relative(bodies, line, supports, meet)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
-    pressed = -bond.c * bond.secant / bond.k * rate
+    pressed = -(1 - bond.undamped) * bond.c * bond.secant / bond.k * rate
     push = pressed - bond.secant * gap
     books.dashpots[line.group] -= 0.5 * h * (bond.pressed + pressed) * rate
     last = read(bond.dragged)

@@ -4,9 +4,21 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 
-from ...quantities import Implausible, keep, require_real, require_within, short_repr
+import numpy as np
+
+from ...quantities import (
+    Array,
+    Implausible,
+    keep,
+    require_kind,
+    require_real,
+    require_whole,
+    require_within,
+    short_repr,
+)
 from ..wall.block import Block
 
 UNLIKE = 1e-2
@@ -65,6 +77,16 @@ class Restitution:
                 f"{asked * 2 * wall.h:.4g} m; take Restitution.from_geometry(wall, stop_top={asked * 2 * wall.h:.4g})"
             )
         return None
+
+    def scattered(self, sd: float, seed: int) -> ScatteredRestitution:
+        """This restitution as the mean of values that differ from impact to impact.
+
+        Args:
+            sd: standard deviation of e of one impact, on the base and on the side stop [-], 0 or more, see
+                `ScatteredRestitution`.
+            seed: of the draws, a whole number from 0 to 2**53.
+        """
+        return ScatteredRestitution(self, sd, seed)
 
     def require_rebound(self) -> None:
         """Raise ValueError unless the wall rebounds from the side stop."""
@@ -141,6 +163,90 @@ class Restitution:
                 f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0 for this wall"
             )
         return cls(base=base, side=lumped / base**2)
+
+
+@dataclass(frozen=True, repr=False)
+class ScatteredRestitution:
+    """Restitution that differs from impact to impact.
+
+    `solve_analytical` draws |e| of each impact from the beta distribution of this mean and standard deviation: it
+    keeps both, and stays between 0 and 1. Draws are independent of each other. The sequence base, side, base of a wall
+    beside a stop takes three of them. The i-th impact of a run has the i-th draw of the seed, whatever its tolerance.
+    Without a spread the answer is that of the mean, to the last bit.
+
+    Contacts have one damping ratio, so that they take one draw for a whole run: `drawn`.
+
+    Args:
+        mean: the mean coefficients [-].
+        sd: standard deviation of one impact [-], 0 or more and below sqrt(|e| (1 - |e|)) of the base and of the side
+            stop, unless that is 0.
+        seed: of the draws, a whole number from 0 to 2**53.
+
+    Raises:
+        TypeError: for a value of another type.
+        ValueError: for a value outside its range.
+    """
+
+    mean: Restitution
+    sd: float
+    seed: int
+
+    __repr__ = short_repr
+
+    def __post_init__(self) -> None:
+        require_kind("mean restitution", self.mean, Restitution)
+        largest = min(math.sqrt(e * (1 - e)) for e in (self.mean.base, abs(self.mean.side)) if e > 0)
+        sd = require_within("sd of the restitution", self.sd, 0.0, math.inf)
+        if sd > 0 and sd >= largest:
+            raise ValueError(
+                f"sd of the restitution = {sd:g} is outside the valid range from 0 to less than {largest:.4g}: with a "
+                f"larger one |e| does not stay between 0 and 1, with means of {self.mean.base:g} and {self.mean.side:g}"
+            )
+        keep(self, sd=sd, seed=require_whole("seed", self.seed, 0, 2**53))
+
+    @property
+    def base(self) -> float:
+        """The mean of an impact on the base [-]."""
+        return self.mean.base
+
+    @property
+    def lumped(self) -> float:
+        """The mean of the sequence base, side, base [-]."""
+        return self.mean.lumped
+
+    def doubt(self, wall: Block, stop_top: float | None) -> str | None:
+        """That of the mean."""
+        return self.mean.doubt(wall, stop_top)
+
+    def drawn(self) -> Restitution:
+        """One draw of each coefficient: the restitution of a run on contacts."""
+        base, side, _ = _draws(self, np.random.default_rng(self.seed), 1)[0].tolist()
+        return replace(self.mean, base=base, side=side)
+
+
+AnyRestitution = Restitution | ScatteredRestitution
+"""What rocking theory takes."""
+
+
+def impacts_of(e: AnyRestitution, *, lumped: bool) -> Callable[[int], Array]:
+    """A function that gives e of the next impacts of a run, so many [-]; `lumped` of the sequence base, side, base."""
+    if isinstance(e, Restitution) or e.sd == 0:
+        same = e.lumped if lumped else e.base
+        return lambda count: np.full(count, same)
+    random = np.random.default_rng(e.seed)
+    return lambda count: _draws(e, random, count)[:, : 3 if lumped else 1].prod(axis=1)
+
+
+def _draws(e: ScatteredRestitution, random: np.random.Generator, count: int) -> Array:
+    """Draws for base, side and base, shape (count, 3)."""
+    means = np.array([e.mean.base, e.mean.side, e.mean.base])
+    found, spread = np.tile(means, (count, 1)), means != 0
+    if e.sd > 0:
+        size = np.abs(means[spread])
+        strength = size * (1 - size) / e.sd**2 - 1
+        drawn = random.beta(size * strength, (1 - size) * strength, (count, len(size)))
+        found[:, spread] = np.sign(means[spread]) * drawn
+    return found
 
 
 def _base(wall: Block) -> float:

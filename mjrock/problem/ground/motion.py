@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
@@ -32,20 +32,11 @@ from ...quantities import (
     spelt,
     within_ranges,
 )
+from .correction import integral, within_band, without_baseline
+from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
 from .oscillator import acceleration, building_modes, steps_of
-from .records import (
-    COARSEST,
-    FINEST,
-    ReadRecord,
-    checked,
-    esm_header,
-    esm_text,
-    parse_at2,
-    parse_columns,
-    parse_esm,
-    parse_sac,
-    read,
-)
+from .records import COARSEST, FINEST, Parse, Trace, checked, read, text_lines
+from .tables import Wanted, parse_table, table_lines
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
@@ -134,8 +125,13 @@ class GroundMotion:
     @cached_property
     def velocities(self) -> Array:
         """Velocity of the ground at each sample [m/s], shape (n,)."""
-        means = 0.5 * (self.accel[1:] + self.accel[:-1])
-        return np.concatenate(([0.0], np.cumsum(self.dt * means)))
+        return integral(self.accel, self.dt)
+
+    @cached_property
+    def displacements(self) -> Array:
+        """Displacement of the ground at each sample [m], shape (n,)."""
+        within = self.dt * (2 * self.accel[:-1] + self.accel[1:]) / 6
+        return np.concatenate(([0.0], np.cumsum(self.dt * (self.velocities[:-1] + within))))
 
     @property
     def duration(self) -> float:
@@ -163,8 +159,7 @@ class GroundMotion:
     @property
     def residual_displacement(self) -> float:
         """Displacement at the last sample [m]."""
-        within = self.dt * (2 * self.accel[:-1] + self.accel[1:]) / 6
-        return float(self.dt * (self.velocities[:-1] + within).sum())
+        return float(self.displacements[-1])
 
     @property
     def arias_intensity(self) -> float:
@@ -247,6 +242,35 @@ class GroundMotion:
             low_pass = scipy.signal.butter(8, 0.7 * self.dt / new, output="sos")
             accel = scipy.signal.sosfiltfilt(low_pass, accel, padlen=min(last, math.ceil(10 * new / self.dt)))
         return GroundMotion(np.interp(new * np.arange(steps + 1), self._times, accel), new, name, self.header)
+
+    def corrected(self, baseline: str | None = None, band: Sequence[float | None] | None = None) -> GroundMotion:
+        """The motion without a baseline and within a band of frequencies, as long as before.
+
+        With both, the baseline is taken off before the filter and again after it, which leaves some of its own where
+        its zeros before and after the record are cut off.
+
+        `residual_velocity` and `residual_displacement` of both say what it has done, and `mr.plotting.record` draws
+        them beside each other.
+
+        Args:
+            baseline: "constant", "linear" or "quadratic", the polynomial of accelerations that is taken off: that whose
+                integral is closest to the velocity. None leaves it.
+            band: lower and upper corner of a Butterworth filter [Hz], of fourth order, forwards and backwards, such as
+                (0.1, 25.0); one of them may be None. A corner keeps half of the amplitude.
+
+        Raises:
+            TypeError, ValueError: for neither of both, another baseline, or corners outside 0.001 Hz to 0.49 / dt.
+        """
+        if baseline is None and band is None:
+            raise ValueError("corrected takes a baseline, a band, or both")
+        accel = self.accel if baseline is None else without_baseline(self.accel, self.dt, baseline)
+        if band is not None:
+            accel = within_band(accel, self.dt, band)
+            accel = accel if baseline is None else without_baseline(accel, self.dt, baseline)
+        done = [] if baseline is None else [f"without {baseline} baseline"]
+        if band is not None:
+            done += [f"{side} {corner:g} Hz" for side, corner in zip(("above", "below"), band, strict=True) if corner]
+        return GroundMotion(accel, self.dt, ", ".join([self.name, *done]), self.header)
 
     def through_building(
         self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
@@ -405,6 +429,34 @@ class GroundMotion:
         return cls(peak / np.abs(accel).max() * accel, dt, f"synthetic {peak:g} m/s2, seed {seed}")
 
     @classmethod
+    def from_file(
+        cls, path: str | PathLike[str], component: str | None = None, *, unit: str | float | None = None
+    ) -> GroundMotion:
+        """A component of a file of any format that states its time step, which its first lines tell.
+
+        PEER AT2, ESM and ITACA, K-NET and KiK-net, GeoNet V1A and V2A, SMC, CSMIP and COSMOS V1 and V2; a table whose
+        header states step and unit; SAC, miniSEED and more by ObsPy (the extra `obspy`), which know no unit.
+        `components_in` gives all components of a file.
+
+        Args:
+            path: the file.
+            component: which one, as the file names it in STREAM, such as "360", "UP", "NS"; None for the only one.
+            unit: of a file that states none: "m/s2", "cm/s2", "mm/s2", "g", "ft/s2", or how many m/s2 a count is.
+
+        Raises:
+            OSError: if the file cannot be read.
+            ImportError: for a file that ObsPy reads, if it is missing.
+            ValueError: for another format, a component that is not there, and for what `from_at2` refuses.
+        """
+        require_kind("component", component, str, type(None))
+        traces = read(path, lambda file: recognised(file, unit))
+        found = [one.header.get("STREAM", "") for one in traces]
+        fit = [one for one, name in zip(traces, found, strict=True) if component in (None, name)]
+        if len(fit) != 1:
+            raise ValueError(f"{path}: component = {component!r}; the file has {', '.join(map(repr, found))}")
+        return motion_of(fit[0], path)
+
+    @classmethod
     def from_at2(cls, path: str | PathLike[str]) -> GroundMotion:
         """A record of the PEER NGA data base, in g, named after its file.
 
@@ -412,7 +464,7 @@ class GroundMotion:
             OSError: if the file cannot be read.
             ValueError: for another format or unit, another number of samples than is stated, or no finite number.
         """
-        return cls._from_file(path, parse_at2)
+        return cls._from_text(path, parse_at2)
 
     @classmethod
     def from_esm(cls, path: str | PathLike[str]) -> GroundMotion:
@@ -424,13 +476,7 @@ class GroundMotion:
             OSError: if the file cannot be read.
             ValueError: for another format or unit, another number of samples than is stated, or no finite number.
         """
-        header: dict[str, str] = {}
-
-        def parse(lines: list[str]) -> ReadRecord:
-            header.update(esm_header(lines))
-            return parse_esm(lines, header)
-
-        return cls._from_file(path, parse, header)
+        return cls._from_text(path, parse_esm)
 
     def to_esm(self, path: str | PathLike[str], **header: str) -> Path:
         """Write the motion as a file of the ESM data base, which `from_esm` and other programs read.
@@ -450,62 +496,87 @@ class GroundMotion:
 
     @classmethod
     def from_csv(
-        cls, path: str | PathLike[str], unit: str, *, time_unit: str = "s", dt: float | None = None
+        cls,
+        path: str | PathLike[str],
+        unit: str | float | None = None,
+        *,
+        time_unit: str = "s",
+        dt: float | None = None,
+        columns: int | str | Sequence[int | str] | None = None,
+        skip: int | None = None,
     ) -> GroundMotion:
-        """A record of two columns, time and acceleration, named after its file; its first row is time zero.
+        """A record of a table, in text or a spreadsheet, named after its file; its first row is time zero.
 
-        With `dt` it is a record of one column, the accelerations.
+        The table has two columns, time and acceleration, or with `dt` one, the accelerations; of more columns some are
+        chosen. With `dt`, samples may also stand in rows, of 5 or 8 for instance. Commas, semicolons, or blanks and
+        tabs set the columns apart. A header and lines that begin with #, % or // are skipped. A comma may be a decimal
+        point.
 
-        Commas, semicolons, or blanks and tabs set the columns apart; a header and lines that begin with #, % or // are
-        skipped; between semicolons a comma is a decimal point.
+        What the header states, and numbers before the samples, are held against what is given here. The error says what
+        `skip` reads.
 
         Args:
-            path: the file.
-            unit: of the accelerations: "m/s2", "cm/s2", "mm/s2", "g" (9.81 m/s2) or "ft/s2".
+            path: the file. Of a spreadsheet (.xlsx, .xls, .ods; the extra `frames`) it is the sheet with numbers.
+            unit: of the accelerations: "m/s2", "cm/s2", "mm/s2", "g" (9.81 m/s2) or "ft/s2", or how many m/s2 it is;
+                None for the one that the header names.
             time_unit: "s" or "ms".
-            dt: time step of a record of one column, in the time unit; None for a record with a column of times.
+            dt: time step, in the time unit; None for that of a column of times or of the header. Beside a column of
+                times it has to agree with them.
+            columns: time and acceleration, or with `dt` the acceleration, by number from 0 or by name; "rows" for
+                samples in rows.
+            skip: how many lines to leave out at the start; what they state is not looked at.
 
         Raises:
             OSError: if the file cannot be read.
-            ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step), or what is
-                not two finite numbers a line.
+            ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step, or what their
+                decimals round), what is not a finite number, and for doubts, with the line and both readings.
         """
-        return cls._from_file(path, lambda lines: parse_columns(lines, unit, time_unit, dt))
+        traces = read(path, lambda file: parse_table(table_lines(file), Wanted(unit, time_unit, dt, columns, skip)))
+        if len(traces) > 1:
+            raise ValueError(f"{path}: columns has {len(traces)} accelerations; components_in reads them all")
+        return motion_of(traces[0], path)
 
     @classmethod
-    def from_sac(cls, path: str | PathLike[str]) -> GroundMotion:
-        """A record in the plain text of a SAC set, named after its file: a title, count and time step, cm/s2.
+    def from_sac(cls, path: str | PathLike[str], unit: str | float | None = None) -> GroundMotion:
+        """A record in the plain text of a SAC set, named after its file: a title, count and time step, values.
+
+        A binary SAC file of seismology is read by `from_file`.
+
+        Args:
+            path: the file.
+            unit: as in `from_csv`. The file does not state it. Without it, cm/s2 are taken, with a warning.
 
         Raises:
             OSError: if the file cannot be read.
             ValueError: for another format, another number of samples than is stated, or what is not a finite number.
         """
-        return cls._from_file(path, parse_sac)
+        if unit is None:
+            said = "the text of a SAC set states no unit: give unit=, which will be needed; cm/s2 are taken"
+            warnings.warn(said, FutureWarning, stacklevel=2)
+        return cls._from_text(path, lambda lines: parse_sac(lines, "cm/s2" if unit is None else unit))
 
     @classmethod
-    def _from_file(
-        cls,
-        path: str | PathLike[str],
-        parse: Callable[[list[str]], ReadRecord],
-        header: Mapping[str, str] | None = None,
-    ) -> GroundMotion:
-        """The record of a file, named after its header or its file, with what makes one doubt its unit or baseline."""
-        with np.errstate(over="ignore"):  # a number that is too large in m/s2 is named
-            record = read(path, parse)  # fills the header
-        named = [header[field] for field in NAMING if header.get(field)] if header else []
-        motion = cls(*record, name := " ".join(named) or Path(path).stem, header)
-        peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
-        if peak < FAINT:
-            warnings.warn(
-                f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?", stacklevel=3
-            )
-        if abs(final) > DRIFT * fastest:
-            warnings.warn(
-                f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
-                "it needs a baseline correction",
-                stacklevel=3,
-            )
-        return motion
+    def _from_text(cls, path: str | PathLike[str], parse: Parse) -> GroundMotion:
+        return motion_of(read(path, lambda file: parse(text_lines(file)))[0], path, stacklevel=4)
+
+
+def motion_of(trace: Trace, path: str | PathLike[str], stacklevel: int = 3) -> GroundMotion:
+    """The motion of a trace, named after its header or its file, with what makes one doubt its unit or baseline."""
+    header = trace.header
+    named = [header[field] for field in NAMING if header.get(field)] if header.get("STATION_CODE") else []
+    named += [] if named else [Path(path).stem, *(header.values() if list(header) == ["STREAM"] else ())]
+    motion = GroundMotion(trace.accel, trace.dt, name := " ".join(named), header)
+    peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
+    if peak < FAINT:
+        doubt = "" if "UNITS" in header else "; is its unit right?"
+        warnings.warn(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only{doubt}", stacklevel=stacklevel)
+    if abs(final) > DRIFT * fastest:
+        warnings.warn(
+            f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; it needs a "
+            "baseline correction, motion.corrected(baseline='linear')",
+            stacklevel=stacklevel,
+        )
+    return motion
 
 
 def _instants(t: ArrayLike) -> Array:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import fnmatch
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import get_args
@@ -11,36 +13,55 @@ from typing import get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, require_kind, require_path, require_text, shown, spelt
+from ...quantities import Array, keep, named, require_kind, require_path, require_text, shown, spelt
 from .code_spectrum import SpectrumOfCode
-from .motion import GroundMotion
+from .components import grouped, is_vertical, order, together
+from .formats import recognised
+from .motion import GroundMotion, motion_of
+from .records import read
 from .spectrum import factor_to_spectrum, response_spectrum
+from .tables import Wanted, parse_table, table_lines
 
-COMPONENTS = ("ENZ", "XYZ", "LTV", "XYV"), ("12Z", "123")
-"""Letters that tell the components of a record apart in the names of its files: two horizontal ones, the vertical. The
-numbers come second, as they tell stations apart too."""
+MOST_SHOWN = 8
+"""Most records that `repr` of a set names."""
 
 
 class RecordSet(dict[str, tuple[GroundMotion, ...]]):
-    """Records by name: the components of each, the horizontal ones first, a vertical one last where there is one."""
+    """Records by name: the components of each, the horizontal ones first, a vertical one last where there is one.
+
+    A component whose header has a vertical one in STREAM, such as HNZ or UP, is never taken for a horizontal one.
+    `repr` says which components each record has, and by what `records_in` found that they go together, in `by`.
+    """
+
+    @cached_property
+    def by(self) -> dict[str, str]:
+        """By what the components of a record were found to go together: "header", "names" or "one file"."""
+        return {}
+
+    def __repr__(self) -> str:
+        lines = [f"<RecordSet of {len(self)} records>"]
+        for name, components in list(self.items())[:MOST_SHOWN]:
+            streams = ", ".join(motion.header.get("STREAM") or motion.name for motion in components)
+            lines.append(f"  {name}: {streams}{f' (by {self.by[name]})' if name in self.by else ''}")
+        return "\n".join(lines + (["  ..."] if len(self) > MOST_SHOWN else []))
 
     def __or__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
         """The records of both; those of the second where both have one of a name."""
-        return RecordSet({**self, **other}) if isinstance(other, Mapping) else NotImplemented
+        return _joined(self, other) if isinstance(other, Mapping) else NotImplemented
 
     def __ror__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
         """The same with the other one first."""
-        return RecordSet({**other, **self}) if isinstance(other, Mapping) else NotImplemented
+        return _joined(other, self) if isinstance(other, Mapping) else NotImplemented
 
     @property
     def horizontal(self) -> list[GroundMotion]:
         """The horizontal components of all records, at most two of each."""
-        return [motion for components in self.values() for motion in components[:2]]
+        return [motion for components in self.values() for motion in _level(components)[:2]]
 
     @property
     def first(self) -> list[GroundMotion]:
-        """The first component of each record."""
-        return [components[0] for components in self.values()]
+        """The first horizontal component of each record that has one."""
+        return [level[0] for components in self.values() if (level := _level(components))]
 
     def scaled_to(self, spectrum: ArrayLike | SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> RecordSet:
         """The set with each record scaled to a spectrum, all components of a record by one factor.
@@ -50,10 +71,13 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
             periods, damping: as `scaled_together` takes them.
 
         Raises:
-            TypeError, ValueError: for a value outside its range, or a motion at rest.
+            TypeError, ValueError: for a value outside its range, a motion at rest, or a record with no horizontal
+                component.
         """
+        if alone := [name for name, components in self.items() if not _level(components)]:
+            raise ValueError(f"{named(alone)}: no horizontal component; del records[{alone[0]!r}] leaves it out")
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
-        return RecordSet(scaled)
+        return _found(scaled, self.by)
 
     def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
         """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
@@ -68,22 +92,58 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         return np.asarray(np.mean([one.Sa for one in found], axis=0) / spectrum(found[0].period, damping))
 
 
-def records_in(
-    folder: str | PathLike[str], read: Callable[[Path], GroundMotion] = GroundMotion.from_esm, pattern: str = "*"
-) -> RecordSet:
-    """The records of a folder, as data bases and REXEL write them: a file for each component.
+def components_in(
+    path: str | PathLike[str],
+    unit: str | float | None = None,
+    *,
+    time_unit: str = "s",
+    dt: float | None = None,
+    columns: int | str | Sequence[int | str] | None = None,
+    skip: int | None = None,
+) -> tuple[GroundMotion, ...]:
+    """All components of the record in one file: of any format that `GroundMotion.from_file` reads, or of a table.
 
-    The names of the files of one record differ in one letter alone, E, N and Z, X, Y and Z, or 1, 2 and 3. The two
-    horizontal components come first, the vertical one last where there is one. A file that stands alone is a record of
-    one component, and so is one whose header names another station.
+    A file is read as a table where `dt`, `columns` or `skip` are given. Horizontal components come first.
+
+    Args:
+        path: the file.
+        unit, time_unit, dt, columns, skip: as `GroundMotion.from_csv` takes them; `columns` may have several
+            accelerations, after the times.
+
+    Raises:
+        OSError: if the file cannot be read.
+        ImportError: for a format whose library is missing.
+        ValueError: as `GroundMotion.from_file` and `GroundMotion.from_csv`.
+    """
+    wanted = Wanted(unit, time_unit, dt, columns, skip)
+    if (dt, columns, skip) == (None, None, None):
+        traces = read(path, lambda file: recognised(file, unit))
+    else:
+        traces = read(path, lambda file: parse_table(table_lines(file), wanted))
+    motions = (motion_of(trace, path) for trace in traces)
+    return tuple(sorted(motions, key=lambda motion: order(motion.header.get("STREAM", ""))))
+
+
+def records_in(
+    folder: str | PathLike[str],
+    read: Callable[[Path], GroundMotion | Sequence[GroundMotion]] = components_in,
+    pattern: str = "*",
+) -> RecordSet:
+    """The records of a folder, as data bases, networks and REXEL write them: a file for each component, or one for all.
+
+    Components go together by what their headers state: STREAM (HNE, HNN, HNZ, an azimuth), station, event and location;
+    otherwise by the names of their files, which differ in E, N, Z, or E, N, U, or NS, EW, UD, or X, Y, Z, or L, T, V,
+    or in two azimuths that are square to each other and UP, DWN, VER or V. Headers of different stations or events keep
+    files apart, and so do the numbers RSN of PEER. The horizontal components come first, the vertical one last. A file
+    that goes with no other is a record of one component.
 
     Args:
         folder: where the files are.
-        read: reads one file, such as `GroundMotion.from_at2`.
+        read: reads one file, such as `GroundMotion.from_at2`; one motion, or all components that are in the file.
         pattern: which files, such as "*.ASC".
 
     Returns:
-        The components of each record, by the name of its files with ? in place of the letter, in order. The set has
+        The components of each record, by the name of its files with ? in place of the direction, in order. The set has
         `scaled_to`, which scales it to a spectrum.
 
     Raises:
@@ -96,45 +156,47 @@ def records_in(
     names = [name for name in files if fnmatch.fnmatch(name.lower(), pattern.lower())]
     if not names:
         raise ValueError(f"{folder} has no file that fits the pattern {spelt(pattern)}")
-    records = RecordSet()
-    for key, members in _grouped(names).items():
-        motions = tuple(read(files[name]) for name in members)
-        if len({motion.header.get("STATION_CODE") for motion in motions}) == 1:
-            records[key] = motions
-        else:
-            records.update({name: (motion,) for name, motion in zip(members, motions, strict=True)})
-    return records
-
-
-def _grouped(names: Sequence[str]) -> dict[str, list[str]]:
-    """Names that differ in the letter of the component, by the name with ? in its place."""
-    groups: dict[str, list[str]] = {}
-    left = list(names)
-    for kinds in COMPONENTS:
-        found = _together(left, kinds)
-        for name in left:
-            keys = [key for key, members in found.items() if name in members]
-            if len(keys) > 1:
-                raise ValueError(
-                    f"{name} goes with other files in more than one way: {', '.join(keys)}; give a pattern"
-                )
-        groups |= found
-        left = [name for name in left if not any(name in members for members in found.values())]
-    return dict(sorted((groups | {name: [name] for name in left}).items()))
-
-
-def _together(names: Sequence[str], kinds: Sequence[str]) -> dict[str, list[str]]:
-    """Names that differ in one of these sets of letters, at one place, by the name with ? there."""
-    found: dict[str, list[str]] = {}
-    sets = [cased for letters in kinds for cased in (letters, letters.lower())]
+    found = RecordSet()
+    single: dict[str, GroundMotion] = {}
     for name in names:
-        for i, letter in enumerate(name):
-            key = f"{name[:i]}?{name[i + 1 :]}"
-            for letters in sets:
-                members = [other for other in (key.replace("?", one, 1) for one in letters) if other in names]
-                if letter in letters and len(members) > len(found.get(key, "1")):
-                    found[key] = members
-    return found
+        motions = read(files[name])
+        if isinstance(motions, GroundMotion) or len(motions) == 1:
+            single[name] = motions if isinstance(motions, GroundMotion) else motions[0]
+        elif together([motion.header.get("STREAM", "") for motion in motions]):
+            found[name], found.by[name] = tuple(motions), "one file"
+        else:
+            single |= {f"{name}, {i} {motion.header.get('STREAM', '')}": motion for i, motion in enumerate(motions)}
+    for key, tokens, by in grouped({name: motion.header for name, motion in single.items()}):
+        unused = key if key not in found else next(iter(tokens))
+        found[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
+        found.by |= {unused: by} if len(tokens) > 1 else {}
+    return _found(dict(sorted(found.items())), found.by)
+
+
+def _directed(motion: GroundMotion, token: str) -> GroundMotion:
+    """A motion whose header has its direction in STREAM."""
+    if motion.header.get("STREAM", "") == token:
+        return motion
+    named_so = copy.copy(motion)
+    keep(named_so, header={**motion.header, "STREAM": token})
+    return named_so
+
+
+def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
+    """The horizontal ones of the components of a record."""
+    return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
+
+
+def _found(records: Mapping[str, tuple[GroundMotion, ...]], by: Mapping[str, str]) -> RecordSet:
+    """A set of records that something told to go together."""
+    made = RecordSet(records)
+    made.by.update(by)
+    return made
+
+
+def _joined(one: Mapping[str, tuple[GroundMotion, ...]], other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:
+    """The records of two sets; those of the second where both have one of a name."""
+    return _found({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
 
 
 def scaled_together(
@@ -145,20 +207,22 @@ def scaled_together(
 ) -> tuple[GroundMotion, ...]:
     """The components of a record scaled by one factor to a spectrum, a vertical one by the same.
 
-    The factor is that of `scaled_to_spectrum` for the geometric mean of the spectra of the first two components, or of
-    the only one.
+    The factor is that of `scaled_to_spectrum` for the geometric mean of the spectra of the first two horizontal
+    components, or of the only one.
 
     Args:
         motions: the components, the horizontal ones first, at least one.
         periods, target, damping: as `scaled_to_spectrum` takes them.
 
     Raises:
-        TypeError, ValueError: for a value outside its range, or a motion at rest.
+        TypeError, ValueError: for a value outside its range, a motion at rest, or vertical components alone.
     """
     if not isinstance(motions, Sequence) or not motions:
         raise TypeError(f"motions = {shown(motions)} is not a sequence of at least one GroundMotion")
     for i, motion in enumerate(motions):
         require_kind(f"motions[{i}]", motion, GroundMotion)
-    factors = [factor_to_spectrum(motion, periods, target, damping) for motion in motions[:2]]
+    if not (level := _level(motions)):
+        raise ValueError(f"motions has no horizontal component, but {motions[0].header['STREAM']}")
+    factors = [factor_to_spectrum(motion, periods, target, damping) for motion in level[:2]]
     factor = float(np.exp(np.log(factors).mean()))
     return tuple(motion.scaled(factor) for motion in motions)

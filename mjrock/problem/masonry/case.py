@@ -208,6 +208,11 @@ class MasonryCase(Carrying):
         return tuple(self.masonry.names[i] for i in self.masonry.free)
 
     @cached_property
+    def masses(self) -> Array:
+        """Mass of each block with its added masses [kg], shape (blocks,)."""
+        return laden(self.masonry, self.effects)[0]
+
+    @cached_property
     def centroids(self) -> Array:
         """Centroid of each block with its added masses at rest [m], shape (blocks, d)."""
         return laden(self.masonry, self.effects)[1]

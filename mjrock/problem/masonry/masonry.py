@@ -1027,7 +1027,7 @@ class Masonry(Drawn):
         layers: Sequence[str] | None = None,
         **options: Unpack[JointOptions],
     ) -> Self:
-        """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install 'mjrock[dxf]'`.
+        """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install ezdxf`.
 
         x of the drawing is x, and y points upwards. A block has the name of its layer and a number, `stone_0`, by which
         functions of the joint know it. Inserted blocks of the drawing are taken too, and all else is left out.

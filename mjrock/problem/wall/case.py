@@ -61,6 +61,7 @@ class Case(Carrying):
     supports: ClassVar[tuple[()]] = ()
     actuators: ClassVar[dict[str, Never]] = {}
     settled: ClassVar[bool] = True
+    tilt: ClassVar[None] = None
     joints: ClassVar[tuple[()]] = ()
     bonds: ClassVar[tuple[()]] = ()
     in_space: ClassVar[bool] = False
@@ -145,6 +146,11 @@ class Case(Carrying):
     def centroids(self) -> Array:
         """Centroid of the wall with its added masses at rest, x and z [m], shape (1, 2)."""
         return np.array([[self.wall.centroid_offset, self.wall.centroid_height]])
+
+    @property
+    def masses(self) -> Array:
+        """Mass of the wall with its added masses [kg], shape (1,)."""
+        return np.array([self.wall.mass])
 
     @property
     def rests(self) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from itertools import chain
@@ -153,7 +154,9 @@ def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
     tasks = required_tasks(tasks)
     with Store(require_path("store", store)) as file:
         rows = {row["key"]: row for row in file.rows()}
-    return [rows.get(keyed(task)[0]) for task in tasks]
+    with warnings.catch_warnings():  # what a task warns of as it is made was said when it ran
+        warnings.simplefilter("ignore", UserWarning)
+        return [rows.get(keyed(task)[0]) for task in tasks]
 
 
 def completed(tasks: Iterable[Task], store: str | Path, **options: Unpack[CampaignOptions]) -> list[Row]:

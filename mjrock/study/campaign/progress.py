@@ -32,11 +32,11 @@ class WarningCounter:
         self.counts[kind] += 1
         return self.texts.setdefault(kind, text) is text
 
-    def lines(self) -> list[str]:
+    def lines(self, what: str = "warned", most: int | None = None) -> list[str]:
         """A line for each kind with how often it came, the most frequent first."""
         return [
-            f"warned once: {self.texts[kind]}" if count == 1 else f"warned {count} times, first: {self.texts[kind]}"
-            for kind, count in self.counts.most_common()
+            f"{what} once: {self.texts[kind]}" if count == 1 else f"{what} {count} times, first: {self.texts[kind]}"
+            for kind, count in self.counts.most_common(most)
         ]
 
 
@@ -102,9 +102,11 @@ def status(path: str | Path) -> str:
     seconds = sum(row["seconds"] or 0.0 for row in rows)
     lines.append(f"time of all cases together: {seconds:.3g} s, {seconds / max(len(rows), 1):.3g} s a case")
     lines.append(f"made by: {counted(Counter(str(row['version']) for row in rows))}" if rows else "made by: nobody yet")
-    errors = Counter(str(row["error"]).splitlines()[0] for row in failed)
-    lines += [f"failed {number} times: {error[:160]}" for error, number in errors.most_common(ERRORS)]
-    return "\n".join(lines)
+    errors = WarningCounter()
+    for row in failed:
+        said = str(row["error"]).splitlines()[0]
+        errors.add(said[:160], NUMBER.sub("#", said.partition(" (at ")[0]))  # a grid says at which point
+    return "\n".join([*lines, *errors.lines("failed", ERRORS)])
 
 
 def answer(argv: Sequence[str]) -> str:

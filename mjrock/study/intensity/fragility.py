@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import chdtri, log_ndtr, ndtr, ndtri, stdtrit
 
 from ...files import csv_text, write_text
+from ...notebook import Drawn
 from ...quantities import (
     Array,
     Flags,
@@ -41,7 +42,7 @@ SPREAD = 0.9
 
 
 @dataclass(frozen=True)
-class Fragility:
+class Fragility(Drawn):
     """P(overturning | intensity) = Phi(ln(intensity / median) / dispersion).
 
     Intervals and band take the runs as independent, unless the fit was told their groups.

@@ -72,7 +72,7 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> Drawing:
         from ezdxf import recover, units
         from ezdxf.enums import InsertUnits
     except ImportError as error:
-        raise ImportError(f"{error}; ezdxf reads drawings: pip install 'mjrock[dxf]'") from error
+        raise ImportError(f"{error}; ezdxf reads drawings: pip install ezdxf") from error
     for start, what in NO_DRAWING.items():
         if bytes_of(path).startswith(start):
             raise ValueError(f"path = {path} is {what}, and no drawing in DXF; save it as text in DXF")

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ....quantities import Array, Implausible, Within, keep_declared, require_within, short_repr
+from ....quantities import Array, Implausible, Within, keep, keep_declared, require_flag, require_within, short_repr
 from .bond_law import HARDENED, YIELDS
 
 LEAST_POINTS = 3
@@ -46,9 +46,11 @@ class Bond:
             f_c (1 + 2 sqrt(2 x - x^2)) / 3 at the share x of this closing (Lourenco and Rots, Journal of Engineering
             Mechanics 123, 1997). G_c is the whole area, of which this part takes 0.857 f_c times the closing. None
             bears f_c from the start.
+        damped: whether the dashpots of the joint act while it holds. False leaves them to the share of each line that
+            has cracked: a whole joint is not damped, and one that has lost its bond is damped as a dry one.
 
     Raises:
-        ValueError: for a value outside its range.
+        TypeError, ValueError: for a value of another type, or outside its range.
 
     Warns:
         Implausible: for strengths that are probably in MPa, and fracture energies that are probably in N/mm.
@@ -67,6 +69,7 @@ class Bond:
     crushing_energy: Annotated[float | None, Within(1e-6, TOUGHEST, "J/m2")] = None
     residual_friction: Annotated[float | None, Within(0, 10)] = None
     hardening: Annotated[float | None, Within(1e-9, 0.1, "m")] = field(default=None, kw_only=True)
+    damped: bool = field(default=True, kw_only=True)
 
     __repr__ = short_repr
 
@@ -75,6 +78,7 @@ class Bond:
             given = f"crushing = {self.crushing}, crushing_energy = {self.crushing_energy}"
             raise ValueError(f"{given}: give both of them, or neither")
         keep_declared(self)
+        keep(self, damped=require_flag("damped", self.damped))
         if self.hardening is not None:
             if self.crushing is None:
                 raise ValueError(f"hardening = {self.hardening} needs crushing and crushing_energy; give them, or None")

@@ -1,0 +1,432 @@
+"""Formats of records that state their step and unit: the files of data bases and of networks, and seismograms by ObsPy.
+
+Each parser takes the lines of a file and returns its traces, the components in their order. A ValueError with the line
+says where the header is another. FORMATS has all of them, and how each is recognised.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...quantities import GRAVITY, Array, require_within
+from .records import (
+    AS_ASCII,
+    BREAK,
+    COARSEST,
+    COUNT,
+    FINEST,
+    STEP,
+    UNITS,
+    Parse,
+    Trace,
+    binary_kind,
+    factor_of,
+    number,
+    numbers,
+    samples,
+    short,
+    stated_units,
+    step,
+    value_of,
+)
+from .tables import SPREADSHEETS, Wanted, parse_table, table_lines
+
+AT2_UNIT = re.compile(
+    r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
+)
+FILTERS = rf"(?:[\s.,;]*(?:[-+]?\d+\s*pole\s*@|[hl]p\s*[=:]?|filter\s+points\s*:?)\s*(?:{STEP}\s*(?:hz)?)?)*[\s.,]*"
+"""What may follow the time step of an AT2 file: the filters that the record went through."""
+AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*(?>{STEP})(?:\s*(?:s|sec|seconds)\b)?{FILTERS}", AS_ASCII)
+AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
+AT2_PLACE = re.compile(r"([^,]*)(?:,\s*\d[\d/ -]*)?,\s*(.*?),\s*([^,(]*?)\s*(?:\(.*)?", AS_ASCII)
+"""Event, date, station and component, the last of them an azimuth or UP."""
+TITLE = 200
+"""Characters of a line with the names of event and station that are looked at."""
+ESM_FIELD = re.compile(r"([A-Z0-9_/^]+):[ \t]*(.*)", AS_ASCII)
+ESM_LINES = 64
+"""Lines of the header of an ESM or ITACA file, one field in each."""
+ESM_UNITS = {"cm/s^2": 1e-2, "m/s^2": 1.0, "g": GRAVITY}
+SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
+
+KNET = {
+    "Station Code": r"(?P<STATION_CODE>\S+)", "Origin Time": "(?P<EVENT_ID>.+)", "Dir.": "(?P<dir>[NEU]-[SWD]|[1-6])",
+    "Sampling Freq(Hz)": rf"(?P<rate>{STEP[1:-1]})\s*Hz", "Duration Time(s)": rf"(?P<span>{STEP[1:-1]})",
+    "Scale Factor": rf"(?P<gal>{STEP[1:-1]})\(gal\)/(?P<counts>{STEP[1:-1]})",
+}  # fmt: skip
+"""Fields of the header of a K-NET file, and how each is written."""
+KNET_STREAMS = "NS", "EW", "UD"
+KNET_HEAD = 17
+POINTS = re.compile(rf"\s*{COUNT}\s+(?:points\s+of\s+)?accel(?:eration|erogram)?\b.*", AS_ASCII)
+"""What stands before the samples of a channel in files of CSMIP and COSMOS, with their number."""
+EVERY = re.compile(rf"\bat\s+{STEP}\s*(sec|pts/sec)", AS_ASCII)
+WIDTH = re.compile(r"\(\s*+\d*+\s*+[efg](\d{1,3})\.\d{1,3}\s*\)", AS_ASCII)
+CHANNEL = re.compile(r"(?:Sta )?Cha[n:]?\s*[\d?]+:\s*(H\d|[\d.]+(?=\s*deg)|[a-z]+)", AS_ASCII)
+STATION = re.compile(r"Stat?n?(?:ion)? (?:No\.?|Id\.?)[ :.]*([\w-]+)(?:\s+Code: ?(?:(\w+)-)?(\w+))?", AS_ASCII)
+SCNL = re.compile(r"<SCNL>(\w+)\.(\w+)\.(\w+)", AS_ASCII)
+GEONET_STEP = re.compile(rf"(?:.*\bat\s+{STEP}\s*s(?:ec)?\s+intervals|.*intervals\s+of\s+{STEP}\s*s).*", AS_ASCII)
+GEONET_COUNT = re.compile(rf"Number of points\s+{COUNT}\b.*", AS_ASCII)
+GEONET_HEAD = 26
+"""Lines of the header of a component of GeoNet: 16 of text and 10 of numbers."""
+SMC_HEAD = 27
+"""Lines of the header of an SMC file: 11 of text, 6 of whole numbers and 10 of real ones; then its comments."""
+
+
+def esm_header(lines: Sequence[str]) -> dict[str, str]:
+    """The fields of the header of an ESM or ITACA file, by name: EVENT_ID, STATION_CODE, STREAM, UNITS and so on."""
+    fields = [ESM_FIELD.fullmatch(line.rstrip()) for line in lines[:ESM_LINES]]
+    for place, field in enumerate(fields, 1):
+        if field is None:
+            raise ValueError(
+                f"line {place} is {short(lines[place - 1])}: not an ESM or ITACA file, whose first {ESM_LINES} lines "
+                "are fields such as STATION_CODE: AMT"
+            )
+    return {field[1].upper(): field[2] for field in fields if field is not None}
+
+
+def parse_esm(lines: list[str]) -> list[Trace]:
+    """The record of an ESM or ITACA file: unit, step and number of samples of its header, and a value a line."""
+    head = esm_header(lines)
+    for name in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"):
+        if not head.get(name):
+            raise ValueError(f"the header has no {name}; an ESM or ITACA file of accelerations states it")
+    if (kind := head.get("DATA_TYPE", "ACCELERATION").upper()) != "ACCELERATION":
+        raise ValueError(f"DATA_TYPE is {short(kind)}; the record has to be one of ACCELERATION")
+    if (unit := head["UNITS"].lower()) not in ESM_UNITS:
+        raise ValueError(f"UNITS is {short(head['UNITS'])}; the valid ones are {', '.join(ESM_UNITS)}")
+    if not re.fullmatch(COUNT, head["NDATA"]):
+        raise ValueError(f"NDATA is {short(head['NDATA'])}; it has to be the number of samples")
+    place = list(head).index("SAMPLING_INTERVAL_S") + 1
+    dt = require_within(
+        f"line {place}: time step dt", number(head["SAMPLING_INTERVAL_S"], place), FINEST, COARSEST, "s"
+    )
+    values = samples(lines, ESM_LINES, int(head["NDATA"]), list(head).index("NDATA") + 1)
+    return [Trace(ESM_UNITS[unit] * values, dt, head)]
+
+
+def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
+    """An ESM file of accelerations [m/s2] every dt seconds, which states its own unit, step, and number of samples.
+
+    A ValueError says where the header has a field that such a file cannot have.
+    """
+    stated = {
+        "SAMPLING_INTERVAL_S": repr(dt),
+        "NDATA": str(len(accel)),
+        "DURATION_S": f"{dt * (len(accel) - 1):.6f}",
+        "UNITS": "cm/s^2",
+        "PGA_CM/S^2": f"{accel[np.abs(accel).argmax()] / ESM_UNITS['cm/s^2']:.6f}",
+        "DATA_TYPE": "ACCELERATION",
+    }
+    fields = {**header, **stated}
+    spare = [name for name in (f"USER{i}" for i in range(1, ESM_LINES + 1)) if name not in fields]
+    fields |= dict.fromkeys(spare[: max(ESM_LINES - len(fields), 0)], "")
+    lines = [f"{name}: {value}" for name, value in fields.items()]
+    fit = all(ESM_FIELD.fullmatch(line) and not BREAK.search(line) for line in lines)
+    if len(lines) != ESM_LINES or not fit or any(name != name.upper() for name in fields):
+        raise ValueError(f"header = {short(str(dict(header)))}: at most 58 fields of one line, named as in an ESM file")
+    return "\n".join([*lines, *(repr(value) for value in (accel / ESM_UNITS["cm/s^2"]).tolist())]) + "\n"
+
+
+def parse_at2(lines: list[str]) -> list[Trace]:
+    """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g."""
+    if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
+        instead = f"line 3 is {short(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
+        raise ValueError(f"{instead}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
+    head = AT2_HEAD.fullmatch(lines[3]) or AT2_OLD_HEAD.fullmatch(lines[3])
+    if head is None:
+        raise ValueError(f"line 4 states no NPTS and DT as in NPTS= 4000, DT= .0100 SEC alone: {short(lines[3])}")
+    place = AT2_PLACE.fullmatch(BREAK.sub(" ", lines[1])[:TITLE].strip())
+    said = dict(zip(("EVENT_NAME", "STATION_NAME", "STREAM"), place.groups(), strict=True)) if place else {}
+    return [Trace(GRAVITY * samples(lines, 4, int(head[1])), step(head[2], 4), said)]
+
+
+def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
+    """The record of a text with a title line, a line that begins with count and time step [s], then its values."""
+    head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
+    if head is None:
+        instead = f"line 2 is {short(lines[1])}" if len(lines) > 1 else "1 line"
+        raise ValueError(
+            f"{instead}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
+        )
+    numbers(head[3] or "", 2)  # what the other columns say is not used
+    return [Trace(factor_of(unit) * samples(lines, 2, int(head[1])), step(head[2], 2), {})]
+
+
+def parse_knet(lines: list[str]) -> list[Trace]:
+    """The component of a K-NET or KiK-net file: 17 header lines, then counts, which are taken from their mean.
+
+    So does the network, whose header states the largest |acceleration| from the mean. The component of KiK-net is a
+    number, 1 to 3 in the borehole (LOCATION 1) and 4 to 6 at the surface (LOCATION 2).
+    """
+    said: dict[str, str] = {}
+    for place, line in enumerate(lines[:KNET_HEAD], 1):
+        for name, written in KNET.items():
+            if line.startswith(name):
+                found = re.fullmatch(written, line[len(name) :].strip(), AS_ASCII)
+                if found is None:
+                    raise ValueError(f"line {place} is {short(line)}: not as in a K-NET or KiK-net file")
+                said |= found.groupdict()
+    if missing := [name for name, written in KNET.items() if re.findall(r"P<(\w+)>", written)[0] not in said]:
+        raise ValueError(f"the first {KNET_HEAD} lines have no {missing[0]}: not a K-NET or KiK-net file")
+    rate, gal, full = (value_of(said[name]) for name in ("rate", "gal", "counts"))
+    require_within("line 11: sampling frequency", rate, 1 / COARSEST, 1 / FINEST, "Hz")
+    require_within("line 14: counts of the scale factor", full, 1, 1e12)
+    counts = samples(lines, KNET_HEAD, round(value_of(said["span"]) * rate), 12)
+    header = {name: said[name] for name in ("STATION_CODE", "EVENT_ID")}
+    if said["dir"].isdigit():  # KiK-net
+        number_of = int(said["dir"]) - 1
+        header |= {"STREAM": KNET_STREAMS[number_of % 3], "LOCATION": str(1 + number_of // 3)}
+    else:
+        header["STREAM"] = said["dir"].replace("-", "")
+    return [Trace(UNITS["cm/s2"] * gal / full * (counts - counts.mean()), 1 / rate, header)]
+
+
+class Channel(NamedTuple):
+    """The samples of a channel within a file, and the text that stands before them.
+
+    Args:
+        place: number of the line that announces them.
+        text: the lines with letters since the channel before, this one included.
+        values: the samples, in the unit of the file.
+    """
+
+    place: int
+    text: str
+    values: Array
+
+
+def channels(lines: Sequence[str]) -> Iterator[Channel]:
+    """The channels of a file of CSMIP or COSMOS: a line such as "7500 points of accel data" and as many numbers.
+
+    Velocities and displacements that follow are passed over. Where the line has the format, as in (8f10.6), the columns
+    have that width.
+    """
+    text: list[str] = []
+    i = 0
+    while i < len(lines):
+        if hidden := BREAK.search(lines[i]):
+            raise ValueError(f"line {i + 1} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
+        head = POINTS.fullmatch(lines[i])
+        text += [lines[i]] if re.search("[a-zA-Z]{2}", lines[i]) else []
+        i += 1
+        if head is None:
+            continue
+        values: list[float] = []
+        place, stated = i, WIDTH.search(lines[i - 1])
+        width = int(stated[1]) if stated else 0
+        while i < len(lines) and len(values) < int(head[1]):
+            row = _columns(lines[i], width) if width else lines[i]
+            values += numbers(row, i + 1)
+            i += 1
+        if len(values) != int(head[1]):
+            raise ValueError(f"{len(values)} samples; line {place} states {head[1]}")
+        yield Channel(place, "\n".join(text), np.array(values))
+        text = []
+
+
+def _columns(line: str, width: int) -> str:
+    return " ".join(line[k : k + width] for k in range(0, len(line.rstrip()), width)) if width else line
+
+
+def parse_channels(lines: list[str]) -> list[Trace]:
+    """The channels of a file of CSMIP (V1, V2) or COSMOS (V0 to V2) that state their unit; V0 in counts is refused.
+
+    The step stands in the line before the samples. In COSMOS it is the 62nd number of the header of real ones [ms].
+    """
+    found = []
+    for channel in channels(lines):
+        announced = lines[channel.place - 1]
+        units = stated_units(announced)
+        if len(units) != 1:
+            raise ValueError(f"line {channel.place} names no unit of accelerations: {short(announced)}")
+        if every := EVERY.search(announced):
+            dt = value_of(every[1]) if every[2].lower() == "sec" else 1 / max(value_of(every[1]), 1 / COARSEST)
+        else:
+            dt = _cosmos_step(lines, channel.place)
+        found.append(Trace(UNITS[units[0]] * channel.values, dt, _channel_header(channel.text)))
+    if not found:
+        raise ValueError("no line such as 7500 points of accel data at .010 sec: not a file of CSMIP or COSMOS")
+    return found
+
+
+def _cosmos_step(lines: Sequence[str], place: int) -> float:
+    """The step of the samples that a line announces, from the last header of real numbers before it."""
+    heads = [i for i in range(place) if re.match(r"\s*\d+ Real-header values follow", lines[i], AS_ASCII)]
+    if not heads:
+        raise ValueError(f"line {place} states no time step, and no header of real numbers stands before it")
+    width = WIDTH.search(lines[heads[-1]])
+    rows = itertools.takewhile(lambda i: not re.search("[|a-zA-Z]", lines[i]), range(heads[-1] + 1, place))
+    values = [x for i in rows for x in numbers(_columns(lines[i], int(width[1]) if width else 0), i + 1)]
+    if len(values) < 62:
+        raise ValueError(f"line {heads[-1] + 1}: {len(values)} numbers follow; the 62nd is the time step [ms]")
+    return values[61] / 1000
+
+
+def _channel_header(text: str) -> dict[str, str]:
+    """Station, component and event of a channel, from the text before its samples."""
+    header = {}
+    if station := STATION.search(text):
+        named = {"NETWORK": station[2], "STATION_CODE": station[3] or station[1]}
+        header = {name: value for name, value in named.items() if value}
+    if channel := CHANNEL.findall(text):
+        header["STREAM"] = channel[-1].upper()
+    if scnl := SCNL.search(text):
+        header |= {"STATION_CODE": scnl[1], "STREAM": scnl[2], "NETWORK": scnl[3]}
+    return header
+
+
+def parse_geonet(lines: list[str]) -> list[Trace]:
+    """The components of a GeoNet file, V1A or V2A: 26 header lines each, then accelerations in mm/s2.
+
+    In V2A velocities and displacements follow, which are passed over.
+    """
+    heads = [i for i, line in enumerate(lines) if re.match("(Unc|C)orrected accelerogram .*GNS", line)]
+    if not heads or heads[0] != 0:
+        raise ValueError(
+            f"line 1 is {short(lines[0])}: not a GeoNet file, which begins Corrected accelerogram, GNS Science"
+        )
+    return [_geonet_component(lines[: heads[k + 1]] if k + 1 < len(heads) else lines, i) for k, i in enumerate(heads)]
+
+
+def _geonet_component(lines: list[str], first: int) -> Trace:
+    """The component that begins at a line, the first as number 0."""
+    said: dict[str, tuple[int, re.Match[str]]] = {}
+    patterns = {
+        "count": GEONET_COUNT, "step": GEONET_STEP, "STREAM": re.compile(r"Component (\S+).*"),
+        "STATION_CODE": re.compile(r"Site (\S+).*"), "EVENT_ID": re.compile(r"(\d{4} \w+ +\d+ +[\d:]+ UT).*"),
+        "unit": re.compile(r"Acceleration:\s+peak\s+\S+ (mm/s/s).*", AS_ASCII),
+    }  # fmt: skip
+    for place, line in enumerate(lines[first : first + 16], first + 1):
+        said |= {name: (place, found) for name, pattern in patterns.items() if (found := pattern.fullmatch(line))}
+    if missing := [name for name in patterns if name not in said]:
+        raise ValueError(
+            f"lines {first + 1} to {first + 16} state no {missing[0]}: not the header of a GeoNet component"
+        )
+    count, (place, every) = int(said["count"][1][1]), said["step"]
+    after = first + GEONET_HEAD
+    values = np.array([x for number_of, line in enumerate(lines[after:], after + 1) for x in numbers(line, number_of)])
+    if len(values) not in (count, 3 * count):
+        raise ValueError(
+            f"{len(values)} samples from line {after + 1} on; line {said['count'][0]} states {count}, of accelerations "
+            "alone or of velocities and displacements too"
+        )
+    header = {name: said[name][1][1] for name in ("STATION_CODE", "STREAM", "EVENT_ID")}
+    return Trace(UNITS["mm/s2"] * values[:count], step(every[1] or every[2], place), header)
+
+
+def parse_smc(lines: list[str]) -> list[Trace]:
+    """The record of an SMC file of the USGS: a corrected accelerogram at a stated rate, in cm/s2."""
+    if len(lines) < SMC_HEAD or not re.match(r"\s*2 CORRECTED ACCELEROGRAM", lines[0], AS_ASCII):
+        raise ValueError(f"line 1 is {short(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
+    whole = [x for i in range(11, 17) for x in numbers(lines[i], i + 1)]
+    real = [x for i in range(17, SMC_HEAD) for x in numbers(lines[i], i + 1)]
+    if len(whole) != 48 or len(real) != 50:
+        raise ValueError(f"lines 12 to 27 hold {len(whole)} whole and {len(real)} real numbers; they are 48 and 50")
+    rate = require_within("line 18: samples a second", real[1], 1 / COARSEST, 1 / FINEST, "Hz")
+    comments = int(require_within("line 13: number of comments", whole[15], 0, 10_000))
+    values = samples(lines, SMC_HEAD + comments, int(whole[16]), 14)
+    header = {"STREAM": "UP" if whole[12] in (0, 180) else f"{whole[13]:03g}"}
+    if station := re.match(r"station =(.*?)\s*component=", lines[5]):
+        header["STATION_NAME"] = station[1].strip()
+    return [Trace(UNITS["cm/s2"] * values, 1 / rate, header)]
+
+
+def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
+    """The traces of a file of seismology, such as SAC and miniSEED, by ObsPy, in a unit that the file does not state.
+
+    Raises:
+        ImportError: if ObsPy is missing.
+        ValueError: for a file that ObsPy does not know, a record with gaps, or no unit.
+    """
+    try:
+        import obspy
+    except ImportError as error:
+        raise ImportError(f"{error}; ObsPy reads SAC, miniSEED and more: pip install 'mjrock[obspy]'") from error
+    try:
+        stream = obspy.read(str(path))
+    except Exception as error:
+        raise ValueError(f"ObsPy does not read it: {short(str(error))}") from error
+    if unit is None:
+        raise ValueError(
+            f"a file of {stream[0].stats._format} states no unit: give unit=, one of {', '.join(UNITS)}, or as a "
+            "number how many m/s2 a count is"
+        )
+    ids = [trace.id for trace in stream]
+    if broken := [name for name in ids if ids.count(name) > 1]:
+        raise ValueError(f"{broken[0]} has a gap or an overlap: {ids.count(broken[0])} pieces; one is needed")
+    return [
+        Trace(
+            factor_of(unit) * np.asarray(trace.data, dtype=float),
+            float(trace.stats.delta),
+            {
+                name: value
+                for name, value in (
+                    ("NETWORK", trace.stats.network), ("STATION_CODE", trace.stats.station),
+                    ("LOCATION", trace.stats.location), ("STREAM", trace.stats.channel),
+                    ("DATE_TIME_FIRST_SAMPLE", str(trace.stats.starttime)),
+                )
+                if value
+            },
+        )
+        for trace in stream
+    ]  # fmt: skip
+
+
+class Format(NamedTuple):
+    """A format of text.
+
+    Args:
+        name: what it is called.
+        signs: what one of its first lines holds, and no other format's.
+        parse: its parser.
+    """
+
+    name: str
+    signs: re.Pattern[str]
+    parse: Parse
+
+
+FORMATS = (
+    Format("PEER AT2", re.compile(r"\s*acceleration\s.*units\s+of", AS_ASCII), parse_at2),
+    Format("ESM and ITACA", re.compile(r"EVENT_NAME:|NETWORK:|STATION_CODE:", AS_ASCII), parse_esm),
+    Format("K-NET and KiK-net", re.compile(r"Sampling Freq\(Hz\)"), parse_knet),
+    Format("GeoNet V1A and V2A", re.compile(r"(Unc|C)orrected accelerogram .*GNS"), parse_geonet),
+    Format("SMC", re.compile(r"\s*\d\s+\w+ accelerogram\s*$", AS_ASCII), parse_smc),
+    Format(
+        "CSMIP and COSMOS",
+        re.compile(r"(un)?corrected (accelerogram|acceleration)|raw acceleration", AS_ASCII),
+        parse_channels,
+    ),
+)
+"""Formats of text that state their step and unit, in the order in which they are tried."""
+
+UTF_16 = b"\xff\xfe", b"\xfe\xff"
+SEISMOLOGY = re.compile(r"TIMESERIES |WID[12] |BEGIN GSE2")
+"""How texts of seismology begin, which ObsPy reads."""
+
+
+def recognised(path: Path, unit: str | float | None) -> list[Trace]:
+    """The traces of a file of any format, which its first lines tell; of a table whose header states its step and unit;
+    and of a file of seismology by ObsPy."""
+    start = path.read_bytes()[:4096]
+    if path.suffix.lower() not in SPREADSHEETS and binary_kind(start) and not start.startswith(UTF_16):
+        return seismograms(path, unit)
+    lines = table_lines(path)
+    for one in FORMATS:
+        if any(one.signs.match(line) for line in lines[:SMC_HEAD]):
+            return one.parse(lines)
+    if SEISMOLOGY.match(lines[0]):
+        return seismograms(path, unit)
+    try:
+        return parse_table(lines, Wanted(unit))
+    except ValueError as error:
+        names = ", ".join(one.name for one in FORMATS)
+        raise ValueError(
+            f"none of the formats {names}, SAC, miniSEED; as a table, which from_csv and components_in read with "
+            f"unit=, dt=, columns= and skip=: {error}"
+        ) from error
