@@ -50,6 +50,8 @@ def pushed(scale):
     return mr.Analysis(mr.Case(WALL, 0.0, 1.0, motion=motion), "analytical", e=E, options={"rtol": 1e-4})
 
 
+BOX_CORNERS = np.array(list(np.ndindex(2, 2, 2)), dtype=float)
+BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 CALLS = OF_NUMBERS | {
     "Block": (mr.Block,
         {
@@ -363,6 +365,13 @@ CALLS = OF_NUMBERS | {
         {
             "masonry": COLUMN, "duration": 1.0, "motion": None, "vertical": None, "velocity": [[0.0, 0.0, 0.1]],
             "effects": (),
+        },
+    ),
+    "Masonry.from_meshes": (
+        mr.Masonry.from_meshes,
+        {
+            "meshes": {"box": (BOX_CORNERS, BOX_FACES)}, "fixed": (), "ground": True, "density": 2000.0, "scale": None,
+            "unit": None, "up": None, "convex": None, "tolerance": 1e-5,
         },
     ),
     "masonry_scene": (mr.masonry_scene, {"case": mr.MasonryCase(COLUMN, 0.02)}),
