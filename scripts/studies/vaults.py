@@ -53,15 +53,17 @@ def main(argv: Sequence[str] | None = None) -> None:
     lines += [f"{name}: {thrust_of(vault)}" for name, vault in vaults.items() if name.startswith("groin")]
     figure = Figure(figsize=(7.4, 6.2), layout="constrained")
     rows = figure.add_gridspec(3, 1, height_ratios=[0.9, 0.8, 1.2])
-    places = [*rows[0].subgridspec(1, 2, width_ratios=[2.6, 1.0]), *rows[1].subgridspec(1, 2)]
+    upper, middle, lower = rows[0].subgridspec(1, 2, width_ratios=[2.6, 1.0]), rows[1].subgridspec(1, 2), rows[2]
+    places = [upper[0], upper[1], middle[0], middle[1]]
     for place, (name, each) in zip(places, arches.items(), strict=True):
         ax = figure.add_subplot(place)
         corners = np.concatenate([each.blocks[i].corners for i in each.free])
         limits = np.array([corners.min(axis=0) - AROUND, corners.max(axis=0) + AROUND]).T
         plotting.blocks(ax, each, joints=False, limits=limits)
         ax.set_title(name, fontsize=10)
-    for place, (name, camera) in zip(rows[2].subgridspec(1, len(VIEWS)), VIEWS, strict=False):
-        ax = figure.add_subplot(place, projection="3d")
+    lowest = lower.subgridspec(1, len(VIEWS))
+    for i, (name, camera) in enumerate(VIEWS):
+        ax = figure.add_subplot(lowest[i], projection="3d")
         plotting.blocks(ax, vaults[name], joints=False, camera=camera)
         ax.set_title(name if camera[0] > 0 else f"{name} from below", fontsize=10)
     plotting.save(figure, out / "vaults.png")
