@@ -97,8 +97,9 @@ def test_raw_and_processed_files_of_one_station(tmp_path):
     assert [len(members) for members in found.values()] == [3, 3]
 
 
-def test_peer_states_the_azimuth_in_its_second_line(tmp_path):
-    for name, component in (("a.AT2", "9"), ("b.AT2", "279 (USGS STATION 1)"), ("c.AT2", "UP")):
+@pytest.mark.parametrize("up", ["UP", "-UP"])
+def test_peer_states_the_azimuth_in_its_second_line(tmp_path, up):
+    for name, component in (("a.AT2", "9"), ("b.AT2", "279 (USGS STATION 1)"), ("c.AT2", up)):
         head = AT2.replace("Somewhere, 1/1/99", f"Nowhere-01, 1/1/1999, Some Station, {component}")
         written(tmp_path / name, f"{head}NPTS= 6, DT= .01 SEC\n{body('at2')}")
     found = mr.records_in(tmp_path)

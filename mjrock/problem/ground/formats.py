@@ -46,7 +46,7 @@ FILTERS = rf"(?:[\s.,;]*(?:[-+]?\d+\s*pole\s*@|[hl]p\s*[=:]?|filter\s+points\s*:
 """What may follow the time step of an AT2 file: the filters that the record went through."""
 AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*(?>{STEP})(?:\s*(?:s|sec|seconds)\b)?{FILTERS}", AS_ASCII)
 AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
-AT2_PLACE = re.compile(r"([^,]*)(?:,\s*\d[\d/ -]*)?,\s*(.*?),\s*([^,(]*?)\s*(?:\(.*)?", AS_ASCII)
+AT2_PLACE = re.compile(r"([^,]*)(?:,\s*\d[\d/ -]*)?,\s*(.*?),\s*(?:-(?=[A-Z]))?([^,(]*?)\s*(?:\(.*)?", AS_ASCII)
 """Event, date, station and component, the last of them an azimuth or UP."""
 TITLE = 200
 """Characters of a line with the names of event and station that are looked at."""
