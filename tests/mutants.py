@@ -204,9 +204,6 @@ EQUIVALENT = {
     },
     "lines.py: beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) <= LEVEL and not "
     "below.fixed else ()": "no joint leans by the bound to the last bit",
-    'record_sets.py: members = [other for other in (key.replace("?", one, 2) for one in letters) if other in names]': (
-        "a file has no question mark in its name"
-    ),
     "ties.py: if broken <= math.inf:": "where nothing breaks, every sample is one before the break",
     **{
         "vaults.py: corners = [at for k, at in enumerate(corners) if not np.allclose(at, corners[k - 1], "

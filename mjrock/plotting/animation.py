@@ -356,7 +356,7 @@ def scene(
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
-        fill(ax, figure.bbox)
+        fill(ax, bodies, figure.bbox)
         figure.draw_without_rendering()
 
     def update(frame: int) -> None:

@@ -20,7 +20,8 @@ from ..study.intensity.fragility import Fragility
 from .arguments import equal_rows, finite_row, kind, listed, picture
 from .style import STYLES, folded
 
-COLOURS = ("#12406b", "#f0a35e", "#4f8f5b", "#a83232", "0.5")
+OVERLAID = ("#12406b", "#f0a35e", "#4f8f5b", "#a83232", "0.5")
+"""Colours of motions that are drawn over each other."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
@@ -51,7 +52,7 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
         for ax, history, unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
             said = f"{motion.name[:90]}: " if ax is axes[0] else f"ends at {history[-1]:.2g}, "
             peak = float(np.abs(history).max())
-            ax.plot(t, history, color=COLOURS[i % len(COLOURS)], linewidth=0.8, label=f"{said}peak {peak:.3g} {unit}")
+            ax.plot(t, history, color=OVERLAID[i % len(OVERLAID)], linewidth=0.8, label=f"{said}peak {peak:.3g} {unit}")
     for ax, label in zip(axes, ("acceleration [m/s²]", "velocity [m/s]", "displacement [m]"), strict=True):
         ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
         ax.set_ylabel(label)

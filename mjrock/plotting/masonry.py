@@ -46,7 +46,8 @@ def blocks(
 ) -> Axes:
     """The blocks of masonry to scale, fixed ones in grey, where they rest or at a pose.
 
-    Blocks in space need an `ax` of three dimensions, `figure.add_subplot(projection="3d")`.
+    Blocks in space need an `ax` of three dimensions, `figure.add_subplot(projection="3d")`. They fill it, with a scale
+    bar in place of axes.
 
     Args:
         ax: where to draw.
@@ -88,10 +89,11 @@ def blocks(
     placed = (still if pose is None else require_array("pose", pose, still.shape))[None]
     acting = None if run is None or forces is None else (run, Moving(case, time, placed, magnified), forces)
     if case.in_space:
-        solids(ax, Solids(case, time, placed, magnified, camera, required_limits(limits, "xyz")), animated=False)(0)
+        bodies = Solids(case, time, placed, magnified, camera, required_limits(limits, "xyz"))
+        solids(ax, bodies, animated=False)(0)
         if acting is not None:
             forces_on(ax, *acting, animated=False)(0)
-        fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes
+        fill(ax, bodies, ax.bbox)
         return ax
     moving = Moving(case, time, magnified * placed)
     width = min(1.4, 14 / np.sqrt(len(masonry.blocks)))  # lines of many joints would hide the blocks

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
-from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import BboxBase
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -28,8 +27,10 @@ DARKEST = 0.62
 """Brightness of a face that is turned away from the light [-]."""
 ZOOM = 1.0
 """Size of a picture before it is enlarged [-]."""
-LABELS = np.array([1.0, 1.2])
-"""Width and height that labels need around a view [inch]."""
+MARGIN = np.array([0.2, 0.8])
+"""Width and height that stay free around a view, for the scale bar and a title [inch]."""
+BAR, BELOW = 0.25, 0.05
+"""Longest scale bar over the width of what is seen, and how far below it stands over its height [-]."""
 
 
 class Faces(PolyCollection):
@@ -56,20 +57,15 @@ def in_three(ax: Axes) -> Any:
 
 
 def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
-    """Draw blocks in space, true to scale, and the ground below them.
+    """Draw blocks in space, true to scale, with a scale bar, and the ground below them.
 
     Blocks, and the convex parts of one that is not convex, are drawn from the farthest to the nearest, see
     `Solids.order`. What has sunk below the ground is left out.
     """
     space = in_three(ax)
-    low, high = bodies.extent()
-    if bodies.limits is None:
-        around = 0.15 * float((high - low).max()) * np.array([1.0, 1.0, 0.0])  # ground
-        low, high = low - around, high + around
-    level = _ground(space, bodies, (low, high))
-    if level is not None and bodies.limits is None:
-        low[2] = level
-    _frame(space, (low, high), bodies)
+    level = _ground(space, bodies)
+    _frame(space, bodies)
+    _scale_bar(space, bodies)
     tints = np.array([to_rgb(colour) for colour in bodies.colours])
     moving = Faces([], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated, clip_on=False)
     space.add_collection(moving, autolim=False)
@@ -92,16 +88,26 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     return update
 
 
-def fill(ax: Axes, box: BboxBase) -> None:
-    """Enlarge a view until it fills a box [pixel], such as that of its figure, but for room for its labels."""
+def fill(ax: Axes, bodies: Solids, box: BboxBase) -> None:
+    """Enlarge a view until its blocks fill a box [pixel], such as that of its figure, but for a margin.
+
+    The ground is cut at the box.
+    """
     space = in_three(ax)
-    figure = figure_of(ax)
-    limits = [getattr(space, f"get_{name}lim")() for name in "xyz"]
-    corners = np.array(np.meshgrid(*limits)).reshape(3, -1)
-    x, y, _ = proj_transform(*corners, space.get_proj())
+    for ground in space.collections:
+        if isinstance(ground, Poly3DCollection):
+            ground.set_clip_path(None)
+            ground.set_clip_box(box)
+    figure, seen = figure_of(ax), bodies.seen
+    limits = np.array([getattr(space, f"get_{name}lim")() for name in "xyz"])
+    if bodies.limits is None:
+        off = seen.mean(axis=0) - bodies.across @ limits.mean(axis=1)
+        limits += (off @ bodies.across)[:, None]
+        space.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
+    x, y, _ = proj_transform(*(seen @ bodies.across).T, space.get_proj())
     space.apply_aspect()
     spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0)
-    room = np.maximum(np.array(box.size) - figure.dpi * LABELS, 0.4 * np.array(box.size))
+    room = np.maximum(np.array(box.size) - figure.dpi * MARGIN, 0.4 * np.array(box.size))
     space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((room / spans).min()))
 
 
@@ -125,34 +131,33 @@ def ties_in_view(ax: Axes, bodies: Solids) -> Update:
     return update
 
 
-def _frame(ax: Axes3D, extent: tuple[Array, Array], bodies: Solids) -> None:
-    """Set limits and labels in m, of the same scale along every axis, and the camera."""
-    low, high = extent
-    size: Array = high - low
-    for name, a, b in zip("xyz", low, high, strict=True):
-        getattr(ax, f"set_{name}lim")(a, b)
-        getattr(ax, f"set_{name}label")(f"${name}$ [m]", fontsize=8, labelpad=-2.5)
-        getattr(ax, f"{name}axis").set_major_locator(_locator(float(size.max())))
-    ax.tick_params(labelsize=7, pad=0)
-    ax.set_box_aspect(size, zoom=ZOOM)
+def _frame(ax: Axes3D, bodies: Solids) -> None:
+    """Set limits of the same scale along every axis, and the camera. No axes are drawn."""
+    low, high = bodies.extent()
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    ax.set_box_aspect(high - low, zoom=ZOOM)
     ax.set_proj_type("ortho")
     ax.view_init(*np.asarray(bodies.camera))
     ax.computed_zorder = False  # the ground lies behind
-    ax.grid(False)
-    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
-        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+    ax.set_axis_off()
 
 
-def _locator(extent: float) -> MultipleLocator:
-    """Ticks some five to the largest extent [m], at the same spacing on every axis."""
-    rough = extent / 5
-    power = 10.0 ** np.floor(np.log10(rough))
-    return MultipleLocator(power * min((1, 2, 5, 10), key=lambda step: abs(step * power - rough)))
+def _scale_bar(ax: Axes3D, bodies: Solids) -> None:
+    """Draw a line of 1, 2 or 5 times a power of ten [m] across the line of sight, below what is seen at the left."""
+    (left, low), (right, high) = bodies.seen
+    power = 10.0 ** np.floor(np.log10(BAR * (right - left)))
+    length = power * max(step for step in (1, 2, 5) if step * power <= BAR * (right - left) * (1 + 1e-9))
+    start = np.array([left, low - BELOW * (high - low)])
+    ends = np.array([start, start + np.array([length, 0.0])]) @ bodies.across
+    (line,) = ax.plot(*ends.T, color="0.15", linewidth=2.5, solid_capstyle="butt", zorder=6, clip_on=False)
+    text = ax.text(*ends[1], f"  {length:g} m", va="center", fontsize=8, zorder=6)
+    for part in (line, text):
+        part.set_in_layout(False)  # its place is known when the view is
 
 
-def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | None:
-    """Draw the upper faces of the fixed blocks below all others, as far as the picture goes; their highest z [m]."""
-    (left, near), (right, far) = extent[0][:2], extent[1][:2]
+def _ground(ax: Axes3D, bodies: Solids) -> float | None:
+    """Draw the upper faces of the fixed blocks below all others, beyond all that moves; their highest z [m]."""
+    (left, near), (right, far) = bodies.floor
     window, level = np.array([(left, near), (right, near), (right, far), (left, far)]), None
     for block in bodies.ground:
         level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
@@ -160,8 +165,8 @@ def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | 
             plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
             if len(plan) > 2:
                 patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
-                look = {"facecolors": GROUND_COLOUR, "edgecolors": "0.6", "zorder": 0.5, "clip_on": False}
-                ax.add_collection3d(Poly3DCollection(patch, **look))
+                look = {"facecolors": GROUND_COLOUR, "edgecolors": "0.6", "linewidths": 0.6, "zorder": 0.5}
+                ax.add_collection3d(Poly3DCollection(patch, **look)).set_in_layout(False)
     return level
 
 

@@ -20,14 +20,17 @@ from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.bodies import Moving
 from ..result.response import Response
+from ..scene.tints import told_apart
 from .bodies import evened, interpolated, required_limits
 
 TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
-"""Colours of blocks, which take turns so that neighbours are told apart."""
+"""Colours of blocks, paler than those of solids in light, since forces and ties are drawn over them."""
 ASIDE = 1e-9
 """Cosine of the angle between the line of sight and the normal of a plane that is seen as a line [-]."""
 TOUCHING = 1e-4
 """Overlap of bodies, or of their outlines in the picture, that counts as touching, over the extent of all [-]."""
+AROUND, FARTHEST = 0.15, 3.0
+"""How far the ground is drawn beyond all corners, and the farthest corners that count for it, over the extent [-]."""
 
 
 class Facets(NamedTuple):
@@ -171,7 +174,9 @@ class Solids:
     @property
     def colours(self) -> list[str]:
         """Colour of each facet, grey of fixed blocks."""
-        tints = ["#bdbdbd" if self.masonry.blocks[i].fixed else TINTS[i % len(TINTS)] for i in self.shown]
+        free = [(joint.below, joint.above) for joint in self.masonry.joints if joint.below in self.masonry.free]
+        told = told_apart(len(self.masonry.blocks), free, len(TINTS))
+        tints = ["#bdbdbd" if self.masonry.blocks[i].fixed else TINTS[told[i]] for i in self.shown]
         return [tints[body] for body in self.facets.body]
 
     @cached_property
@@ -220,16 +225,56 @@ class Solids:
     def extent(self) -> tuple[Array, Array]:
         """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (3,) each.
 
-        What goes farther than one extent of the blocks at rest is outside. Given limits come first.
+        What goes farther than one extent of the blocks at rest is outside. Where all has, these are the blocks at rest.
+        Given limits come first.
         """
         if self.limits is not None:
             return self.limits[:, 0], self.limits[:, 1]
         rest = self.facets.corners + self.rests[self.facets.body, None]
-        low, high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
-        room = float((high - low).max())
-        some = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int))
-        corners = np.concatenate([self.corners(int(frame)).reshape(-1, 3) for frame in some])
-        return np.maximum(corners.min(axis=0), low - room), np.minimum(corners.max(axis=0), high + room)
+        rest_low, rest_high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
+        room = float((rest_high - rest_low).max())
+        low, high = np.maximum(self.reached[0], rest_low - room), np.minimum(self.reached[1], rest_high + room)
+        return (low, high) if (low < high).all() else (rest_low, rest_high)
+
+    @cached_property
+    def reached(self) -> Array:
+        """The lowest and the highest x, y and z of all corners [m], shape (2, 3)."""
+        ends = [(corners.min(axis=(0, 1)), corners.max(axis=(0, 1))) for corners in map(self.corners, self._some)]
+        return np.array([np.min(ends, axis=(0, 1)), np.max(ends, axis=(0, 1))])
+
+    @property
+    def floor(self) -> Array:
+        """The lowest and the highest x and y of the ground that is drawn: beyond all corners [m], shape (2, 2)."""
+        low, high = self.extent()
+        size = float((high - low).max())
+        near, far = np.clip(self.reached, low - FARTHEST * size, high + FARTHEST * size)
+        return np.array([np.minimum(near, low) - AROUND * size, np.maximum(far, high) + AROUND * size])[:, :2]
+
+    @cached_property
+    def across(self) -> Array:
+        """Unit vectors to the right and upwards in the picture, shape (2, 3)."""
+        azimuth = np.radians(np.asarray(self.camera)[1])
+        right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+        return np.array([right, np.cross(self.eye, right)])
+
+    @cached_property
+    def seen(self) -> Array:
+        """Where what the picture has to hold begins and ends, to the right and upwards in it [m], shape (2, 2).
+
+        It is that of the blocks as far as `extent` goes, and with given limits that of their box.
+        """
+        low, high = self.extent()
+        box = np.stack(np.meshgrid(*np.transpose([low, high]), indexing="ij"), axis=-1).reshape(-1, 3)
+        held = [box] if self.limits is not None else [np.clip(self.corners(k), low, high) for k in self._some]
+        places = [corners.reshape(-1, 3) @ self.across.T for corners in held]
+        ends = [(place.min(axis=0), place.max(axis=0)) for place in places]
+        return np.array([np.min(ends, axis=(0, 1)), np.max(ends, axis=(0, 1))])
+
+    @property
+    def _some(self) -> list[int]:
+        """Numbers of at most 100 frames, from the first to the last."""
+        numbers: list[int] = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int)).tolist()
+        return numbers
 
     @cached_property
     def _blocks(self) -> list[SolidBlock]:

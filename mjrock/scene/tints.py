@@ -15,7 +15,7 @@ BRICKS = (
 """Red, green and blue, 0 to 1 as a screen shows them."""
 
 
-def told_apart(count: int, touching: Iterable[tuple[int, int]]) -> list[int]:
+def told_apart(count: int, touching: Iterable[tuple[int, int]], tints: int = len(BRICKS)) -> list[int]:
     """The number of the tint of each body, another one than those of the bodies that touch it.
 
     Where a body touches bodies of all tints, it has one of theirs.
@@ -23,6 +23,7 @@ def told_apart(count: int, touching: Iterable[tuple[int, int]]) -> list[int]:
     Args:
         count: of the bodies.
         touching: pairs of numbers of bodies.
+        tints: how many there are.
     """
     near: list[set[int]] = [set() for _ in range(count)]
     for one, other in touching:
@@ -31,6 +32,6 @@ def told_apart(count: int, touching: Iterable[tuple[int, int]]) -> list[int]:
     chosen: list[int] = []
     for j, neighbours in enumerate(near):
         taken = {chosen[i] for i in neighbours if i < j}
-        order = [(j + k) % len(BRICKS) for k in range(len(BRICKS))]
+        order = [(j + k) % tints for k in range(tints)]
         chosen.append(next((tint for tint in order if tint not in taken), order[0]))
     return chosen

@@ -19,13 +19,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, SEEN, UNIT, WINDOWS, motions
+from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, UNIT, WINDOWS, motions
 
 JOINTS: dict[str, Any] = {"k_n": 3e9, "k_s": 3e9, "friction": 0.6, "xi": 0.01, "points": 3}
 BONDS = {
@@ -65,11 +64,11 @@ def shaken(masonry: mr.Masonry, duration: float) -> mr.Response:
 
 def drawn(answers: dict[str, mr.Response]) -> Figure:
     """The façades after the motions."""
-    figure = Figure(figsize=(4.2 * len(answers), 3.0), layout=ConstrainedLayoutEngine(rect=(0.03, 0.0, 0.94, 1.0)))
+    figure = Figure(figsize=(7.4, 2.7), layout="constrained")
     for i, (name, answer) in enumerate(answers.items()):
         ax = figure.add_subplot(1, len(answers), i + 1, projection="3d")
-        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[-1], camera=CAMERA, limits=SEEN)
-        ax.set_title(f"{name}: {len(answer.fallen)} of {len(answer.of_masonry.masonry.free)} fallen", fontsize=9)
+        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[-1], camera=CAMERA)
+        ax.set_title(f"{name}\n{len(answer.fallen)} of {len(answer.of_masonry.masonry.free)} fallen", fontsize=10)
     return figure
 
 

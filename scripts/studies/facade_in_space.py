@@ -32,8 +32,6 @@ DURATION = 7.0
 OUTWARDS, ALONG, INWARDS = 0.0, 0.5 * math.pi, math.pi
 SIZES = ((0.8, 2), (1.6, 2), (1.6, 3), (2.4, 2))
 """Heights [m] and `points` whose time is measured."""
-SEEN = ((-2.0, 2.4), (-2.6, 2.6), (0.0, 1.8))
-"""What the moving picture shows, x, y and z [m]."""
 CAMERA = (20.0, 38.0)
 """Elevation and azimuth of the pictures [deg]."""
 SHORT = 0.1
@@ -93,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     far = np.linalg.norm(answer.pose[moment, :, :3] - answer.pose[0, :, :3], axis=1)
     words = {"as the first block falls": moment, "at the end": len(answer.t) - 1}
     plotting.save(at_two_times(answer, words, CAMERA), out / "facade_in_space.png")
-    film: dict[str, Any] = {"speed": 1.0, "fps": 12, "dpi": 80, "camera": CAMERA, "limits": SEEN}
+    film: dict[str, Any] = {"speed": 1.0, "fps": 12, "dpi": 80, "camera": CAMERA}
     path = plotting.animate(answer, out / "facade_in_space.gif", **film)
     header = ["blocks", "points", "set-up [s]", "step [us]", "s a simulated s", "ns a point and step"]
     rows = [cost(0.4, 2)] if args.quick else [cost(*size) for size in SIZES]

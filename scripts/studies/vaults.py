@@ -22,6 +22,8 @@ groin_vault = partial(mr.Masonry.groin_vault, 2.0, 0.3, length=4.1, unit=0.8, sp
 """Two barrels over a bay of 4.1 m."""
 VIEWS = [("barrel vault", (25, 35)), ("groin vault", (25, 35)), ("groin vault", (-30, 35))]
 """What is drawn in space, and its camera."""
+AROUND = 0.9
+"""What is drawn around arches [m]."""
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -49,17 +51,21 @@ def main(argv: Sequence[str] | None = None) -> None:
             f"{name}: {len(each.free)} blocks, {len(each.joints)} joints, bears a push of {bears:.3f} g along x"
         )
     lines += [f"{name}: {thrust_of(vault)}" for name, vault in vaults.items() if name.startswith("groin")]
-    figure = Figure(figsize=(13, 6.4), layout="constrained")
-    rows = figure.add_gridspec(2, 1, height_ratios=[1, 1.15])
-    flat, solid = rows[0].subgridspec(1, len(arches), width_ratios=[2.2, 1, 1, 1]), rows[1].subgridspec(1, len(VIEWS))
-    for i, (name, each) in enumerate(arches.items()):
-        ax = figure.add_subplot(flat[i])
-        plotting.blocks(ax, each, joints=False)
-        ax.set_title(name)
+    figure = Figure(figsize=(7.4, 6.2), layout="constrained")
+    rows = figure.add_gridspec(3, 1, height_ratios=[0.9, 0.8, 1.2])
+    upper, middle, lower = rows[0].subgridspec(1, 2, width_ratios=[2.6, 1.0]), rows[1].subgridspec(1, 2), rows[2]
+    places = [upper[0], upper[1], middle[0], middle[1]]
+    for place, (name, each) in zip(places, arches.items(), strict=True):
+        ax = figure.add_subplot(place)
+        corners = np.concatenate([each.blocks[i].corners for i in each.free])
+        limits = np.array([corners.min(axis=0) - AROUND, corners.max(axis=0) + AROUND]).T
+        plotting.blocks(ax, each, joints=False, limits=limits)
+        ax.set_title(name, fontsize=10)
+    lowest = lower.subgridspec(1, len(VIEWS))
     for i, (name, camera) in enumerate(VIEWS):
-        ax = figure.add_subplot(solid[i], projection="3d")
+        ax = figure.add_subplot(lowest[i], projection="3d")
         plotting.blocks(ax, vaults[name], joints=False, camera=camera)
-        ax.set_title(name if camera[0] > 0 else f"{name} from below", y=0.95)
+        ax.set_title(name if camera[0] > 0 else f"{name} from below", fontsize=10)
     plotting.save(figure, out / "vaults.png")
     cli.report(out / "vaults", "\n".join(lines))
 

@@ -50,6 +50,8 @@ def pushed(scale):
     return mr.Analysis(mr.Case(WALL, 0.0, 1.0, motion=motion), "analytical", e=E, options={"rtol": 1e-4})
 
 
+BOX_CORNERS = np.array(list(np.ndindex(2, 2, 2)), dtype=float)
+BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 CALLS = OF_NUMBERS | {
     "Block": (mr.Block,
         {
@@ -365,6 +367,13 @@ CALLS = OF_NUMBERS | {
             "effects": (),
         },
     ),
+    "Masonry.from_meshes": (
+        mr.Masonry.from_meshes,
+        {
+            "meshes": {"box": (BOX_CORNERS, BOX_FACES)}, "fixed": (), "ground": True, "density": 2000.0, "scale": None,
+            "unit": None, "up": None, "convex": None, "tolerance": 1e-5,
+        },
+    ),
     "masonry_scene": (mr.masonry_scene, {"case": mr.MasonryCase(COLUMN, 0.02)}),
     "masonry_mjcf": (mr.masonry_mjcf, {"case": mr.MasonryCase(COLUMN, 0.02), "timestep": 1e-3, "newmark_beta": 0.25}),
     "simulate, masonry": (
@@ -491,7 +500,7 @@ def test_every_public_entry_is_tried():
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push", "records_in",
-        "RecordSet",
+        "RecordSet", "components_in",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -57,7 +57,7 @@ def test_a_picture_has_the_faces_that_are_seen_and_the_same_scale_along_every_ax
     ax = axes()
     assert plotting.blocks(ax, MASONRY) is ax
     assert len(faces_of(ax).corners) == 6  # three of each box
-    assert (ax.get_xlabel(), ax.get_zlabel()) == ("$x$ [m]", "$z$ [m]")
+    assert not ax.axison
     limits = [getattr(ax, f"get_{name}lim")() for name in "xyz"]
     aspect = ax._box_aspect / np.ptp(limits, axis=1)
     assert aspect.max() == pytest.approx(aspect.min())
@@ -160,7 +160,7 @@ def test_a_response_is_drawn_as_it_ended_and_moves(tmp_path):
     before = np.concatenate(faces_of(figure.axes[0]).corners)
     update(len(response.t) - 1)
     assert np.abs(np.concatenate(faces_of(figure.axes[0]).corners) - before).max() > 0.01
-    (line,) = figure.axes[0].lines
+    _, line = figure.axes[0].lines  # the scale bar, and the tie
     np.testing.assert_allclose(np.transpose(line.get_data_3d())[1], (-1.05, 0, 1.8))
     assert plotting.animate(response, tmp_path / "rock.gif", dpi=20, fps=20, camera=(30.0, 60.0)).exists()
     halfway = solids.at(np.array([0.005]))
@@ -201,10 +201,41 @@ def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
     np.testing.assert_allclose(high, [3.0, 0.5, 3.0], atol=1e-12)
 
 
-def test_a_moving_picture_fills_its_figure():
+def test_a_moving_picture_fills_its_figure_but_for_its_margin():
     case = mr.MasonryCase(MASONRY, 1.0)
     figure, _ = animation.scene(Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), REST[None]), [], case)
     ax = figure.axes[0]
-    width, height = np.ptp(np.concatenate([path.vertices for c in ax.collections for path in c.get_paths()]), axis=0)
-    drawn = np.ptp(ax.transData.transform([(0, 0), (width, height)]), axis=0) / figure.bbox.size
-    assert 0.6 < max(drawn / (0.84, 0.74)) < 1.01
+    seen = np.concatenate([path.vertices for path in faces_of(ax).get_paths()])
+    low, high = ax.transData.transform([seen.min(axis=0), seen.max(axis=0)]) / figure.bbox.size
+    room = 1 - np.array([0.2, 0.8]) / figure.get_size_inches()
+    assert ((high - low) / room).max() == pytest.approx(1.0, abs=0.01)
+    np.testing.assert_allclose(0.5 * (low + high), 0.5, atol=0.08)
+
+
+def test_a_scale_bar_is_as_long_as_it_says_and_lies_across_the_line_of_sight():
+    solids = Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), REST[None])
+    figure, _ = animation.scene(solids, [], None)
+    ax = figure.axes[0]
+    ends = np.transpose(ax.lines[0].get_data_3d())
+    (said,) = (text.get_text() for text in ax.texts)
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(float(said.split()[0]))
+    assert (ends[1] - ends[0]) @ solids.eye == pytest.approx(0.0, abs=1e-12)
+    corners = solids.corners(0).reshape(-1, 3) @ solids.across.T
+    assert (ends @ solids.across.T)[:, 1].max() < corners[:, 1].min()
+
+
+def test_the_ground_is_drawn_beyond_blocks_that_have_fallen_far():
+    case = mr.MasonryCase(MASONRY, 1.0)
+    for far, corner in ((1.5, 2.5), (500.0, 3.0 + 3 * 4.0)):  # the front block reaches 1 m at rest
+        solids = Solids(case, np.zeros(1), moved(angle=0.0, place=(far, 0.0, 0.0))[None])
+        low, high = solids.floor
+        size = max(np.ptp(solids.extent(), axis=0))
+        np.testing.assert_allclose(low, [-1.0 - 0.15 * size, -0.5 - 0.15 * size])
+        assert high[0] == pytest.approx(corner + 0.15 * size)
+
+
+def test_a_block_that_is_gone_leaves_the_place_where_it_stood():
+    masonry = mr.Masonry([GROUND, PAIR[0]], k_n=1e8)
+    pose = np.array([[[30.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]])
+    low, high = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose).extent()
+    np.testing.assert_allclose([low, high], [[0.0, -0.5, 0.0], [1.0, 0.5, 1.0]], atol=1e-12)

@@ -284,3 +284,10 @@ def test_assemblies_that_compas_assembly_writes(tmp_path):
     masonry = mr.Masonry.from_compas(tmp_path / "assembly.json")
     assert [joint.area for joint in masonry.joints] == pytest.approx([0.5, 0.5])
     assert [block.fixed for block in masonry.blocks] == [True, False, False]
+
+
+def test_an_stl_file_that_ends_within_a_facet_says_so(tmp_path):
+    path = tmp_path / "cut.stl"
+    path.write_text("solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendsolid a\n")
+    with pytest.raises(ValueError, match="line 6: a facet of an STL file has three vertices"):
+        mr.Masonry.from_stl(path)

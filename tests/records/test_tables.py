@@ -1,5 +1,7 @@
 """Tables as people have them: which columns, which decimal point, and what a header says against what a caller says."""
 
+import time
+
 import numpy as np
 import pytest
 from record_files import written
@@ -51,6 +53,7 @@ FORMS = {
     "a title of digits": ("1999 Nowhere, a record\n" + lines(T, A), {}),
     "a step in the header": ("Made up, NPTS= 200, DT= .01 SEC\n" + in_rows(8), {}),
     "a rate in the header": ("sampling rate: 100 Hz\n" + lines(A), {}),
+    "a corner of a filter in the header": ("cut-off frequency: 25 Hz, scale: 1.0\n" + lines(T, A), {}),
     "milliseconds in the header": ("time step 10 ms\n" + lines(A), {}),
 }  # fmt: skip
 
@@ -98,6 +101,7 @@ DOUBTS = {
     ),
     "a step alone": ("0.01\n" + lines(A), {"dt": 0.01}, r"line 1 is 0\.01 .* skip=1 reads what follows"),
     "a number that stands alone": ("made up\n400\n" + lines(A), {"dt": 0.01}, r"line 2 is 400 .* skip=2 .* skip=1"),
+    "a number beyond the peak": ("4\n" + lines(A), {"dt": 0.01}, r"line 1 is 4 .* skip=1 .* skip=0"),
     "a row ahead of the others": ("400 7\n" + lines(T, A, A), {"columns": (0, 1)}, r"line 1 is 400 7: of the header"),
     "numbers ahead of times": ("400 7\n" + lines(T, A), {}, r"line 1 is 400 7: of the header, or the first row"),
     "numbers of rows": (lines(np.arange(200), A, form="{:g}"), {}, r"first column steps by 1 s: times .* dt=1 takes"),
@@ -108,6 +112,7 @@ DOUBTS = {
     "another step of the times": (
         "dt=0.005\n" + lines(T, A), {}, r"the step of the times is 0\.01 s, and line 1 states 0\.005 s",
     ),
+    "a scale": ("Scale factor = 2.5\n" + lines(T, A), {}, r"line 1 states a scale of 2\.5: of the samples, .* skip="),
     "another count": ("npts: 300\n" + lines(T, A), {}, r"200 samples; the header states 300 in line 1; skip="),
     "four columns": (
         "t;a;v;d\n" + lines(T, A, A, A, between=";"), {}, r"line 2 has 4 columns: 0 't', 1 'a', .* as columns=\(0, 1\)",
@@ -116,6 +121,7 @@ DOUBTS = {
     "a name that is not there": ("t,a\n" + lines(T, A, between=","), {"columns": "b"}, r"'b'; the names are 't', 'a'"),
     "a column that is not there": (lines(T, A), {"columns": 2, "dt": 0.01}, r"a number in columns = 2 is outside"),
     "rows without a step": (in_rows(5), {}, r"or dt= and columns='rows' for samples in rows"),
+    "a shorter last row of five": (in_rows(7), {}, r"line 29 has 4 columns; .* 7; samples in rows are read with dt"),
     "no unit": (lines(T, A), {"unit": None}, r"the header names no unit; give unit="),
     "two units": ("(g) or gal; made; up\n" + lines(T, A), {"unit": None}, r"the header names cm/s2 and g; give unit="),
     "two accelerations": (lines(T, A, A), {"columns": (0, 1, 2)}, r"columns has 2 accelerations; components_in reads"),
@@ -169,3 +175,17 @@ def test_a_spreadsheet(tmp_path):
         mr.GroundMotion.from_csv(tmp_path / "b.xlsx")
     with pytest.raises(ValueError, match=r"c\.xlsx: pandas does not read it as a spreadsheet"):
         mr.GroundMotion.from_csv(written(tmp_path / "c.xlsx", "0 1\n"), "g")
+
+
+@pytest.mark.filterwarnings("ignore:.*drifts")
+def test_the_time_goes_with_the_length_of_a_file(tmp_path):
+    """A table of four times as many rows takes some four times as long, and not sixteen times."""
+
+    def seconds(count):
+        path = written(tmp_path / "a.txt", "".join(f"{0.01 * i:.2f} {i % 7} {i % 5}\n" for i in range(count)))
+        start = time.process_time()
+        mr.components_in(path, 0.01, columns=(0, 1, 2))
+        return time.process_time() - start
+
+    seconds(1000)
+    assert min(seconds(16_000) for _ in range(2)) < 10 * min(seconds(4000) for _ in range(2))

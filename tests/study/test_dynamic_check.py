@@ -75,6 +75,8 @@ def test_beside_the_kinematic_check_and_the_floor_of_the_slv():
     weak = mr.mechanism_check(case, mr.GroundMotion.sine(1.0, 4.0, 6))
     assert weak.states["SLV"].ratio < weak.ground_ratio == pytest.approx(0.3 / 2.1 * 9.81 / 1.35 / 1.0)
     assert "at least a_g,SLD / a_g" in weak.table()
+    slv = weak.verdicts[1]
+    assert slv.capacity / slv.demand == slv.ratio == weak.ground_ratio
     runs = [mr.solve_analytical(one, E) for one in cases(8, 2.5)]
     said = mr.dynamic_check(runs, natural=True).table(weak)
     names = ("linear kinematic", "nonlinear kinematic", "dynamic, largest run", "dynamic, mean of maxima")

@@ -74,6 +74,33 @@ def test_the_tower_of_lire(count):
     assert not stands(tower(1.0005))
 
 
+def friction_of(thickness):
+    """Friction below which a semicircle of a thickness over its radius slips at its springings while it turns about
+    hinges: the largest (2 / pi) h over the place b of the hinge, with the true centroid of each part."""
+    b, eta = np.linspace(0.3, 1.5, 100_001), thickness
+    rises = b * (1 - eta / 2) * np.sin(b) - (1 + eta**2 / 12) * (1 - np.cos(b))
+    return float(2 / math.pi * (rises / ((1 + eta / 2) - (1 - eta / 2) * np.cos(b))).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("friction", "least"), [(0.7, 0.1074), (0.36, 0.1414), (0.33, 0.1740), (0.315, 0.1916)])
+def test_the_least_thickness_of_a_semicircle_at_falling_friction(friction, least):
+    """Cocchetti and Rizzi (Frattura ed Integrita Strutturale 51, 2020, Table 3): 0.1074 of the radius by hinges, more
+    below a friction of 0.3958. Their weight lies on the centre line; here it is that of the parts."""
+    if friction < 0.39:
+        assert friction_of(least) == pytest.approx(friction, rel=1e-3)
+    for share in (0.996, 1.004):
+        arch = mr.Masonry.arch(1.0, share * least, voussoirs=61, chords=4, friction=friction)
+        assert stands(arch) is (share > 1)
+
+
+@pytest.mark.slow
+def test_the_friction_below_which_no_semicircle_stands():
+    """0.309215 in the same paper."""
+    assert not stands(mr.Masonry.arch(1.0, 0.3, voussoirs=61, chords=4, friction=0.3090))
+    assert stands(mr.Masonry.arch(1.0, 0.3, voussoirs=61, chords=4, friction=0.3094))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("degrees", "on_wall"), [(55, 0.3), (65, 0.0), (45, 0.5)])
 def test_a_ladder_against_a_wall(degrees, on_wall):

@@ -165,7 +165,7 @@ class Restitution:
         return cls(base=base, side=lumped / base**2)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True)
 class ScatteredRestitution:
     """Restitution that differs from impact to impact.
 

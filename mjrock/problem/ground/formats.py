@@ -6,6 +6,7 @@ says where the header is another. FORMATS has all of them, and how each is recog
 
 from __future__ import annotations
 
+import importlib.util
 import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,6 +18,7 @@ import numpy as np
 from ...quantities import GRAVITY, Array, require_within
 from .records import (
     AS_ASCII,
+    BINARY,
     BREAK,
     COARSEST,
     COUNT,
@@ -44,7 +46,7 @@ FILTERS = rf"(?:[\s.,;]*(?:[-+]?\d+\s*pole\s*@|[hl]p\s*[=:]?|filter\s+points\s*:
 """What may follow the time step of an AT2 file: the filters that the record went through."""
 AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*(?>{STEP})(?:\s*(?:s|sec|seconds)\b)?{FILTERS}", AS_ASCII)
 AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
-AT2_PLACE = re.compile(r"([^,]*)(?:,\s*\d[\d/ -]*)?,\s*(.*?),\s*([^,(]*?)\s*(?:\(.*)?", AS_ASCII)
+AT2_PLACE = re.compile(r"([^,]*)(?:,\s*\d[\d/ -]*)?,\s*(.*?),\s*(?:-(?=[A-Z]))?([^,(]*?)\s*(?:\(.*)?", AS_ASCII)
 """Event, date, station and component, the last of them an azimuth or UP."""
 TITLE = 200
 """Characters of a line with the names of event and station that are looked at."""
@@ -346,7 +348,7 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     try:
         import obspy
     except ImportError as error:
-        raise ImportError(f"{error}; ObsPy reads SAC, miniSEED and more: pip install 'mjrock[obspy]'") from error
+        raise ImportError(f"{error}; ObsPy reads SAC, miniSEED and more: pip install obspy") from error
     try:
         stream = obspy.read(str(path))
     except Exception as error:
@@ -406,6 +408,7 @@ FORMATS = (
 """Formats of text that state their step and unit, in the order in which they are tried."""
 
 UTF_16 = b"\xff\xfe", b"\xfe\xff"
+"""How a text in UTF-16 begins, which is refused by that name."""
 SEISMOLOGY = re.compile(r"TIMESERIES |WID[12] |BEGIN GSE2")
 """How texts of seismology begin, which ObsPy reads."""
 
@@ -414,7 +417,8 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
     """The traces of a file of any format, which its first lines tell; of a table whose header states its step and unit;
     and of a file of seismology by ObsPy."""
     start = path.read_bytes()[:4096]
-    if path.suffix.lower() not in SPREADSHEETS and binary_kind(start) and not start.startswith(UTF_16):
+    kind = None if path.suffix.lower() in SPREADSHEETS or start.startswith(UTF_16) else binary_kind(start)
+    if kind and (kind != BINARY or importlib.util.find_spec("obspy")):
         return seismograms(path, unit)
     lines = table_lines(path)
     for one in FORMATS:

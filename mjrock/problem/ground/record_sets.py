@@ -5,9 +5,10 @@ from __future__ import annotations
 import copy
 import fnmatch
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,9 +33,10 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     `repr` says which components each record has, and by what `records_in` found that they go together, in `by`.
     """
 
-    def __init__(self, *records: Any, **named: tuple[GroundMotion, ...]) -> None:
-        super().__init__(*records, **named)
-        self.by: dict[str, str] = {}
+    @cached_property
+    def by(self) -> dict[str, str]:
+        """By what the components of a record were found to go together: "header", "names" or "one file"."""
+        return {}
 
     def __repr__(self) -> str:
         lines = [f"<RecordSet of {len(self)} records>"]

@@ -46,6 +46,10 @@ STATED_UNITS = {
 """How files write the units of an acceleration; blanks in a row count as one."""
 
 
+BINARY = "a binary file or one in UTF-16"
+"""What a file is called that is no text and none of the kinds that have a sign of their own."""
+
+
 class Trace(NamedTuple):
     """One component of a record.
 
@@ -116,7 +120,7 @@ def binary_kind(data: bytes) -> str | None:
         return f"a binary SAC file, {by_obspy}"
     if re.match(rb"\d{6}[DRQM] ", data) or data.startswith(b"MS\3"):
         return f"a miniSEED file, {by_obspy}"
-    return "a binary file or one in UTF-16"
+    return BINARY
 
 
 def factor_of(unit: str | float) -> float:

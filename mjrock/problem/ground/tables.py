@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -46,7 +47,10 @@ ROUNDED = 0.1
 SLOW = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
 ALONE = 5.0
-"""A first number so many times as large as any other is doubted: it may be one of the header."""
+"""A first number that is the largest, and so many times as large as those soon after it, is doubted: it may be one of
+the header."""
+SOON = 10
+"""How many numbers those are."""
 ROWS = "rows"
 """What `columns` is where the samples stand in rows, one after the other."""
 SMOOTH = 0.7
@@ -67,7 +71,10 @@ HEAD_STEP = re.compile(
     rf"[ _]*(?:[(\[]s(?:ec)?[)\]])?[ :=]*{STEP} *(ms|msec)?(?![\w.])",
     AS_ASCII,
 )
-HEAD_RATE = re.compile(rf"(?:rate|frequency)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{STEP} *(?:hz|sps|samples)?", AS_ASCII)
+HEAD_RATE = re.compile(
+    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{STEP} *(?:hz|sps|samples)?", AS_ASCII
+)
+HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{STEP}(?![\w.])", AS_ASCII)
 HEAD_COUNT = re.compile(
     rf"(?:npts|ndata|(?:n[ou]\.?|number) of (?:data|points|samples|pts))[ :=]*{COUNT}(?![\w.])", AS_ASCII
 )
@@ -117,7 +124,7 @@ class Table:
     places: list[int]
     decimals: int
 
-    @property
+    @cached_property
     def width(self) -> int:
         """The number of columns that most rows have."""
         return Counter(map(len, self.values)).most_common(1)[0][0]
@@ -168,7 +175,7 @@ def table_lines(path: Path) -> list[str]:
 
         sheets = pandas.read_excel(path, sheet_name=None, header=None, dtype=object)
     except ImportError as error:
-        raise ImportError(f"{error}; pandas reads spreadsheets: pip install 'mjrock[frames]'") from error
+        raise ImportError(f"{error}; pandas reads spreadsheets: pip install pandas openpyxl") from error
     except Exception as error:
         raise ValueError(f"pandas does not read it as a spreadsheet: {short(str(error))}") from error
     texts = {name: ["\t".join(map(_cell, row)).rstrip() for row in sheet.to_numpy()] for name, sheet in sheets.items()}
@@ -203,7 +210,12 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
             f"{len(found.values)} rows of numbers in {len(lines)} lines, the first of them {short(lines[0])}; at least "
             "2 rows are needed, of time and acceleration or with dt of accelerations alone"
         )
-    stated = found.stated(HEAD_STEP, HEAD_RATE)
+    stated, scaled = found.stated(HEAD_STEP, HEAD_RATE), found.stated(HEAD_SCALE)
+    if scaled and scaled.value != 1:
+        raise ValueError(
+            f"line {scaled.place} states a scale of {scaled.value:g}: of the samples, or one that they have already? "
+            f"skip= leaves it out, and scaled({scaled.value:g}) applies it"
+        )
     if wanted.skip is None:
         found, stated = _without_header(found, dt, stated)
     timed = wanted.columns != ROWS and found.width > 1 and _is_grid(scale * found.column(0), found.decimals, scale)
@@ -316,7 +328,9 @@ def _without_header(found: Table, dt: float | None, stated: Stated | None) -> tu
     if len(others) >= 3:
         wide = found.width > 1
         follows = others[0] == [dt] and first[0] != 0 and first[0] == int(first[0])
-        alone = len(others) >= 10 and abs(first[0]) > ALONE * max(abs(x) for row in others for x in row) > 0
+        alone = len(others) >= 10 and abs(first[0]) > max(
+            max(abs(row[0]) for row in others), ALONE * max(abs(row[0]) for row in others[:SOON])
+        )
         grid = wide and len(first) == found.width and _is_grid(found.without(1).column(0), found.decimals, 1.0)
         early = grid and not _is_grid(found.column(0), found.decimals, 1.0)
         if len(first) == 1 and not wide and dt is not None:
@@ -341,7 +355,8 @@ def _columns_of(found: Table, wanted: Wanted, dt: float | None) -> tuple[dict[in
         picked = list(range(found.width))
     for place, row in zip(found.places, found.values, strict=True):
         if len(row) != found.width:
-            raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}")
+            rows = "; samples in rows are read with dt" if dt is None and place == found.places[-1] else ""
+            raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}{rows}")
     scale = TIME_UNITS[wanted.time_unit]
     time = scale * found.column(picked[0])
     grid = _is_grid(time, found.decimals, scale)
@@ -395,7 +410,7 @@ def _step_of(time: Array, found: Table, scale: float, given: float | None) -> fl
     if back.size:
         i = back[0]
         raise ValueError(f"line {places[i + 1]}: time does not increase, {time[i]:g} s to {time[i + 1]:g} s")
-    dt = _grid(time)[0]
+    dt = float(f"{_grid(time)[0]:.12g}")  # so that two components have one step
     if not _is_even(time, found.decimals, scale):
         usual = float(np.median(steps))
         i = int(np.abs(steps - usual).argmax())

@@ -95,7 +95,6 @@ class Verdict(NamedTuple):
         demand, capacity: in the unit.
         unit: of both.
         clause: where it stands in the Circolare.
-        least: a ratio that counts where that of capacity and demand is less [-].
     """
 
     what: str
@@ -104,7 +103,6 @@ class Verdict(NamedTuple):
     capacity: float
     unit: str
     clause: str
-    least: float = 0.0
 
     def __repr__(self) -> str:
         return (
@@ -115,7 +113,7 @@ class Verdict(NamedTuple):
     @property
     def ratio(self) -> float:
         """Capacity over demand [-]."""
-        return max(self.capacity / self.demand if self.demand > 0 else math.inf, self.least)
+        return self.capacity / self.demand if self.demand > 0 else math.inf
 
     @property
     def holds(self) -> bool:
@@ -232,14 +230,19 @@ class MechanismCheck:
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """The linear check of the SLV, where the peak of the demand is known, and the non-linear ones."""
+        """The linear check of the SLV, where the peak of the demand is known, and the non-linear ones.
+
+        That of the SLV is the one of displacements, or where a_g,SLD is more than these allow, that of accelerations.
+        """
         slv, slc, found = self.states["SLV"], self.states["SLC"], list[Verdict]()
         if self.peak is not None:
             capacity = self.linear if self.linear_tied is None else self.linear_tied
             found.append(Verdict("linear kinematic", "SLV", self.peak, capacity, "m/s2", "C8.7.1.2.1.7"))
-        nonlinear = "nonlinear kinematic", "C8.7.1.2.1.8"
-        found.append(Verdict(nonlinear[0], "SLV", slv.demand, slv.capacity, "m", nonlinear[1], self.ground_ratio))
-        found.append(Verdict(nonlinear[0], "SLC", slc.demand, slc.capacity, "m", nonlinear[1]))
+        of_slv = slv.demand, slv.capacity, "m"
+        if self.peak is not None and self.ground_ratio > slv.ratio:
+            of_slv = self.peak, self.a_0, "m/s2"
+        found.append(Verdict("nonlinear kinematic", "SLV", *of_slv, "C8.7.1.2.1.8"))
+        found.append(Verdict("nonlinear kinematic", "SLC", slc.demand, slc.capacity, "m", "C8.7.1.2.1.8"))
         return tuple(found)
 
     def _acceleration(self, multiplier: float) -> float:

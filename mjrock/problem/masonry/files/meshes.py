@@ -96,7 +96,7 @@ def read_stl(path: Path) -> list[Mesh]:
                 corners.append(_triple(words[1:]))
             except ValueError:
                 raise ValueError(f"path = {path}, line {count}: {line[:60]!r} is not a vertex of an STL file") from None
-        elif kind == "endfacet" and len(corners) % 3:
+        elif kind in ("endfacet", "endsolid") and len(corners) % 3:
             raise ValueError(f"path = {path}, line {count}: a facet of an STL file has three vertices")
         elif kind == "endsolid":
             meshes.append(_facets(name, np.reshape(corners, (-1, 3))))
