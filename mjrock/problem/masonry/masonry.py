@@ -902,9 +902,8 @@ class Masonry(Drawn):
                 both. Or as `Masonry` does.
 
         Warns:
-            UserWarning: of volume that hulls add.
             Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances.
+                as little apart as twenty tolerances. A UserWarning says what volume hulls add.
         """
         return cls._read(read_obj, path, density, Given(fixed, ground, scale, unit, up, convex), options)
 

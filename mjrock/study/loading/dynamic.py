@@ -195,7 +195,7 @@ def dynamic_check(
     Warns:
         Implausible: for what the clause asks for and the runs lack.
     """
-    if limit_state not in SHARE:
+    if not isinstance(limit_state, str) or limit_state not in SHARE:
         raise ValueError(f"limit_state = {spelt(limit_state)} is not one of {', '.join(SHARE)}")
     require_kind("natural", natural, bool, type(None))
     require_kind("curve", curve, Push, type(None))
