@@ -270,7 +270,9 @@ EQUIVALENT = {
     "contact.py: TURNED_OVER = 4 * GAP_OF_OPEN": "it is a number that no gap is",
     "clipping.py: best, largest = -2, -math.inf": "every block has a face",
     "clipping.py: normal, edge, from_edge = normal_of(solids, face), -2, math.inf": "every face has an edge",
-    "clipping.py: crossed, from_crossed, one_place = -2, math.inf, ONE_PLACE * longest_edge(solids, face)": "every face has an edge",
+    "clipping.py: crossed, from_crossed, one_place = -2, math.inf, ONE_PLACE * longest_edge(solids, face)": (
+        "every face has an edge"
+    ),
     **{
         f"clipping.py: {line}": "no place is so far from a corner to the last bit"
         for line in (
