@@ -16,6 +16,7 @@ from mjrock.distinct.search.solids import Solids
 from mjrock.distinct.setup import setup_of_masonry
 from mjrock.geometry.poses import rotations
 from mjrock.problem.masonry.blocks.joints_in_space import SpaceJoint
+from mjrock.problem.masonry.lines import Lines
 from mjrock.problem.masonry.standing import MasonryStanding
 from mjrock.problem.wall.standing import Solid
 
@@ -183,6 +184,19 @@ def measured_in_the_plane(scene: Scene) -> Iterator[None]:
         patch.object(SpaceJoint, "width", property(width)),
     ):
         yield
+
+
+def has_other_points(scene: Scene) -> bool:
+    """Whether prisms have a contact point on another block than their scene of the plane. A side of an L ends in the
+    plane where its other part begins, and has a corner there. In space it goes on behind that part, and has none."""
+    flat, solid = masonry_of(scene).lines, masonry_of(extruded(scene)).lines
+    return points_of(flat, flat.at, flat.normal) != points_of(solid, solid.at[:, ::2], solid.normal[:, ::2])
+
+
+def points_of(lines: Lines, *vectors: np.ndarray) -> set[tuple[float, ...]]:
+    """The block that carries the point of each line, the one whose face it meets, and vectors of it, rounded."""
+    blocks = np.column_stack([lines.body, lines.face])
+    return set(map(tuple, np.hstack([blocks, *(np.round(vector, 9) + 0.0 for vector in vectors)]).tolist()))
 
 
 def pushed_beside(scene: Scene) -> bool:
