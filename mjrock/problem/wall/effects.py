@@ -151,7 +151,7 @@ class AddedMass(Effect):
     @property
     def said(self) -> str:
         """For sketches, and for reports that have no words for it."""
-        return f"z = {self.height:g} m, x = {self.offset:g} m, {self.mass:g} kg"
+        return f"z = {self.height:.4g} m, x = {self.offset:.4g} m, {self.mass:.4g} kg"
 
 
 @dataclass(frozen=True)
