@@ -16,10 +16,10 @@ from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text, short_repr
-from .geoms import GeomPair, compiled_model, kept_apart, label_of
+from .geoms import GeomPair, compiled_model, geom_label, kept_apart
 from .notes import (
     ENOUGH,
-    SCATTER,
+    SCATTER_WARNED_OF,
     UNSOUND,
     ContactWarning,
     SolverNeed,
@@ -34,7 +34,7 @@ from .notes import (
 from .others import Changed, Others, sentence
 from .row_of_model import HOLD, Mixed
 
-DEEP = 0.01
+SOFT_DEPTH = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
 GAINS = 0.5
 """omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
@@ -208,7 +208,7 @@ class PairContact:
         for name, number in zip((self.geom1, self.geom2), self.ids, strict=True):
             if not name:
                 geom = next(each for each in spec.geoms if each.id == number)
-                geom.name = geom.name or label_of(whole, number)
+                geom.name = geom.name or geom_label(whole, number)
             names.append(name or geom.name)
         return replace(self, geom1=names[0], geom2=names[1])
 
@@ -426,14 +426,14 @@ def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Ite
     """Where the stiffest contact that the step resolves is soft under the weight: against that of the model [N/m], and
     against the smallest half extent of the geoms [m]."""
     h, k = contact.timestep, contact.k
-    if k < (1 - SCATTER) * model_k:
+    if k < (1 - SCATTER_WARNED_OF) * model_k:
         yield (
             f"k = {k:.3g} N/m, the stiffest that a step of {h:g} s resolves, is softer than the contact that "
             f"the model had, {model_k:.3g} N/m under the weight; "
             f"{rounded_down(h * math.sqrt(k / model_k))} s resolves as much"
         )
-    if contact.depth > DEEP * thickness:
-        resolving = h * math.sqrt(DEEP * thickness / contact.depth)
+    if contact.depth > SOFT_DEPTH * thickness:
+        resolving = h * math.sqrt(SOFT_DEPTH * thickness / contact.depth)
         yield (
             f"the weight presses the geoms into each other by {contact.depth:.2g} m with the stiffest contact that a "
             f"step of {h:g} s resolves, {contact.depth / thickness:.0%} of their smallest half extent; "

@@ -17,7 +17,7 @@ from ..quantities import Array, named, require_whole, require_within, shown, spe
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting, other_keyframes
+from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting_of_geoms, other_keyframes
 from .notes import (
     RESOLVED,
     UNSOUND,
@@ -147,7 +147,9 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
     grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
     rate = None if k is not None else RESOLVED / h
     alone = asked.mass is not None
-    met = meeting(pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k)
+    met = meeting_of_geoms(
+        pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k
+    )
     share = _mass(pair, pose, asked.mass, met)
     _require_one_loss(asked)
     if k is None:

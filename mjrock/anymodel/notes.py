@@ -17,7 +17,7 @@ import mujoco
 from ..problem.damping.rebound import rebound_restitution
 from .geoms import GeomPair
 
-SCATTER = 0.02
+SCATTER_WARNED_OF = 0.02
 """Scatter of the restitution from step to step that is worth a warning [-]."""
 RESOLVED = 0.3
 """omega h from which a step is called long [-]. The mean of e is then off by up to 0.025, most at e = 0.1."""
@@ -156,13 +156,13 @@ def resolving_step(k: float, c: float, mass: float) -> float:
         return math.inf
     omega = math.sqrt(k / mass)
     e = rebound_restitution(c / (2 * mass * omega))
-    return min(RESOLVED / omega, SCATTER * math.sqrt(12) * mass / max(e * c, 1e-300))
+    return min(RESOLVED / omega, SCATTER_WARNED_OF * math.sqrt(12) * mass / max(e * c, 1e-300))
 
 
 def stiffest(h: float, xi: float, mass: float) -> float:
     """The stiffest contact of a mass and a damping ratio that a step resolves [N/m]; see `resolving_step`."""
     e = rebound_restitution(xi)
-    omega = min(RESOLVED, SCATTER * math.sqrt(12) / max(2 * e * xi, 1e-300)) / h
+    omega = min(RESOLVED, SCATTER_WARNED_OF * math.sqrt(12) / max(2 * e * xi, 1e-300)) / h
     return mass * omega**2
 
 

@@ -25,7 +25,7 @@ STEPS = 50
 """Steps of a trial."""
 MOVING = 0.1
 """Largest speed of a joint at the start of a trial [m/s or rad/s]."""
-OTHER = 0.01
+OTHER_FORCES = 0.01
 """Change of the forces, as a share of the largest, from which they are others [-]."""
 
 
@@ -103,4 +103,4 @@ def _alike(other: mujoco.MjData, data: mujoco.MjData) -> bool:
     if other.nefc != data.nefc or not data.nefc:
         return True
     difference = np.abs(np.array(other.efc_force) - data.efc_force).max()
-    return bool(difference <= OTHER * np.abs(data.efc_force).max())
+    return bool(difference <= OTHER_FORCES * np.abs(data.efc_force).max())

@@ -19,7 +19,7 @@ from .restitution import Restitution
 
 LEAST, HIGHEST = 1e-3, 0.3
 """Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
-MARGIN = 0.03
+REACH_MARGIN = 0.03
 """Share of the reach of a base, at either end, in which hardly any change of damping changes the restitution [-]."""
 SIZE = 2.0
 """Rebound over the uplift rotation from which a law can be expected to give it [-]."""
@@ -153,7 +153,7 @@ class DampingLaw:
         k_side = None if k_side is None else require_stiffness("k_side", k_side)
         low, high = self.reach(wall, k_n, amplitude)
         k_n, amplitude = float(k_n), float(amplitude)
-        margin = MARGIN * (high - low)
+        margin = REACH_MARGIN * (high - low)
         return (
             not self._outside(wall, e, k_n, k_side)
             and low + margin <= e.base <= high - margin
@@ -267,13 +267,13 @@ CALIBRATED = DampingLaw.load(LAW_FILES / "calibrated.toml")
 CALIBRATED_BED = DampingLaw.load(LAW_FILES / "calibrated_bed.toml")
 """The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
-NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
+LAWS_BY_NAME = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
 """The laws that come with the package, by name."""
 
 
 def law_named(name: str) -> DampingLaw:
     """The law of that name in any case of letters, with a hyphen or blank for the underscore too, or a ValueError."""
     spelt = name.strip().upper().replace("-", "_").replace(" ", "_")
-    if spelt not in NAMED:
-        raise ValueError(f"law = {name!r} is not one of {', '.join(NAMED)}")
-    return NAMED[spelt]
+    if spelt not in LAWS_BY_NAME:
+        raise ValueError(f"law = {name!r} is not one of {', '.join(LAWS_BY_NAME)}")
+    return LAWS_BY_NAME[spelt]

@@ -61,7 +61,7 @@ SITE_EC8 = {
 given for type 1 alone."""
 FIRM = 10.0
 """T_F, beyond which the displacement is that of the ground [s]."""
-FAINT = 0.35
+PROBABLY_IN_G = 0.35
 """a_g below which it was probably given in g [m/s2]."""
 
 
@@ -297,7 +297,7 @@ def code_spectrum(
         raise ValueError(f"soil = {spelt(soil)} is not one of {', '.join(SITE_NTC)}")
     if not isinstance(topography, str) or topography not in TOPOGRAPHY_NTC:
         raise ValueError(f"topography = {spelt(topography)} is not one of {', '.join(TOPOGRAPHY_NTC)}")
-    if ag < FAINT:
+    if ag < PROBABLY_IN_G:
         warnings.warn(
             f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?",
             Implausible,

@@ -16,18 +16,18 @@ SHORTEST, LONGEST = 0.01, 100.0
 """Bounds of a period [s]."""
 
 
-def steps_of(dt: float, period: float) -> int:
+def oscillator_steps(dt: float, period: float) -> int:
     """Steps of an oscillator to one of the ground, whose length is dt [s]."""
     return math.ceil(FINENESS * dt / period)
 
 
-def displacement(accel: Array, h: float, period: float, damping: float) -> Array:
+def relative_displacement(accel: Array, h: float, period: float, damping: float) -> Array:
     """Displacement of an oscillator relative to the ground [m], shape (n,), from the acceleration of the ground every
     h seconds [m/s2], shape (n,)."""
     return _answer(accel, h, period, damping, (1.0, 0.0))
 
 
-def acceleration(accel: Array, h: float, period: float, damping: float) -> Array:
+def total_acceleration(accel: Array, h: float, period: float, damping: float) -> Array:
     """Acceleration of an oscillator, that of the ground included [m/s2], shape (n,)."""
     omega = 2 * math.pi / period
     return _answer(accel, h, period, damping, (-(omega**2), -2 * damping * omega))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ...quantities import Array, require_kind, require_reals, require_row, require_within, short_repr
 from .code_spectrum import SpectrumOfCode
 from .motion import GroundMotion
-from .oscillator import LONGEST, SHORTEST, displacement, steps_of
+from .oscillator import LONGEST, SHORTEST, oscillator_steps, relative_displacement
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,10 +71,10 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
 
 def _largest(motion: GroundMotion, period: float, damping: float) -> float:
     """The largest displacement of an oscillator relative to the ground [m]."""
-    parts = steps_of(motion.dt, period)
+    parts = oscillator_steps(motion.dt, period)
     h = motion.dt / parts
     steps = parts * (len(motion.accel) - 1) + math.ceil(period / h)
-    return float(np.abs(displacement(motion(h * np.arange(steps + 1, dtype=float)), h, period, damping)).max())
+    return float(np.abs(relative_displacement(motion(h * np.arange(steps + 1, dtype=float)), h, period, damping)).max())
 
 
 def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float = 0.05) -> GroundMotion:

@@ -13,9 +13,9 @@ import numpy as np
 from ...geometry.hull import Convex
 from ...quantities import Array, Integers, named
 from .blocks.compound import AnyBlock
-from .blocks.joints import SHORTEST, Joint, neighbours
+from .blocks.joints import SHORTEST_JOINT, Joint, neighbours
 from .blocks.joints_in_space import BLUNT, SpaceJoint
-from .files.bodies import UNITS
+from .files.bodies import LENGTH_UNITS
 
 LARGEST, SMALLEST = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
@@ -30,15 +30,15 @@ LIES, ON_GROUND, ALONG = 0.25, 0.5, 2.0
 while joints across y have twice the area of all others, where y may be the axis that points upwards [-]."""
 WIDEST = 0.1
 """Largest tolerance of masonry [m]."""
-FINE = 1.05
+TOLERANCE_FACTOR = 1.05
 """Factor to which the tolerance that joints need is found [-]."""
-FAR = 30.0
+FAR_BELOW_LOWEST = 30.0
 """How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
 OVERDAMPED = 30.0
 """Damping ratio of the lowest mode above which the frequency that xi refers to is doubted [-]."""
 UNDAMPED = 1e-4
 """The same below which it is doubted [-], where xi is a hundred times as much."""
-Finder = Callable[[float], Sequence[Joint | SpaceJoint]]
+JointFinder = Callable[[float], Sequence[Joint | SpaceJoint]]
 """The joints that a tolerance gives [m]."""
 ALIKE = 0.99
 """Cosine of the angle between the normals of two joints of the same two blocks, which convex blocks cannot have [-]."""
@@ -64,7 +64,7 @@ def odd_frequency(xi: float, frequency: float, lowest: float) -> str:
     With the lowest one it makes of xi the damping ratio of that mode, which says whether c/k is odd.
     """
     found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
-    overdamped = found > OVERDAMPED and lowest > FAR * frequency
+    overdamped = found > OVERDAMPED and lowest > FAR_BELOW_LOWEST * frequency
     if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
         return ""
     return (
@@ -88,7 +88,7 @@ def odd_sizes(sizes: Mapping[str, float]) -> str:
         name = ordered[len(ordered) // 2]
     else:
         return ""
-    found = {unit: sizes[name] * scale for unit, scale in UNITS.items()}
+    found = {unit: sizes[name] * scale for unit, scale in LENGTH_UNITS.items()}
     likely = [unit for unit, size in found.items() if unit != "m" and USUAL[0] <= size <= USUAL[1]] or ["mm"]
     likely.sort(key=lambda unit: abs(math.log(found[unit] / STONE)))
     asked = " or ".join(f"{unit}, {found[unit]:.2g} m" for unit in likely)
@@ -141,7 +141,7 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
     return ""
 
 
-def remedy(deepest: float, joints_within: Finder, blocks: Sequence[AnyBlock]) -> str:
+def remedy(deepest: float, joints_within: JointFinder, blocks: Sequence[AnyBlock]) -> str:
     """The tolerance that takes blocks which overlap by at most so much [m], and the joints that it finds."""
     tolerance = rounded_up(deepest)
     if tolerance > WIDEST:
@@ -200,7 +200,7 @@ def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     apart = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
     if abs(apart.max()) > tolerance:
         return ""
-    between = ways[apart > -SHORTEST * tolerance]
+    between = ways[apart > -SHORTEST_JOINT * tolerance]
     if np.abs(between @ between[0]).min() < ALIKE:
         return ""
     way = int(apart.argmax())
@@ -210,14 +210,14 @@ def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     return "at a corner" if in_space and fewest == 1 else "along a line"
 
 
-def said_of(touches: Sequence[Touch], names: Sequence[str]) -> str:
+def touches_told(touches: Sequence[Touch], names: Sequence[str]) -> str:
     """Blocks that touch without a joint, in words."""
     pairs = named([f"{names[touch.block]} and {names[touch.other]} touch {touch.where}" for touch in touches])
     return f"{pairs}; a joint takes faces: cut the edge or the corner back to a small face"
 
 
-def gaps(
-    blocks: Sequence[AnyBlock], names: Sequence[str], loose: Sequence[int], joints_within: Finder, tolerance: float
+def smallest_gap(
+    blocks: Sequence[AnyBlock], names: Sequence[str], loose: Sequence[int], joints_within: JointFinder, tolerance: float
 ) -> str:
     """The smallest gap of blocks that touch no other within a tolerance [m], and the one with which all would.
 
@@ -233,7 +233,7 @@ def gaps(
     one, other = divmod(int(apart.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
     touches = [touch for touch in along_lines(blocks, (), tolerance) if {touch.block, touch.other} & set(loose)]
-    said = f"{said_of(touches, names)}; " if touches else ""
+    said = f"{touches_told(touches, names)}; " if touches else ""
     if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
         return said.removesuffix("; ")
     said += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
@@ -243,7 +243,7 @@ def gaps(
     return f"{said}; tolerance = {needed:.2g} m joins all of them"
 
 
-def needed_tolerance(loose: Sequence[int], joints_within: Finder, given: float) -> float | None:
+def needed_tolerance(loose: Sequence[int], joints_within: JointFinder, given: float) -> float | None:
     """A tolerance of two digits with which blocks have a joint each [m], near the least one; None where none has."""
 
     def joins(tolerance: float) -> bool:
@@ -254,7 +254,7 @@ def needed_tolerance(loose: Sequence[int], joints_within: Finder, given: float) 
         if high >= WIDEST:
             return None
         low, high = high, min(2 * high, WIDEST)
-    while high > FINE * low:
+    while high > TOLERANCE_FACTOR * low:
         middle = math.sqrt(low * high)
         low, high = (low, middle) if joins(middle) else (middle, high)
     rounded = min(rounded_up(high), WIDEST)

@@ -21,7 +21,7 @@ from ...quantities import GRAVITY, Array, require_increasing, require_kind, requ
 from ..ground.motion import GroundMotion
 from .masonry import Masonry
 
-LONGEST = 1e6
+LATEST_TIME = 1e6
 """Latest time of a history [s]."""
 
 History = tuple[tuple[float, ...], tuple[float, ...]]
@@ -52,7 +52,7 @@ def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: b
     """
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise TypeError(f"{name} = {shown(given)} is not (t, values), two rows of numbers")
-    t = require_increasing(f"{name}, t", given[0], "time", LONGEST, f"0 to {LONGEST:g} s")
+    t = require_increasing(f"{name}, t", given[0], "time", LATEST_TIME, f"0 to {LATEST_TIME:g} s")
     values = require_row(f"{name}, values", given[1], "number")
     require_as_many(name, {"t": t, "values": values})
     if t[0] != 0:
@@ -63,7 +63,7 @@ def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: b
     return tuple(t.tolist()), tuple(values.tolist())
 
 
-FARTHEST = 100.0
+FARTHEST_SUPPORT = 100.0
 """Largest displacement of a support [m]."""
 
 
@@ -123,9 +123,9 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
         if not (np.diff(rows["t"]) > 0).all():
             raise ValueError(f"supports, {name}: t does not increase")
         far = max(float(np.abs(rows[label]).max()) for label in labels[1:])
-        if far > FARTHEST:
+        if far > FARTHEST_SUPPORT:
             raise ValueError(
-                f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST:g} m"
+                f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST_SUPPORT:g} m"
             )
         supports.append(Support(name, **{label: tuple(row.tolist()) for label, row in rows.items()}))
     return tuple(supports)
@@ -139,7 +139,7 @@ COARSEST = 1.0
 """Largest step of a ground motion [s]."""
 
 
-def tilt_of(given: Any) -> History | None:
+def tilt_history(given: Any) -> History | None:
     """The history of the angle of a table from (t, angle), or None.
 
     Raises:

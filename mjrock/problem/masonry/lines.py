@@ -18,7 +18,7 @@ from .blocks.joints import LEVEL, Joint
 from .blocks.joints_in_space import SpaceJoint, axes_across
 from .blocks.polygon import Polygon
 
-RIGID = 1e-12
+UNRESISTED = 1e-12
 """Square of a frequency, over that of the highest, below which a mode is a motion that no joint resists [-]."""
 EDGE = 1e-5
 """Distance from an edge of a face up to which a point is on it [m]."""
@@ -178,7 +178,7 @@ def free_numbers(blocks: Sequence[AnyBlock]) -> Integers:
     return np.where(free, np.cumsum(free) - 1, -1)
 
 
-def slips(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
+def mean_slip_rates(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
     """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies).
 
     In space a joint has three: along the two directions of `Lines.across`, and the rate at which it twists about its
@@ -207,16 +207,16 @@ def lowest_frequency(
     """
     masses, axes = masses_of(blocks)
     axes = csr_array(eye_array(len(masses))) if axes is None else axes
-    moves = rates(blocks, lines, lines.normal), slips(blocks, lines, len(friction))
+    moves = rates(blocks, lines, lines.normal), mean_slip_rates(blocks, lines, len(friction))
     opening, sliding = (csr_array(part @ axes) for part in moves)
     held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
     grip, stiffness = sliding[np.tile(held, sliding.shape[0] // len(held))], sprung(opening, lines.k)
-    square = lowest_square(stiffness, masses, grip, RIGID)
+    square = lowest_square(stiffness, masses, grip, UNRESISTED)
     if square == 0:
         springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
         for way in lines.across:
             stiffness = stiffness + sprung(csr_array(rates(blocks, lines, way) @ axes), springs)
-        square = lowest_square(stiffness, masses, grip[:0], RIGID)
+        square = lowest_square(stiffness, masses, grip[:0], UNRESISTED)
     return math.sqrt(square)
 
 

@@ -44,7 +44,7 @@ from .blocks.polygon import Polygon
 from .blocks.polyhedron import Polyhedron
 from .builders.in_plane import (
     MOST_BLOCKS,
-    Ends,
+    Taper,
     arch_of,
     bending_between_floors,
     between_beams,
@@ -57,10 +57,10 @@ from .builders.in_plane import (
 from .builders.in_space import (
     box_on_ground,
     column_of,
-    corner_of,
     dome_of,
     facade_of,
     ground_below,
+    wall_corner,
     wallette_of,
     walls_of,
 )
@@ -69,7 +69,6 @@ from .drawing import (
     NEARLY,
     WIDEST,
     along_lines,
-    gaps,
     nearly,
     not_joined,
     odd_axis,
@@ -77,8 +76,9 @@ from .drawing import (
     odd_frequency,
     odd_sizes,
     remedy,
-    said_of,
+    smallest_gap,
     split_faces,
+    touches_told,
     with_sizes,
 )
 from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
@@ -214,7 +214,7 @@ class Masonry(Drawn):
             side = "a face" if self.in_space else "an edge"
             raise ValueError(
                 f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
-                f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
+                f"{smallest_gap(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
             )
         if law is not None:
             keep(self, law=required_law(law))
@@ -381,7 +381,7 @@ class Masonry(Drawn):
             odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
         sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
-        alone = f"without a joint {said_of(touches, self.names)}" if touches else ""
+        alone = f"without a joint {touches_told(touches, self.names)}" if touches else ""
         return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
 
     @classmethod
@@ -435,7 +435,7 @@ class Masonry(Drawn):
     def arch(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
@@ -480,7 +480,7 @@ class Masonry(Drawn):
     def bridge(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
@@ -515,7 +515,7 @@ class Masonry(Drawn):
     def barrel_vault(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         length: Annotated[float, Within(0.01, 1000, "m")],
         unit: float,
         span_angle: float = math.pi,
@@ -543,7 +543,7 @@ class Masonry(Drawn):
     def groin_vault(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         length: float,
         unit: float,
         span_angle: float = math.pi,
@@ -731,7 +731,7 @@ class Masonry(Drawn):
     @classmethod
     def column(
         cls,
-        width: Ends,
+        width: Taper,
         height: Annotated[float, Within(0.01, 1000, "m")],
         drums: Annotated[int, Within(1, 1000, whole=True)],
         *,
@@ -760,7 +760,7 @@ class Masonry(Drawn):
     def dome(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         lunes: Annotated[int, Within(4, 360, whole=True)],
         hoops: Annotated[int, Within(1, 360, whole=True)],
         *,
@@ -865,7 +865,7 @@ class Masonry(Drawn):
             >>> round(float(mr.collapse_multiplier(corner, angle=-math.pi / 4).multiplier), 4)
             0.3714
         """
-        return cls(corner_of(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
+        return cls(wall_corner(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
 
     @classmethod
     def from_obj(
@@ -1140,7 +1140,8 @@ class Masonry(Drawn):
         if loose:
             raise ValueError(
                 f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
-                f"{self.tolerance:g} m; {gaps(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
+                f"{self.tolerance:g} m; "
+                f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
             )
         wider = min(NEARLY * self.tolerance, WIDEST)
         apart = not_joined(self.blocks, self.joints, wider)

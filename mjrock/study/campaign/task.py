@@ -21,7 +21,7 @@ from ...quantities import spelt
 Value = str | int | float | None
 
 
-def plain(value: object) -> Value:
+def table_value(value: object) -> Value:
     """A value as a table holds it: text, a 64-bit integer, a float or None; NaN becomes None, a truth value 0 or 1.
     ValueError for anything else."""
     if isinstance(value, np.generic):
@@ -144,7 +144,7 @@ class Refused:
         held: dict[str, object] = {}
         for name, value in labels.items():
             try:
-                held[name] = plain(value)
+                held[name] = table_value(value)
             except ValueError:
                 held[name] = table_text(value)
         return cls(failed_row(error)["error"], held)
@@ -195,7 +195,7 @@ def carry_out(task: Task, history: Path | None) -> Row:
 
 def _named(what: str, value: object) -> Any:
     try:
-        return plain(value)
+        return table_value(value)
     except ValueError as error:
         raise ValueError(f"{what}: {error}") from None
 

@@ -14,15 +14,15 @@ from ....quantities import Array, require_flag, require_within
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
-from .in_plane import LEAST_RADIUS, MOST_BLOCKS, Ends, arch_of, ground_under, rings_of
-from .in_space import ROUNDED
+from .in_plane import LEAST_RADIUS, MOST_BLOCKS, Taper, arch_of, ground_under, rings_of
+from .in_space import JUST_LESS
 
 
 class Span(NamedTuple):
     """An arch: radius of its middle and thickness [m], angle between its springings [rad], and how many voussoirs."""
 
     radius: float
-    thickness: Ends
+    thickness: Taper
     angle: float
     voussoirs: int
 
@@ -101,7 +101,7 @@ def groin_of(arch: Span, length: float, unit: float, cut: bool, density: float) 
     (x, z), (reach, top) = arch.springing.tolist()
     pier = np.array([(x, z), (reach, top), (reach, z - (reach - x)), (x, z - (reach - x))])
     strips = [Polygon(pier * (-1, 1), density), *courses, Polygon(pier, density)]
-    length = require_within("length", length, 2 * reach * ROUNDED, 1e3, "m")
+    length = require_within("length", length, 2 * reach * JUST_LESS, 1e3, "m")
     unit, cut = require_within("unit", unit, 1e-2, length, "m"), require_flag("cut", cut)
     if 4 * len(strips) * (0.5 * length / unit + 1) >= MOST_BLOCKS:
         raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BLOCKS}")

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from ..blocks.polyhedron import Polyhedron
-from .bodies import Mesh, plain
-from .meshes import text_of
+from .bodies import Mesh, block_name
+from .meshes import file_text
 
 
 def guid_of(kind: str, name: object) -> str:
@@ -32,7 +32,7 @@ def held(kind: str, data: object, guid: str) -> dict[str, Any]:
 def read_compas(path: Path) -> list[Mesh]:
     """The blocks of a file, each of which is a mesh, with their supports and the densities of their materials."""
     try:
-        content = _inside(json.loads(text_of(path)))
+        content = _inside(json.loads(file_text(path)))
         content = _inside(content["model"]) if "model" in content else content  # a problem up to compas_dem 0.5 has it
         pairs = _parts(content)
     except (json.JSONDecodeError, RecursionError) as error:
@@ -101,7 +101,7 @@ def _block(part: dict[str, Any], key: object, materials: dict[str, Any]) -> Mesh
         matrix = np.array(_inside(part["transformation"])["matrix"], dtype=float)
         places = places @ matrix[:3, :3].T + matrix[:3, 3]
     density = _inside(materials.get(str(part.get("material")), {})).get("density")
-    name = plain(str(part.get("name") or ""), "block" if held == "geometry" else f"block_{key}")
+    name = block_name(str(part.get("name") or ""), "block" if held == "geometry" else f"block_{key}")
     return Mesh(name, places, faces, bool(part.get("is_support", False)), density)
 
 

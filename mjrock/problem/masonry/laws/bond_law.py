@@ -35,7 +35,7 @@ YIELDS = 1 / 3
 """Share of the crushing strength that a joint which hardens bears before it closes for good [-]."""
 HARDENED = YIELDS + (1 - YIELDS) * math.pi / 4
 """Mean share of the crushing strength that it bears from there to the peak [-]."""
-HALVINGS = 40
+CLOSING_HALVINGS = 40
 """Halvings of the closing that is looked for while a joint hardens."""
 
 
@@ -76,7 +76,7 @@ def harden(bond: Any, gap: float, sheared: float) -> float:
     left: float = bond.hardening - bond.crushed
     low, high = 0.0, min(left, -gap)
     if math.hypot(bond.k * (gap + high), sheared) < hardened(bond, high):
-        for _ in range(HALVINGS):
+        for _ in range(CLOSING_HALVINGS):
             closing = 0.5 * (low + high)
             if math.hypot(bond.k * (gap + closing), sheared) < hardened(bond, closing):
                 high = closing
