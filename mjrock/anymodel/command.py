@@ -22,7 +22,7 @@ from .notes import VARIES
 
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
-GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
+GAINS_NOTE, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
 """Parts of notes that put a contact first or last in the table."""
 
 
@@ -58,7 +58,7 @@ def worst_first(found: Sequence[InspectedContact]) -> list[InspectedContact]:
         said = " ".join(contact.notes)
         immobile = any(part in said for part in IMMOBILE)
         frequency = contact.frequency if contact.mass < math.inf else 0.0
-        return immobile, GAINS not in said, LONG not in said, not contact.notes, -frequency
+        return immobile, GAINS_NOTE not in said, LONG not in said, not contact.notes, -frequency
 
     return sorted(found, key=rank)
 

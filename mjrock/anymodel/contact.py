@@ -39,7 +39,7 @@ SOFT_DEPTH = 0.01
 GAINS = 0.5
 """omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
 with 1.09 at 0.9 and with 2.4 at 1.9."""
-NOTHING, SMALL = 0.03, 0.2999
+NO_REBOUND, SMALL_REBOUND = 0.03, 0.2999
 """Restitutions between which gravity is warned of where no speed is given [-]."""
 LEAST_SPEED, MOST_SPEED = 1e-9, 1e4
 """Speeds of approach that are looked at [m/s]."""
@@ -410,9 +410,9 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
 def weight_spoilers(contact: PairContact) -> Iterator[str]:
     """The effect of weight on a small restitution, as a sentence."""
     e = rebound_restitution(contact.xi)
-    if contact.speed is not None or contact.gravity <= 0 or not NOTHING < e < SMALL:
+    if contact.speed is not None or contact.gravity <= 0 or not NO_REBOUND < e < SMALL_REBOUND:
         return
-    slow, fast = max(NOTHING * contact.gravity, LEAST_SPEED), MOST_SPEED
+    slow, fast = max(NO_REBOUND * contact.gravity, LEAST_SPEED), MOST_SPEED
     for _ in range(60):
         middle = math.sqrt(slow * fast)
         slow, fast = (slow, middle) if contact.restitution_at(middle) > 0.5 * e else (middle, fast)

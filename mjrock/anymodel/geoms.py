@@ -18,7 +18,7 @@ from ..quantities import Array, Flags, require_kind, require_text, shown
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST_GEOM = 1e10
 """Distance up to which the nearest points of two geoms are looked for [m]."""
-TOUCHING, ASIDE = 1e-3, 1e-2
+TOUCHING_SHARE, BESIDE_THE_LINE = 1e-3, 1e-2
 """Geoms that are nearer than this share of the distance of their centres touch, and the shortest distance has no
 direction. It is then looked for with one of them moved aside by the other share."""
 FACING = 0.999
@@ -228,9 +228,9 @@ class GeomPair:
             if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
                 return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2]), distance, ends
         apart = np.zeros(3) if ends is None else np.copysign(1.0, distance) * (ends[0] - ends[1])
-        if np.linalg.norm(apart) < TOUCHING * np.linalg.norm(between):
+        if np.linalg.norm(apart) < TOUCHING_SHARE * np.linalg.norm(between):
             place = np.array(data.geom_xpos[self.geoms[0]])
-            data.geom_xpos[self.geoms[0]] += ASIDE * between
+            data.geom_xpos[self.geoms[0]] += BESIDE_THE_LINE * between
             aside, moved = self._shortest(data)
             data.geom_xpos[self.geoms[0]] = place
             apart = np.zeros(3) if moved is None else np.copysign(1.0, aside) * (moved[0] - moved[1])

@@ -19,7 +19,7 @@ from ..quantities import Array
 from .contact import PairContact
 from .geoms import GeomPair
 from .meeting import Pose, awake
-from .notes import LINE_SEARCHES, MOST, SolverNeed
+from .notes import LINE_SEARCHES, MOST_TURNS, SolverNeed
 
 STEPS = 50
 """Steps of a trial."""
@@ -36,7 +36,7 @@ def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContac
     """
     tried = _with(model, pose, contacts)
     own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
-    cap, searches = max(own[0], MOST), max(own[1], LINE_SEARCHES)
+    cap, searches = max(own[0], MOST_TURNS), max(own[1], LINE_SEARCHES)
     most, enough = _stepped(tried, pose, cap, searches)
     if most < cap:
         return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), searches)

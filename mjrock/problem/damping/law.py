@@ -17,7 +17,7 @@ from ..wall.block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
 from .restitution import Restitution
 
-LEAST, HIGHEST = 1e-3, 0.3
+LEAST_XI, HIGHEST_XI = 1e-3, 0.3
 """Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
 REACH_MARGIN = 0.03
 """Share of the reach of a base, at either end, in which hardly any change of damping changes the restitution [-]."""
@@ -122,7 +122,7 @@ class DampingLaw:
                     f"{highest:.4g}, and gets the damping that comes closest",
                     stacklevel=2,
                 )
-            xi_base = min(max(xi_base, LEAST), HIGHEST)
+            xi_base = min(max(xi_base, LEAST_XI), HIGHEST_XI)
         return xi_base, float(self.side.xi(groups, groups.side_loss))
 
     def reach(self, wall: Block, k_n: float, amplitude: float = 0.5) -> tuple[float, float]:
@@ -137,7 +137,7 @@ class DampingLaw:
         if loss is None:
             return 0.0, 1.0
         groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
-        return math.exp(-float(loss(groups, HIGHEST))), math.exp(-float(loss(groups, LEAST)))
+        return math.exp(-float(loss(groups, HIGHEST_XI))), math.exp(-float(loss(groups, LEAST_XI)))
 
     def covers(
         self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5

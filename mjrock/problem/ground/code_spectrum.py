@@ -26,7 +26,7 @@ from ...quantities import (
     spelt,
     within_ranges,
 )
-from .oscillator import LONGEST, building_modes
+from .oscillator import LONGEST_PERIOD, building_modes
 
 LEAST_ETA = 0.55
 """Least correction for damping [-], NTC 2018 equation 3.2.4 and EN 1998-1 equation 3.6."""
@@ -210,7 +210,7 @@ class PointSpectrum:
 
     def __post_init__(self) -> None:
         keep_declared(self, "spectrum")
-        period = require_increasing("period", self.period, "period [s]", LONGEST, f"0 to {LONGEST:g} s")
+        period = require_increasing("period", self.period, "period [s]", LONGEST_PERIOD, f"0 to {LONGEST_PERIOD:g} s")
         acceleration = require_array("acceleration", self.acceleration, (len(period),))
         for value in acceleration.tolist():
             require_within("acceleration", value, 1e-6, 1e3, "m/s2")
@@ -335,5 +335,5 @@ def periods_of(T: ArrayLike) -> Array:
     """Periods as an array [s], each 0 to 100."""
     periods = require_reals("T", T, "one or more periods [s]")
     for period in np.atleast_1d(periods).tolist():
-        require_within("T", period, 0.0, LONGEST, "s")
+        require_within("T", period, 0.0, LONGEST_PERIOD, "s")
     return np.asarray(periods)

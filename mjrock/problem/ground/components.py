@@ -19,14 +19,14 @@ FAMILIES = (
     ("FN", "FP"), ("1", "2"),
 )  # fmt: skip
 """The two horizontal directions of a record, as networks name them; 1 and 2 only in a channel such as HN1."""
-UPRIGHT = "VERT|VER|VRT|UP|DWN|DN|U-D|UD"
+UPRIGHT_CODES = "VERT|VER|VRT|UP|DWN|DN|U-D|UD"
 TOKENS = "|".join(sorted({token for family in FAMILIES[:-1] for token in family}, key=len, reverse=True))
 DIRECTION_IN_NAME = (
-    re.compile(rf"(?<![A-Za-z])({UPRIGHT}|{TOKENS}|[ZVU])(?![A-Za-z])", re.IGNORECASE),
+    re.compile(rf"(?<![A-Za-z])({UPRIGHT_CODES}|{TOKENS}|[ZVU])(?![A-Za-z])", re.IGNORECASE),
     re.compile(rf"(?<![A-Za-z])({CHANNEL_CODE.pattern})(?![A-Za-z0-9])", re.IGNORECASE),
     re.compile(r"(?<=\d)([xyz])(?=[a-z]\.)", re.IGNORECASE),
     re.compile(r"(?<=[A-Za-z\d-])(\d{3})(?=(?:\.\w*)?$)"),
-    re.compile(rf"({UPRIGHT})(?=(?:\.\w*)?$)"),
+    re.compile(rf"({UPRIGHT_CODES})(?=(?:\.\w*)?$)"),
 )
 """Where the name of a file has a direction: between what are no letters, as a channel, after a number as REXEL has it,
 as three digits at the end, and as up or down at the end."""
@@ -99,7 +99,7 @@ def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     taken = {name for group in groups for name in group.tokens}
     for name, header in headers.items():
         if name not in taken:
-            upright = [token for token, _ in _candidates(name) if re.fullmatch(UPRIGHT, token)]
+            upright = [token for token, _ in _candidates(name) if re.fullmatch(UPRIGHT_CODES, token)]
             groups.append(RecordFiles(name, {name: (upright or [header.get("STREAM", "")])[-1]}, "alone"))
     return sorted(groups)
 

@@ -23,8 +23,8 @@ from .records import (
     BREAK,
     COARSEST,
     COUNT,
+    DECIMAL,
     FINEST,
-    STEP,
     Parse,
     Trace,
     binary_kind,
@@ -42,10 +42,12 @@ from .tables import SPREADSHEETS, Wanted, parse_table, table_lines
 AT2_UNIT = re.compile(
     r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
 )
-FILTERS = rf"(?:[\s.,;]*(?:[-+]?\d+\s*pole\s*@|[hl]p\s*[=:]?|filter\s+points\s*:?)\s*(?:{STEP}\s*(?:hz)?)?)*[\s.,]*"
+FILTERS = rf"(?:[\s.,;]*(?:[-+]?\d+\s*pole\s*@|[hl]p\s*[=:]?|filter\s+points\s*:?)\s*(?:{DECIMAL}\s*(?:hz)?)?)*[\s.,]*"
 """What may follow the time step of an AT2 file: the filters that the record went through."""
-AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*(?>{STEP})(?:\s*(?:s|sec|seconds)\b)?{FILTERS}", AS_ASCII)
-AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
+AT2_HEAD = re.compile(
+    rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*(?>{DECIMAL})(?:\s*(?:s|sec|seconds)\b)?{FILTERS}", AS_ASCII
+)
+AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{DECIMAL}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
 AT2_PLACE = re.compile(r"([^,]*)(?:,\s*\d[\d/ -]*)?,\s*(.*?),\s*(?:-(?=[A-Z]))?([^,(]*?)\s*(?:\(.*)?", AS_ASCII)
 """Event, date, station and component, the last of them an azimuth or UP."""
 EVENT_LINE = 200
@@ -54,24 +56,24 @@ ESM_FIELD = re.compile(r"([A-Z0-9_/^]+):[ \t]*(.*)", AS_ASCII)
 ESM_LINES = 64
 """Lines of the header of an ESM or ITACA file, one field in each."""
 ESM_UNITS = {"cm/s^2": 1e-2, "m/s^2": 1.0, "g": GRAVITY}
-SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
+SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{DECIMAL}(?:[ \t]+(.*))?", AS_ASCII)
 
 KNET = {
     "Station Code": r"(?P<STATION_CODE>\S+)", "Origin Time": "(?P<EVENT_ID>.+)", "Dir.": "(?P<dir>[NEU]-[SWD]|[1-6])",
-    "Sampling Freq(Hz)": rf"(?P<rate>{STEP[1:-1]})\s*Hz", "Duration Time(s)": rf"(?P<span>{STEP[1:-1]})",
-    "Scale Factor": rf"(?P<gal>{STEP[1:-1]})\(gal\)/(?P<counts>{STEP[1:-1]})",
+    "Sampling Freq(Hz)": rf"(?P<rate>{DECIMAL[1:-1]})\s*Hz", "Duration Time(s)": rf"(?P<span>{DECIMAL[1:-1]})",
+    "Scale Factor": rf"(?P<gal>{DECIMAL[1:-1]})\(gal\)/(?P<counts>{DECIMAL[1:-1]})",
 }  # fmt: skip
 """Fields of the header of a K-NET file, and how each is written."""
 KNET_STREAMS = "NS", "EW", "UD"
 KNET_HEAD = 17
 SAMPLE_COUNT = re.compile(rf"\s*{COUNT}\s+(?:points\s+of\s+)?accel(?:eration|erogram)?\b.*", AS_ASCII)
 """What stands before the samples of a channel in files of CSMIP and COSMOS, with their number."""
-SAMPLING_LINE = re.compile(rf"\bat\s+{STEP}\s*(sec|pts/sec)", AS_ASCII)
+SAMPLING_LINE = re.compile(rf"\bat\s+{DECIMAL}\s*(sec|pts/sec)", AS_ASCII)
 WIDTH = re.compile(r"\(\s*+\d*+\s*+[efg](\d{1,3})\.\d{1,3}\s*\)", AS_ASCII)
 CHANNEL_LINE = re.compile(r"(?:Sta )?Cha[n:]?\s*[\d?]+:\s*(H\d|[\d.]+(?=\s*deg)|[a-z]+)", AS_ASCII)
 STATION = re.compile(r"Stat?n?(?:ion)? (?:No\.?|Id\.?)[ :.]*([\w-]+)(?:\s+Code: ?(?:(\w+)-)?(\w+))?", AS_ASCII)
 SCNL = re.compile(r"<SCNL>(\w+)\.(\w+)\.(\w+)", AS_ASCII)
-GEONET_STEP = re.compile(rf"(?:.*\bat\s+{STEP}\s*s(?:ec)?\s+intervals|.*intervals\s+of\s+{STEP}\s*s).*", AS_ASCII)
+GEONET_STEP = re.compile(rf"(?:.*\bat\s+{DECIMAL}\s*s(?:ec)?\s+intervals|.*intervals\s+of\s+{DECIMAL}\s*s).*", AS_ASCII)
 GEONET_COUNT = re.compile(rf"Number of points\s+{COUNT}\b.*", AS_ASCII)
 GEONET_HEAD = 26
 """Lines of the header of a component of GeoNet: 16 of text and 10 of numbers."""

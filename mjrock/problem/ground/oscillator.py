@@ -12,7 +12,7 @@ from ...quantities import Array, require_reals, require_row, require_within
 
 FINENESS = 20
 """Steps to a period at least, between which the peak of a sine is missed by at most 1.2 %."""
-SHORTEST, LONGEST = 0.01, 100.0
+SHORTEST_PERIOD, LONGEST_PERIOD = 0.01, 100.0
 """Bounds of a period [s]."""
 
 
@@ -59,7 +59,7 @@ def building_modes(
     """
     rows = []
     for name, values, low, high, unit in (
-        ("period", period, SHORTEST, LONGEST, "s"),
+        ("period", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s"),
         ("participation", participation, -3.0, 3.0, ""),
         ("height", height, -1.0, 1.0, ""),
     ):

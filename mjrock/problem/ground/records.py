@@ -27,9 +27,9 @@ TIME_UNITS = {"s": 1.0, "ms": 1e-3}
 
 AS_ASCII = re.ASCII | re.IGNORECASE
 EXPONENT = r"(?:[ed][-+]?\d+)?"
-COUNT, STEP = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
+COUNT, DECIMAL = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
 """No run of digits or blanks can be parted in two ways, so that the time of a search goes with the length of a line."""
-DECIMAL_NUMBER = re.compile(rf"[-+]?{STEP}", AS_ASCII)
+DECIMAL_NUMBER = re.compile(rf"[-+]?{DECIMAL}", AS_ASCII)
 POINTED = rf"[-+]?(?:\d+\.\d*|\.\d+){EXPONENT}"
 GLUED = re.compile(rf"{POINTED}(?:(?=[-+]){POINTED})+", AS_ASCII)
 """Columns of fixed width that a sign sets apart. Each has its decimal point: 1.5-102 is an exponent in Fortran."""

@@ -24,9 +24,9 @@ from .records import (
     BREAK,
     COARSEST,
     COUNT,
+    DECIMAL,
     EXPONENT,
     FINEST,
-    STEP,
     TIME_UNITS,
     Trace,
     factor_of,
@@ -53,7 +53,7 @@ SOON = 10
 """How many numbers those are."""
 ROWS = "rows"
 """What `columns` is where the samples stand in rows, one after the other."""
-SMOOTH = 0.7
+SMOOTH_ROWS = 0.7
 """Samples stand in rows where they jump less along the rows than this share of what they jump down the columns."""
 HEADER_LINE = 1000
 """Characters of a line of the header that are looked at."""
@@ -68,13 +68,13 @@ DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
 PROSE = re.compile(r"(?!\b(?:nan|inf|infinity)\b)[a-z]{3}", re.IGNORECASE)
 HEAD_STEP = re.compile(
     r"(?:(?<![a-z])dt|time[ _]step|(?:sampling|time|sample)[ _](?:interval|period|step))"
-    rf"[ _]*(?:[(\[]s(?:ec)?[)\]])?[ :=]*{STEP} *(ms|msec)?(?![\w.])",
+    rf"[ _]*(?:[(\[]s(?:ec)?[)\]])?[ :=]*{DECIMAL} *(ms|msec)?(?![\w.])",
     AS_ASCII,
 )
 HEAD_RATE = re.compile(
-    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{STEP} *(?:hz|sps|samples)?", AS_ASCII
+    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{DECIMAL} *(?:hz|sps|samples)?", AS_ASCII
 )
-HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{STEP}(?![\w.])", AS_ASCII)
+HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{DECIMAL}(?![\w.])", AS_ASCII)
 HEAD_COUNT = re.compile(
     rf"(?:npts|ndata|(?:n[ou]\.?|number) of (?:data|points|samples|pts))[ :=]*{COUNT}(?![\w.])", AS_ASCII
 )
@@ -454,7 +454,7 @@ def _in_rows(found: RecordTable) -> bool:
     values = np.array(found.values)
     down, within = (float(np.abs(np.diff(values, axis=axis)).mean()) for axis in (0, 1))
     on = float(np.abs(values[1:, 0] - values[:-1, -1]).mean())
-    return found.width > 3 and within < SMOOTH * down and on < 2 * within
+    return found.width > 3 and within < SMOOTH_ROWS * down and on < 2 * within
 
 
 def _factor(found: RecordTable, unit: str | float | None, column: int) -> float:

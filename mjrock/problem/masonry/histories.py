@@ -133,9 +133,9 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
 
 STEEPEST = math.pi
 """Largest angle of a table [rad]."""
-SAMPLES, MOST = 2000, 1_000_000
+MOTION_SAMPLES, MOST_MOTION_SAMPLES = 2000, 1_000_000
 """Samples of the equivalent ground motion over a run, and most where the angle changes faster [-]."""
-COARSEST = 1.0
+LARGEST_STEP = 1.0
 """Largest step of a ground motion [s]."""
 
 
@@ -156,7 +156,7 @@ def motions_of_tilt(tilt: History, duration: float) -> tuple[GroundMotion, Groun
     """
     t, angle = (np.array(row) for row in tilt)
     closest = 0.25 * float(np.diff(t).min()) if len(t) > 1 else math.inf
-    step = min(max(min(duration / SAMPLES, closest), duration / MOST), COARSEST)
+    step = min(max(min(duration / MOTION_SAMPLES, closest), duration / MOST_MOTION_SAMPLES), LARGEST_STEP)
     count = math.ceil(duration / step) + 1
     turned = np.interp(duration * np.arange(count + 1) / (count - 1), t, angle)
     accel, dt = (-GRAVITY * np.sin(turned), -2 * GRAVITY * np.sin(0.5 * turned) ** 2), duration / (count - 1)

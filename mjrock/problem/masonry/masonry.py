@@ -43,7 +43,7 @@ from .blocks.joints_in_space import SpaceJoint, joints_in_space
 from .blocks.polygon import Polygon
 from .blocks.polyhedron import Polyhedron
 from .builders.in_plane import (
-    MOST_BLOCKS,
+    MOST_BODIES,
     Taper,
     arch_of,
     bending_between_floors,
@@ -67,7 +67,7 @@ from .builders.in_space import (
 from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import (
     NEARLY,
-    WIDEST,
+    WIDEST_TOLERANCE,
     along_lines,
     nearly,
     not_joined,
@@ -200,7 +200,7 @@ class Masonry(Drawn):
         xi: OfJoint | None = None,
         frequency: OfJoint | None = None,
         points: OfCount | None = None,
-        tolerance: Annotated[float, Within(1e-9, WIDEST, "m")] = 1e-5,
+        tolerance: Annotated[float, Within(1e-9, WIDEST_TOLERANCE, "m")] = 1e-5,
         law: AnyLaw | str | None = None,
         k_s: OfJoint | None = None,
         *,
@@ -1143,7 +1143,7 @@ class Masonry(Drawn):
                 f"{self.tolerance:g} m; "
                 f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
             )
-        wider = min(NEARLY * self.tolerance, WIDEST)
+        wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
         apart = not_joined(self.blocks, self.joints, wider)
         if odd := nearly([joint.name for joint in self._joints_within(wider, apart)], wider):
             warnings.warn(odd, Implausible, stacklevel=6)
@@ -1165,9 +1165,9 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
             which = [f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}" for b in (block, blocks[0])]
             raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
     free = sum(not block.fixed for block in blocks)
-    if not 0 < free < len(blocks) <= MOST_BLOCKS:
+    if not 0 < free < len(blocks) <= MOST_BODIES:
         raise ValueError(
-            f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BLOCKS} are "
+            f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BODIES} are "
             "needed"
         )
     for name, number in Counter(names_of(blocks)).items():

@@ -27,7 +27,7 @@ DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
 """Depth of a loading beam, and how far it reaches beyond the wall at either end, over the length of the wall [-]."""
 LEAST_RADIUS = 0.01
 """Least radius of an arch [m]."""
-MOST_BLOCKS = 5000
+MOST_BODIES = 5000
 """Most blocks of a wall."""
 
 
@@ -191,9 +191,9 @@ def bonded_wall(
     if not math.isclose(courses * high, height, rel_tol=1e-6):
         raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
     count = courses * length / long * (2 if halved else 1)
-    if count + courses > MOST_BLOCKS:
+    if count + courses > MOST_BODIES:
         raise ValueError(
-            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
+            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BODIES}"
         )
     polygons = [ground_under(0.0, length, height, thickness)]
     for course in range(courses):

@@ -17,7 +17,7 @@ from ...wall.section import Opening
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
-from .in_plane import MOST_BLOCKS, SMALLEST_PIECE, Taper, extent_of_ground, required_ends, required_unit, rings_of
+from .in_plane import MOST_BODIES, SMALLEST_PIECE, Taper, extent_of_ground, required_ends, required_unit, rings_of
 
 WHOLE = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
@@ -63,8 +63,8 @@ def column_of(width: Taper, height: float, drums: int, sides: int, density: floa
 
 def dome_of(radius: float, thickness: Taper, lunes: int, hoops: int, oculus: float, density: float) -> list[Polyhedron]:
     """The ground and the voussoirs of a hemisphere on it, see `Masonry.dome`."""
-    if lunes * hoops >= MOST_BLOCKS:
-        raise ValueError(f"lunes = {lunes} times hoops = {hoops} is outside the valid range up to {MOST_BLOCKS}")
+    if lunes * hoops >= MOST_BODIES:
+        raise ValueError(f"lunes = {lunes} times hoops = {hoops} is outside the valid range up to {MOST_BODIES}")
     inner, outer = rings_of(radius, thickness, 0.1, np.arange(hoops + 1) / hoops)
     polar, around = np.linspace(0.5 * math.pi, oculus, hoops + 1), 2 * math.pi * np.arange(lunes + 1) / lunes
     sines, levels = np.sin(polar), np.append(0.0, np.cos(polar[1:]))
@@ -156,8 +156,8 @@ def walls_of(
     units, courses = round((length - corners) / long), round(height / high)
     halves = max(round(2 * (depth - t) / long), 1)
     gable = require_whole("gable", gable, 0, units + 1 - courses % 2)
-    if (courses + gable) * (units + 1) + courses * (halves // 2 + 1) * sum(sides) >= MOST_BLOCKS:
-        raise ValueError(f"length, height and depth need more units than {MOST_BLOCKS}; give larger units")
+    if (courses + gable) * (units + 1) + courses * (halves // 2 + 1) * sum(sides) >= MOST_BODIES:
+        raise ValueError(f"length, height and depth need more units than {MOST_BODIES}; give larger units")
     fitted, behind = (length - corners) / units, 2 * (depth - t) / halves
     return Walls(length, depth, t, fitted, behind, height / courses, courses, gable, sides)
 

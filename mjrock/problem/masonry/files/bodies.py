@@ -20,7 +20,7 @@ from ....quantities import Array, Within, named, require_flag, require_reals, re
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import FARTHEST_VERTEX, MOST_VERTICES
 from ..blocks.polyhedron import Polyhedron
-from ..builders.in_plane import MOST_BLOCKS
+from ..builders.in_plane import MOST_BODIES
 
 SAME_VOLUME = 1e-3
 """Largest difference of the volume of a body from that of its hull, over the latter [-]."""
@@ -34,7 +34,7 @@ PLATE_THICKNESS = 0.1
 """Thickness of a support that is drawn as an open plate, over its extent [-]."""
 LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 """Length of the units that files are drawn in [m]."""
-TURNS = {
+UPWARDS = {
     "x": ((0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)),
     "y": ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
     "z": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -98,7 +98,7 @@ class Given(NamedTuple):
             if self.scale is not None:
                 raise ValueError(f"unit = {shown(self.unit)} and scale = {self.scale:g} are both given; give one")
             scale = LENGTH_UNITS[_one_of("unit", self.unit, LENGTH_UNITS)]
-        return scale * np.array(TURNS[_one_of("up", usual if self.up is None else self.up, TURNS)])
+        return scale * np.array(UPWARDS[_one_of("up", usual if self.up is None else self.up, UPWARDS)])
 
 
 def _one_of(name: str, value: str, known: Collection[str]) -> str:
@@ -175,8 +175,8 @@ def mesh_bodies(mesh: Mesh) -> list[Mesh]:
         for i, j in face_edges(face):
             open_edges ^= {(min(i, j), max(i, j))}
         part += not open_edges
-        if part > MOST_BLOCKS:
-            raise ValueError(f"body {mesh.name} is more than {MOST_BLOCKS} closed bodies, which is the most")
+        if part > MOST_BODIES:
+            raise ValueError(f"body {mesh.name} is more than {MOST_BODIES} closed bodies, which is the most")
     bodies = [mesh._replace(vertices=each, faces=rings) for each, rings in _apart(places, faces, parts)]
     if not bodies:
         raise ValueError(f"body {mesh.name} has no faces")

@@ -15,13 +15,13 @@ from ....geometry.hull import prism
 from ....quantities import Array, named, shown
 from ..blocks.compound import Compound, FlatBlock, SolidBlock
 from ..blocks.polygon import InwardsError, Polygon
-from ..builders.in_plane import MOST_BLOCKS
+from ..builders.in_plane import MOST_BODIES
 from .bodies import Given, Mesh, block_name, blocks_of
 from .meshes import bytes_of
 
 CLOSED_WITHIN = 1e-9
 """Distance of the ends of a polyline that count as one, over its extent [-]."""
-MOST_INSERTED = 10 * MOST_BLOCKS
+MOST_INSERTED = 10 * MOST_BODIES
 """Most lines, texts and whatever else that the blocks of a drawing may insert; they take some ten seconds."""
 OUTLINES = ("LWPOLYLINE", "POLYLINE")
 DEEPEST = 50
@@ -183,7 +183,7 @@ def _require_few(document: Any, space: Iterable[Any]) -> None:
 
     found = held(space, ())
     for count, what, most in zip(
-        found, ("outlines", "things that are inserted"), (MOST_BLOCKS, MOST_INSERTED), strict=True
+        found, ("outlines", "things that are inserted"), (MOST_BODIES, MOST_INSERTED), strict=True
     ):
         if count > most:
             raise InsertError(f"there are {count:.3g} {what}, and at most {most} are taken")

@@ -170,7 +170,7 @@ FOR_NONE = {"k_s": np.inf, "frequency": np.nan}
 """What stands for None in a table: a joint that sticks rigidly, and the lowest frequency of the masonry."""
 
 
-IN_SPACE = Within(2, 50, whole=True)
+POINTS_IN_SPACE = Within(2, 50, whole=True)
 """Valid `points` of a joint in space. In the plane they are those of `Dry`."""
 
 
@@ -207,7 +207,7 @@ class JointTable(NamedTuple):
         points = _values("points", given["points"], joints).astype(int)
         for joint, count in zip(joints, points.tolist(), strict=True):
             if isinstance(joint, SpaceJoint):
-                IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
+                POINTS_IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
         table = cls(**columns, points=points, bonds=_bonds(given["bond"], joints))
         springs = (column.tolist() for column in (table.k_n, table.k_s, table.friction, points))
         for joint, bond, *numbers in zip(joints, table.bonds, *springs, strict=True):
