@@ -36,7 +36,7 @@ def require_as_many(name: str, rows: Mapping[str, Array]) -> None:
         raise ValueError(f"{name}: {', '.join(rows)} have {counts} values; give as many")
 
 
-def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: bool = False) -> History:
+def history_of(name: str, given: object, largest: float, unit: str, *, from_zero: bool = False) -> History:
     """A history from (t, values).
 
     Args:
@@ -139,7 +139,7 @@ LARGEST_STEP = 1.0
 """Largest step of a ground motion [s]."""
 
 
-def tilt_history(given: Any) -> History | None:
+def tilt_history(given: object) -> History | None:
     """The history of the angle of a table from (t, angle), or None.
 
     Raises:

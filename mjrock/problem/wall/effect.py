@@ -65,7 +65,7 @@ def keep_place(effect: Any, kind: str) -> None:
     )
 
 
-def _block(name: str, given: Any) -> Any:
+def _block(name: str, given: object) -> str | int:
     """A block as it is named, of which a case of masonry knows the number, or its number."""
     return given if isinstance(given, str) else require_whole(name, given, 0, BLOCKS)
 
