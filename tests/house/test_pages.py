@@ -108,7 +108,7 @@ def test_the_readme_is_short_its_six_lines_run_and_its_doors_open(tmp_path, monk
     assert sum(1 for line in code.splitlines() if line and not line.startswith("import")) == 6
     ((printed, _),) = run(ROOT / "README.md", {})
     assert alike(printed, shown or "")
-    start = readme[: readme.index("## Try it")]
+    start = readme[: readme.index("## Install and try it")]
     assert all(word in start for word in ("dry", "cracked", "mortared"))
     doors = {
         "Check a façade": "docs/examples/19_church_facade.py",
