@@ -51,6 +51,16 @@ def test_it_stands_a_slow_push_below_the_multiplier_and_falls_above(solve):
     assert turned[1] > 0.2
 
 
+@pytest.mark.slow
+def test_a_push_along_the_diagonal_ends_in_the_blows_that_it_comes_to():
+    """It stands on one corner of its base, from which it leaves the diagonal and strikes what stays of the walls."""
+    with pytest.warns(UserWarning, match="the push was not slow"):
+        push = mr.push(mr.Masonry.corner(0.5, 4.0, math.radians(30)), None, 0.4, angle=OUT)
+    assert push.peak == pytest.approx(by_hand(0.5, 4.0, math.radians(30)), rel=2e-3)
+    assert push.ended.startswith("ends in blows at")
+    assert 0.1 < push.displacement[-1] < 0.25
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [((0.005, 4.0), "thickness = 0.005"), ((0.5, 400.0), "height = 400"), ((0.5, 4.0, 1.5), "angle = 1.5")],
