@@ -20,7 +20,7 @@ from ..quantities import Array
 from ..result.response import Response
 from ..study.loading.mechanism import MechanismCheck
 from .texts import Words
-from .verdicts import Mechanism, effect_name
+from .verdicts import Mechanism, told_name
 
 WIDE = 7.0
 """Width of a picture [inch]."""
@@ -81,8 +81,10 @@ def wall_drawn(case: Case, words: Words) -> Figure:
     look: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
     left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **look)
     for name, effect in case.named.items():
+        if effect.told is None:
+            continue
         x, beside = (left.get_xlim()[0], (12, 3)) if effect.on_face else (case.block.b, (26, -10))
-        note = left.annotate(effect_name(name, words), (x, effect.height), beside, **look)
+        note = left.annotate(told_name(name, effect, words), (x, effect.height), beside, **look)
         note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
     for ax, title in ((left, "section"), (right, "elevation")):
         ax.axis("off")
