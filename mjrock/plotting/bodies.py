@@ -218,7 +218,8 @@ class Bodies:
         The points are given about the centroid of the body at rest [m], shape (n, 2). Their displacement is drawn times
         `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
-        return self.moving.placed_at(frame, self._numbers[[body]], points[None])[0]
+        drawn: Array = self.moving.placed_at(frame, self._numbers[[body]], points[None])[0]
+        return drawn
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all bodies are drawn at a frame [m], shape (bodies, corners, 2).
