@@ -16,7 +16,7 @@ from .interface import PointCount, contact_lines, reference_frequency
 
 Modulus = Annotated[float, Within(1e5, 1e12, "Pa", "modulus E")]
 """Young's modulus of mortar, masonry or stone."""
-UNIT = 1e8
+UNIT_STIFFNESS = 1e8
 """A stiffness whose frequency is scaled [N/m3]."""
 
 
@@ -98,7 +98,7 @@ def measured_stiffness(
     """
     require_kind("wall", wall, Block)
     omega = 2 * math.pi * frequency
-    unit = reference_frequency(wall, UNIT, points) ** 2 / UNIT
+    unit = reference_frequency(wall, UNIT_STIFFNESS, points) ** 2 / UNIT_STIFFNESS
     arm = math.hypot(wall.centroid_height, wall.centroid_offset)
     inertia = wall.inertia + wall.mass * arm**2
     falling = wall.weight * wall.centroid_height / inertia

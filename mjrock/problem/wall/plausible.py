@@ -36,7 +36,7 @@ TOO_FAST = 3.0
 
 LOW_TIE = 0.6
 """Height of the highest tie over that of the wall below which the part above is looked at [-]."""
-LOW = 0.9
+LOW_STOP = 0.9
 """Height of a side stop over `rebound_height` below which a base that holds decides what the wall does [-]: on one of
 friction 0.6 peaks differ by 21 % in the median there, against higher stops by 3 % (`scripts/checks/low_stop.py`)."""
 
@@ -55,9 +55,9 @@ def rebound_height(case: Any) -> float:
 def warn_of_low_stop(case: Any) -> None:
     """Warn of a base that holds under a wall whose side stop is so low that the base decides what the wall does."""
     top = case.stop_top
-    if top is not None and top < LOW * (height := rebound_height(case)):
+    if top is not None and top < LOW_STOP * (height := rebound_height(case)):
         warnings.warn(
-            f"the side stop reaches {top:.4g} m, and one below {LOW * height:.4g} m pushes the base outwards; here the "
+            f"the side stop reaches {top:.4g} m, and one below {LOW_STOP * height:.4g} m pushes the base outwards; here the "
             "base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against still lower stops "
             "rebounds too: give the contacts the friction that the base has",
             Implausible,
