@@ -87,7 +87,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Push, print the table and draw."""
     args = cli.parser(__doc__, "arching").parse_args(argv)
     out, shares = cli.folder(args.out), SHARES[:2] if args.quick else SHARES
-    push, stiff = pushed(shares), pushed(shares, K)
+    push = pushed(shares)
+    stiff = push if args.quick else pushed(shares, K)
     rows: list[list[object]] = []
     for share, found, other in zip(shares, forces(push, shares), forces(stiff, shares), strict=True):
         expected = float(closed(share * T))

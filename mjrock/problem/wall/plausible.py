@@ -57,8 +57,8 @@ def warn_of_low_stop(case: Any) -> None:
     top = case.stop_top
     if top is not None and top < LOW_STOP * (height := rebound_height(case)):
         warnings.warn(
-            f"the side stop reaches {top:.4g} m, and one below {LOW_STOP * height:.4g} m pushes the base outwards; here "
-            "the base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against still lower "
+            f"the side stop reaches {top:.4g} m, and one below {LOW_STOP * height:.4g} m pushes the base outwards; "
+            "here the base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against still lower "
             "stops rebounds too: give the contacts the friction that the base has",
             Implausible,
             stacklevel=3,
