@@ -17,6 +17,7 @@ import matplotlib
 from docutils import nodes
 from latex2mathml.converter import convert
 from matplotlib.figure import Figure
+from sphinx.util.inspect import TypeAliasForwardRef
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
@@ -44,6 +45,7 @@ nitpicky = True  # a name that leads nowhere is an error
 nitpick_ignore_regex = [
     ("py:class", r"(numpy|matplotlib|collections|concurrent|pathlib|os|typing|mujoco|pandas)\b.*"),
     ("py:class", r"mjrock\.[\w.]+"),
+    ("py:class", r"Array|ArrayLike|Flags|Integers"),
 ]
 
 myst_heading_anchors = 3
@@ -52,6 +54,8 @@ html_math_renderer = "mathml"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
+autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "Flags", "Integers")}
+TypeAliasForwardRef.__repr__ = lambda alias: alias.name  # type: ignore[method-assign]  # inside a tuple too
 autodoc_default_options = {"members": True}
 python_maximum_signature_line_length = 88
 napoleon_numpy_docstring = False
@@ -178,9 +182,11 @@ def as_mathml(display: str) -> Callable[[Any, nodes.math | nodes.math_block], No
     return visit
 
 
-def made(app: object, page: str, source: list[str]) -> None:
-    """The text of a page as the site has it."""
+def made(app: Any, page: str, source: list[str]) -> None:
+    """The text of a page as the site has it, which is made anew when what it is made of changes."""
     source[0] = made_pages.made(page, source[0])
+    for other in made_pages.made_of(page):
+        app.env.note_dependency(other)
 
 
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:

@@ -146,3 +146,12 @@ def made(page: str, text: str) -> str:
     if page == "gallery":
         return gallery(text)
     return reference(page, text) if page == "api" or page.startswith("api/") else text
+
+
+def made_of(page: str) -> list[Path]:
+    """The other files that a page of the site is made of."""
+    return {
+        "index": [HERE.parent / "README.md"],
+        "gallery": sorted(HERE.glob("*.md")),
+        "api": sorted((HERE / "api").glob("*.md")),
+    }.get(page, [])
