@@ -135,7 +135,8 @@ def plain(app: object, what: str, name: str, obj: object, options: object, lines
 def without_ranges(
     app: object, what: str, name: str, obj: object, options: object, signature: str | None, returns: str | None
 ) -> tuple[str | None, str | None]:
-    """A signature without the declared ranges of its numbers, which the text has."""
+    """A signature without the declared ranges of numbers, which the text has, and `...` for what a factory makes."""
+    signature = signature and signature.replace("<factory>", "...")
     return signature and re.sub(r"(?:\w+\.)*Annotated\[(.+?), Within\([^()]*\)\]", r"\1", signature), returns
 
 
