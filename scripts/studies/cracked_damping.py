@@ -19,11 +19,9 @@ import warnings
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
-from scipy.stats import spearmanr
 from tqdm import tqdm
 
 import mjrock as mr
@@ -33,44 +31,42 @@ from mjrock.result.response import End
 from scripts.shared import cli
 from scripts.studies.shaken_wall import (
     COURSES,
+    DENSITY,
     FRICTION,
     HEIGHT,
+    JUDGED,
     LENGTH,
     LOAD,
+    MORTAR,
     PERIOD,
     QUIET,
     RUNS,
     SENSOR,
+    SHARED,
     STEP,
+    STRONGER,
     THICK,
     K,
+    Way,
+    judged,
+    of_law,
     period_of,
+    spread,
 )
 from scripts.studies.shaken_wall import motion_of as measured
 
-DENSITY, BEAM = 1885.0, (0.1, 7850.0)
-"""Density of the wall [kg/m3]; height [m] and density of the beam."""
+BEAM = (0.1, 7850.0)
+"""Height [m] and density of the beam [kg/m3]."""
 CUTS = (0, 5, 8, 12, 17, 22, 27, 31, 35, 38, 41, 44)
 """Courses at which the wall of the plane is divided."""
 LEVELS = (5, 35)
 """First courses of the two groups that hold joists."""
 JOIST = (1.355, 2 * 0.0808, 5510 * 1.034)
 """Far end from the back of the wall [m], length of two along the wall [m], and density [kg/m3]."""
-POINTS, STARTS, SHARED = 5, 10, 8
-"""Lines of a joint, starts, and runs before them that all starts share: the wall is still whole there."""
-STRONGER = 1e-6
-"""By how much the motions of two starts differ [-]."""
+POINTS, STARTS = 5, 10
+"""Lines of a joint, and starts."""
 THROWN = 0.35
 """Rate with which the strip of two bodies is thrown out of rest [rad/s]."""
-
-
-class Way(NamedTuple):
-    """A way to damp the wall: damping ratio of cracked joints and the frequency that it refers to [rad/s], and damping
-    ratio of all motion."""
-
-    xi: float = 0.0
-    frequency: float = 1.0
-    motion: float = 0.0
 
 
 def mechanism(lines: int, way: Way) -> mr.Masonry:
@@ -116,20 +112,14 @@ def found(lines: int, way: Way) -> float:
 
 def ways() -> dict[str, Way]:
     """Every way, with what the laws say of the wall above the crack."""
-    part = mr.Block.from_size(thickness=THICK, height=HEIGHT / 2, length=LENGTH, density=DENSITY)
-    made = {"undamped": Way(), "1.5 % of all motion": Way(motion=0.015)}
-    own = mr.Restitution.from_geometry(part)
-    for name, law, e in (
-        ("calibrated law, part above", "CALIBRATED", own),
-        ("published law, part above", "PUBLISHED", own),
-        ("published law, both bodies", "PUBLISHED", mr.Restitution(rigid(), own.side)),
-    ):
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", ".*(outside the range of the fit|no damping of this base)", UserWarning)
-            warnings.filterwarnings("ignore", "xi = ", mr.Implausible)
-            base = mr.Contacts.from_law(part, e, k_base=K, law=law).base
-        made[name] = Way(base.xi, base.frequency)
-    return made
+    return {
+        "undamped": Way(),
+        "1.5 % of all motion": Way(motion=0.015),
+        "calibrated law": of_law("CALIBRATED"),
+        "published law": of_law("PUBLISHED"),
+        "calibrated law of a bed": of_law("CALIBRATED_BED", points=POINTS),
+        "published law, both bodies": of_law("PUBLISHED", rigid()),
+    }
 
 
 def rectangle(low: float, high: float, density: float, **given: object) -> mr.Polygon:
@@ -164,7 +154,7 @@ def wall_of(way: Way) -> mr.Masonry:
         below, above = (courses[name] for name in joint.name.split("|"))
         stiffness = K / max(1.0, 0.5 * (below + above + (below == 0) + (above == 0)))
         dry = mr.Dry(stiffness, FRICTION, way.xi, stiffness, way.frequency, POINTS)
-        return mr.Mortar(dry, mr.Bond(0.2e6, 0.4e6, 32.0, 320.0, damped=False))
+        return mr.Mortar(dry, MORTAR)
 
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*frequency", mr.Implausible)
@@ -224,22 +214,6 @@ def runs_of(way: Way, motions: Sequence[mr.GroundMotion], starts: int) -> Array:
     return np.column_stack([np.tile(whole, (starts, 1)), later])
 
 
-def judged(peaks: Array, test: Array, rocking: Array) -> list[str]:
-    """Ranks, mean factor on the test and runs within a factor of two by the median peaks, the factors of the runs that
-    rock, and how many of their starts are within a factor of two; peaks of starts by run and those of the test [mm]."""
-    factor = np.median(peaks, axis=0) / test
-    near = np.abs(np.log(factor)) < np.log(2)
-    single = np.abs(np.log(peaks[:, rocking] / test[rocking])) < np.log(2)
-    mean = np.exp(np.log(factor).mean())
-    return [
-        f"{spearmanr(factor * test, test).statistic:.3f}",
-        f"{mean:.2f}",
-        f"{int(near.sum())} of {len(test)}",
-        ", ".join(f"{x:.2f}" for x in factor[rocking]),
-        f"{int(single.sum())} of {single.size}",
-    ]
-
-
 def drawn(found: dict[str, Array], runs: Sequence[int], *, tested: bool) -> Figure:
     """Median peaks by the run with their 16 to 84 %."""
     figure = Figure(figsize=(8.0, 4.4), layout="constrained")
@@ -269,7 +243,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     args = parser.parse_args(argv)
     out, made = cli.folder(args.out), ways()
     if args.quick:
-        made = {name: made[name] for name in ("undamped", "published law, part above")}
+        made = {name: made[name] for name in ("undamped", "published law")}
     rows: list[list[object]] = [
         [
             name,
@@ -289,24 +263,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     peaks = {name: runs_of(way, motions, 2 if args.quick else STARTS) for name, way in bar}
     plotting.save(drawn(peaks, runs, tested=args.records is not None), out / "cracked_damping.png")
     if args.records is not None:
-        test = np.array([RUNS[run].test for run in runs])
-        rocking = np.array([RUNS[run].record == "FR76" for run in runs])
-        header = [
-            "damping",
-            "ranks",
-            "mean factor",
-            "within two",
-            "factors of runs 22 to 24",
-            "their starts within two",
-        ]
-        judgements = [[name, *judged(1e3 * own, test, rocking)] for name, own in peaks.items()]
-        text += "\n\n" + cli.table(header, judgements)
+        judgements = [[name, *judged(1e3 * own, runs)] for name, own in peaks.items()]
+        text += "\n\n" + cli.table(JUDGED, judgements)
     header = ["run", "record", "test [mm]", *(f"{name} [mm]: 16, 50, 84 %" for name in peaks)]
     rows = []
     for i, run in enumerate(runs):
-        cells = (np.percentile(1e3 * own[:, i], [16, 50, 84]) for own in peaks.values())
         given = [run, RUNS[run].record, RUNS[run].test] if args.records is not None else [i + 1, "synthetic", ""]
-        rows.append([*given, *(", ".join(f"{x:.2f}" for x in three) for three in cells)])
+        rows.append([*given, *(spread(1e3 * own[:, i]) for own in peaks.values())])
     cli.report(out / "cracked_damping", f"{text}\n\n{cli.table(header, rows)}", header, rows)
 
 
