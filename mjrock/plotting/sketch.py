@@ -107,8 +107,7 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
 def section(ax: Axes, case: Case, stop: str = "stop") -> None:
     """The wall and all that it meets and carries, its thickness, and the height of the stop, which has a name."""
     wall, height = case.wall, 2 * case.block.h
-    rests = np.array([[wall.centroid_offset, wall.centroid_height]])
-    bodies = Bodies(np.zeros(1), (wall.outline,), rests, np.zeros((1, 1, 3)))
+    bodies = Bodies.at_poses(case, np.zeros(1), np.zeros((1, 1, 3)))
     blocks(ax, bodies)(0)
     surroundings(ax, case, bodies)(0)
     for text in list(ax.texts):

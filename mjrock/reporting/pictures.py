@@ -77,8 +77,7 @@ def wall_drawn(case: Case, words: Words) -> Figure:
     loaded = any(force[0] == 0 for _, force in forces_of(case.effects).values())
     left.set_ylim(-0.13 * 2 * case.block.h, left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h)
     elevation(right, case, left.get_ylim())
-    wall = case.wall
-    opened = Bodies(np.zeros(1), (wall.outline,), case.centroids, wall.pose(np.array([OPENED]))[None])
+    opened = Bodies.at_poses(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None])
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
     look: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
     left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **look)
