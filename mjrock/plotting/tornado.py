@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..quantities import require_kind
-from ..study.sensitivity import Sensitivity, shortened
+from ..study.sensitivity import Sensitivity, setting_text
 from .arguments import picture
 
 SETTINGS = dict.fromkeys(("k_n", "k_s", "k_base", "k_side"), "N/m³") | {"thickness": "m", "height": "m", "length": "m"}
@@ -55,7 +55,7 @@ def _tried(found: Sensitivity, setting: str) -> str:
     """The values of a setting that were tried, with the unit of the settings that have a known one."""
     values = list(dict.fromkeys(row[setting] for row in found.rows)) if setting in found.settings else []
     if len(values) < 2 or not all(isinstance(value, int | float) for value in values):
-        return ", ".join(shortened(value) for value in values)
+        return ", ".join(setting_text(value) for value in values)
     return f"{min(values):.4g} to {max(values):.4g} {SETTINGS.get(setting, '')}".strip()
 
 
