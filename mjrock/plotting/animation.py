@@ -121,7 +121,7 @@ WIDE = 8.0
 """Width of a film [inch]."""
 LOWEST, HIGHEST = 2.0, 6.0
 """Heights of what shows the bodies [inch], which otherwise fill it."""
-STRIP, CLOCK = 1.15, 0.55
+STRIP, CLOCK = 1.1, 0.4
 """Heights of a strip below the bodies and of what is said above them [inch]."""
 HELD = 1.0
 """How much longer than others a GIF shows its last frame, after which it begins anew [s]."""
@@ -150,7 +150,7 @@ class Stage:
             taken.append(np.asarray(self.drawn()))
         self.palette = Image.fromarray(np.concatenate(taken)).quantize(COLOURS)
         colours = np.array(self.palette.getpalette() or [255] * 3).reshape(-1, 3)
-        colours[colours.sum(axis=1).argmax()] = 255  # paper is white
+        colours[colours.min(axis=1) > 248] = 255  # paper is white
         self.palette.putpalette(colours.ravel().tolist())
 
     def picture(self) -> Image.Image:
@@ -406,7 +406,7 @@ def scene(
     magnify = bodies.moving.magnify
     scale = "true to scale" if magnify == 1 else f"displacements x {magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
-    clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)
+    clock = ax.set_title(f"{scale}, {rate}, $t$ = 0.00 s", fontsize=9)
     clock.set_animated(True)
     for panel, draw in zip(strips, histories, strict=True):
         draw(panel)
@@ -422,7 +422,7 @@ def scene(
         figure.draw_without_rendering()
 
     def update(frame: int) -> None:
-        clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")
+        clock.set_text(f"{scale}, {rate}, $t$ = {bodies.t[frame]:.2f} s")
         moved(frame)
 
     update(0)

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+import math
+from typing import NamedTuple
 
 import numpy as np
 
+from ..compiled import compiled
 from ..quantities import Array, Flags, Integers
 
 MAP = 1500
 """Pixels along each side of what the sun sees."""
 BEHIND = 6.0
 """How far behind what the sun sees a point may lie and still be lit [pixel of the sun]."""
-FLOOR, INK = np.array((0.91, 0.9, 0.87)), np.array((0.17, 0.13, 0.11))
+FLOOR, INK = (0.91, 0.9, 0.87), (0.17, 0.13, 0.11)
 """Colours of the ground and of edges."""
 DARK, ALOFT, SUNNY = 0.60, 0.08, 0.40
 """Brightness of a face in the shade that is vertical, what it gains as it turns upwards, and towards the sun [-]."""
@@ -99,40 +101,13 @@ class View(NamedTuple):
         ways = self.pixel * self.axes
         return np.array([self.middle - 0.5 * self.size[0] * ways[0] - 0.5 * self.size[1] * ways[1], *ways])
 
-    def along(self, way: Array) -> Array:
-        """A number at the centre of each pixel, which grows linearly from the lowest left corner, (height, width).
-
-        Args:
-            way: the number there, and what it grows by with each pixel to the right and upwards, shape (3,).
-        """
-        right, up = (np.arange(count, dtype=np.float32) + 0.5 for count in self.size)
-        return np.float32(way[0]) + np.float32(way[2]) * up[:, None] + np.float32(way[1]) * right
-
     def drawn(self, surfaces: Surfaces) -> tuple[Array, Integers]:
         """How far before the middle what each pixel shows lies [pixel], and which surface it is, (height, width)."""
-        depth, shown = np.full(self.size[::-1], -np.inf, dtype=np.float32), np.full(self.size[::-1], EMPTY)
-        corners = self.seen(surfaces.corners)
-        for i in np.flatnonzero(surfaces.normals @ self.axes[2] > ASIDE).tolist():
-            self._draw(corners[i], i, depth, shown)
+        depth, shown = np.full(self.size[::-1], -np.inf), np.full(self.size[::-1], EMPTY)
+        _draw(self.seen(surfaces.corners), surfaces.normals @ self.axes[2] > ASIDE, depth, shown)
         return depth, shown
 
-    def _draw(self, corners: Array, number: int, depth: Array, shown: Integers) -> None:
-        """Draw a face that faces the camera, whose corners are given [pixel], where it lies before what is there."""
-        low = np.clip(np.floor(corners[:, :2].min(axis=0)), 0, self.size).astype(int)
-        high = np.clip(np.ceil(corners[:, :2].max(axis=0)), 0, self.size).astype(int)
-        x, y = np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1])[:, None] + 0.5
-        inside, after = np.ones((len(y), len(x)), dtype=bool), np.roll(corners, -1, axis=0)
-        for (x0, y0, _), (x1, y1, _) in zip(corners.tolist(), after.tolist(), strict=True):
-            if (x0, y0) != (x1, y1):
-                inside &= (x1 - x0) * (y - y0) >= (y1 - y0) * (x - x0)
-        normal = np.cross(corners - corners[0], after - corners[0]).sum(axis=0)
-        slope = normal[:2] / normal[2]
-        there = np.s_[low[1] : high[1], low[0] : high[0]]
-        before = corners[0, 2] - (x - corners[0, 0]) * slope[0] - (y - corners[0, 1]) * slope[1]
-        inside &= before > depth[there]
-        depth[there][inside], shown[there][inside] = before[inside], number
-
-    def picture(self, surfaces: Surfaces, sun: Array, ground: Ground | None, line: int) -> Array:
+    def picture(self, surfaces: Surfaces, sun: Array, ground: Ground | None, line: int, times: int = 1) -> Array:
         """Red, green, blue and opacity, 0 to 1, shape (height, width, 4), lowest row first.
 
         Args:
@@ -140,55 +115,121 @@ class View(NamedTuple):
             sun: unit vector to the sun, shape (3,).
             ground: below them, or None.
             line: width of edges [pixel].
+            times: pixels along each side of one of the picture, which has the mean of their colours.
         """
         depth, shown = self.drawn(surfaces)
+        flat = self.places
         if ground is not None and self.axes[2, 2] > 0:
-            fall = self.places[:, 2] - (ground.level, 0.0, 0.0, 0.0)
-            bare = self.along(-fall[:3] / fall[3])
-            shown[bare > depth] = BARE
-            depth = np.maximum(depth, bare)
-        lit = self._lit(surfaces, sun, np.where(shown == EMPTY, 0, depth))
-        normals = surfaces.normals
-        bright = (DARK + ALOFT * normals[:, 2])[:, None] + SUNNY * np.outer(np.maximum(normals @ sun, 0.0), (0.0, 1.0))
-        tones = np.minimum(bright[..., None] * surfaces.colour[:, None], 1.0)
-        table = np.concatenate([tones, np.zeros((1, 2, 3)), [[SHADED * FLOOR, FLOOR]]]).astype(np.float32)
-        table = np.concatenate([table, np.float32(table[..., :1] > 0)], axis=2)  # what is empty is not opaque
-        colours = table.reshape(-1, 4)[2 * (shown % len(table)) + lit]
-        if ground is not None:
-            x, y = (self.along(self.places[:3, i] - ground.middle[i] * np.eye(3)[0]) for i in range(2))
-            far = np.hypot(x + depth * self.places[3, 0], y + depth * self.places[3, 1]) / ground.radius
-            fade = np.clip((1 - far) / (1 - FADES), 0.0, 1.0)
-            colours[..., 3] = np.where(shown == BARE, fade**2 * (3 - 2 * fade), colours[..., 3])
-        colours[edges_of(np.where(shown < 0, shown, surfaces.number[shown]), line)] = (*INK, 1.0)
-        return cast(Array, colours)
-
-    def _lit(self, surfaces: Surfaces, sun: Array, depth: Array) -> Flags:
-        """Whether the sun shines on what the pixels show."""
+            flat[0] -= (*ground.middle, ground.level)
+            flat[:, :2] /= ground.radius
+            _uncover(flat, depth, shown)
         shining = View.of_the_sun(sun, surfaces.corners)
-        shade, ways = shining.drawn(surfaces)[0], shining.seen(self.places)
-        ways[1:] -= shining.seen(np.zeros(3))
-        x, y, before = (self.along(ways[:3, i]) + np.float32(ways[3, i]) * depth for i in range(3))
-        within = (x >= 0) & (x < MAP) & (y >= 0) & (y < MAP)
-        seen = shade[np.where(within, y, 0).astype(int), np.where(within, x, 0).astype(int)]
-        return np.asarray(~within | (before > seen - BEHIND))
-
-
-def edges_of(numbers: Integers, line: int) -> Flags:
-    """Which pixels lie on an edge, of a width in pixels, where a picture shows another number than beside it."""
-    edge = np.zeros(numbers.shape, dtype=bool)
-    for before, after in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
-        edge[after] |= numbers[before] != numbers[after]
-        for _ in range(line - 1):
-            edge[before] |= edge[after].copy()
-    return edge
-
-
-def coarser(colours: Array, times: int) -> Array:
-    """Colours of pixels that are so many times as wide and high, each in proportion to the opacity of its parts."""
-    if times == 1:
+        shade, to_sun, normals = shining.drawn(surfaces)[0], shining.seen(self.places), surfaces.normals
+        to_sun[1:] -= shining.seen(np.zeros(3))
+        bright = (DARK + ALOFT * normals[:, 2])[:, None] + SUNNY * np.outer(np.maximum(normals @ sun, 0.0), (0.0, 1.0))
+        tones = np.concatenate([bright[..., None] * surfaces.colour[:, None], [np.outer((SHADED, 1.0), FLOOR)]])
+        colours = np.zeros((self.size[1] // times, self.size[0] // times, 4))
+        number = np.append(surfaces.number, (EMPTY, BARE))
+        _paint((depth, shown, number), (shade, to_sun, flat), np.minimum(tones, 1.0), (line, times), colours)
         return colours
-    weighted = np.concatenate([colours[..., :3] * colours[..., 3:], colours[..., 3:]], axis=2)
-    every = [weighted[i::times, j::times] for i in range(times) for j in range(times)]
-    mean = np.sum(every, axis=0) / len(every)
-    mean[..., :3] /= np.maximum(mean[..., 3:], 1e-6)
-    return np.asarray(mean)
+
+
+@compiled
+def _draw(corners: Array, facing: Flags, depth: Array, shown: Integers) -> None:
+    """Draw each face that faces the camera, whose corners are given [pixel], where it lies before what is there."""
+    high, wide = depth.shape
+    for i in range(len(corners)):
+        if not facing[i]:
+            continue
+        points, most, nx, ny, nz = corners[i], corners.shape[1], 0.0, 0.0, 0.0
+        left, right, low, top = points[0, 0], points[0, 0], points[0, 1], points[0, 1]
+        for k in range(1, most):
+            x0, y0, z0 = (
+                points[k - 1, 0] - points[0, 0],
+                points[k - 1, 1] - points[0, 1],
+                points[k - 1, 2] - points[0, 2],
+            )
+            x1, y1, z1 = points[k, 0] - points[0, 0], points[k, 1] - points[0, 1], points[k, 2] - points[0, 2]
+            nx, ny, nz = nx + y0 * z1 - z0 * y1, ny + z0 * x1 - x0 * z1, nz + x0 * y1 - y0 * x1
+            left, right = min(left, points[k, 0]), max(right, points[k, 0])
+            low, top = min(low, points[k, 1]), max(top, points[k, 1])
+        for row in range(max(0, math.floor(low)), min(high, math.ceil(top))):
+            for column in range(max(0, math.floor(left)), min(wide, math.ceil(right))):
+                x, y, inside = column + 0.5, row + 0.5, True
+                for k in range(most):
+                    before = k - 1 if k else most - 1
+                    x0, y0, x1, y1 = points[before, 0], points[before, 1], points[k, 0], points[k, 1]
+                    if (x1 - x0) * (y - y0) < (y1 - y0) * (x - x0):
+                        inside = False
+                        break
+                if inside:
+                    out = points[0, 2] - ((x - points[0, 0]) * nx + (y - points[0, 1]) * ny) / nz
+                    if out > depth[row, column]:
+                        depth[row, column], shown[row, column] = out, i
+
+
+@compiled
+def _uncover(flat: Array, depth: Array, shown: Integers) -> None:
+    """Show the ground where it lies before what is there; `flat` is the height above it, as `View.places` has it."""
+    for row in range(depth.shape[0]):
+        for column in range(depth.shape[1]):
+            out = -(flat[0, 2] + (column + 0.5) * flat[1, 2] + (row + 0.5) * flat[2, 2]) / flat[3, 2]
+            if out > depth[row, column]:
+                depth[row, column], shown[row, column] = out, BARE
+
+
+@compiled
+def _paint(
+    seen: tuple[Array, Integers, Integers],
+    ways: tuple[Array, Array, Array],
+    tones: Array,
+    sizes: tuple[int, int],
+    colours: Array,
+) -> None:
+    """Colour each pixel of a picture by the mean of its parts.
+
+    Args:
+        seen: how far before the middle the parts lie, which surface they show, and of which plane piece each is.
+        ways: how far before the middle what the sun sees lies; how to get from a pixel to one of the sun, and to a
+            place over the radius of the ground, as `View.places` has it.
+        tones: colours of each surface, and of the ground, in the shade and in the sun, shape (n + 1, 2, 3).
+        sizes: width of edges, and number of parts along each side [pixel].
+        colours: of the pixels, 0 at first, shape (height, width, 4).
+    """
+    (depth, shown, number), (shade, sun, flat), (line, times) = seen, ways, sizes
+    high, wide = depth.shape
+    for part in range(colours.shape[0] * times * colours.shape[1] * times):
+        row, column = part // (colours.shape[1] * times), part % (colours.shape[1] * times)
+        there, pixel = shown[row, column], colours[row // times, column // times]
+        edge = False
+        for k in range(line):
+            above, beside = row + k, column + k
+            if 0 < above < high and number[shown[above, column]] != number[shown[above - 1, column]]:
+                edge = True
+            if 0 < beside < wide and number[shown[row, beside]] != number[shown[row, beside - 1]]:
+                edge = True
+        if edge:
+            for i in range(3):
+                pixel[i] += INK[i]
+            pixel[3] += 1.0
+        elif there != EMPTY:
+            right, up, out = column + 0.5, row + 0.5, depth[row, column]
+            x = sun[0, 0] + right * sun[1, 0] + up * sun[2, 0] + out * sun[3, 0]
+            y = sun[0, 1] + right * sun[1, 1] + up * sun[2, 1] + out * sun[3, 1]
+            before = sun[0, 2] + right * sun[1, 2] + up * sun[2, 2] + out * sun[3, 2]
+            lit = 1
+            if 0 <= x < shade.shape[1] and 0 <= y < shade.shape[0] and before < shade[int(y), int(x)] - BEHIND:
+                lit = 0
+            opaque = 1.0
+            if there == BARE:
+                x = flat[0, 0] + right * flat[1, 0] + up * flat[2, 0] + out * flat[3, 0]
+                y = flat[0, 1] + right * flat[1, 1] + up * flat[2, 1] + out * flat[3, 1]
+                opaque = min(max((1 - math.hypot(x, y)) / (1 - FADES), 0.0), 1.0)
+                opaque *= opaque * (3 - 2 * opaque)
+            for i in range(3):
+                pixel[i] += opaque * tones[there, lit, i]
+            pixel[3] += opaque
+        if row % times == times - 1 and column % times == times - 1 and pixel[3] > 0:
+            for i in range(3):
+                pixel[i] /= pixel[3]
+            pixel[3] /= times * times

@@ -13,7 +13,7 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from ..quantities import Integers
 from .bodies import round_length
-from .depths import View, coarser
+from .depths import View
 from .section import Update, pulling
 from .solids import Solids
 from .style import figure_of
@@ -63,7 +63,7 @@ class Rendered(Artist):
     def _picture(self, view: View, fine: int, inch: float) -> Integers:
         """Red, green, blue and opacity, 0 to 255, with so many pixels to an inch, which fade at the rim."""
         line = max(1, round(fine * EDGE * inch / 72))
-        colours = coarser(view.picture(*self.bodies.stage(self.frame), line), fine)
+        colours = view.picture(*self.bodies.stage(self.frame), line, fine)
         rows, columns = (np.arange(count) + 0.5 for count in colours.shape[:2])
         rim = [np.clip(np.minimum(at, len(at) - at) / (RIM * inch), 0, 1) for at in (rows, columns)]
         colours[..., 3] *= np.outer(*rim)
