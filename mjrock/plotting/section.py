@@ -75,6 +75,8 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     ties, forces = list(case.links.values()), list(forces_of(case.effects).values())
     low, high = bodies.extent()
     behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
+    corners = np.vstack([np.zeros((1, 2)), *(added.outline for added in case.wall.masses)])
+    behind = max(behind, 0.05 * height - wall.b - float(corners[:, 0].min()))
     reach = (2.6 * ARROW if any(force[0] for _, force in forces) else 0.08) * height
     left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
     ax.set_xlim(left, right)
@@ -98,7 +100,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
         note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
         note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
     updates += [_force(ax, case, effect, force, bodies) for effect, force in forces]
-    updates += [_mass(ax, case, added, bodies) for added in case.wall.masses]
+    updates += [_mass(ax, case, added, bodies) for added in case.wall.masses if added.told is not None]
     return together(updates)
 
 
@@ -213,7 +215,12 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -
 
 
 def _mass(ax: Axes, case: Case, added: Effect, bodies: Bodies) -> Update:
-    """An added mass as a dot with its size."""
+    """An added mass: its outline, or a dot with its size where it is at a point."""
+    if len(corners := added.outline):
+        outline = np.vstack([_local(case, x, z) for x, z in corners])
+        shape = Polygon(outline, facecolor=STONE, edgecolor="0.15", linestyle="--", zorder=1.8, animated=True)
+        ax.add_patch(shape)
+        return lambda frame: shape.set_xy(bodies.placed(frame, 0, outline))
     point = _local(case, added.offset, added.height)
     (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5, animated=True)
     text = ax.text(0, 0, f"  {added.mass_added:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)

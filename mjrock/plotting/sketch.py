@@ -147,12 +147,17 @@ def _effects(case: Case, *, arguments: bool) -> list[Note]:
     for name, effect in case.named.items():
         if not effect.mass_added:
             said[effect] = f"{said[effect]}, {name}" if effect in said else name
-    for effect, name in [*said.items(), *((mass, mass.label) for mass in case.wall.masses)]:
-        note = f"{type(effect).__name__}({effect.arguments})" if arguments else f"{name}: {effect.said}"
+    for effect, name in [*said.items(), *((mass, "") for mass in case.wall.masses)]:
+        if (told := effect.told) is None:
+            continue
+        note = f"{type(told).__name__}({told.arguments})" if arguments else f"{name or told.label}: {told.said}"
         if name in breaking and not arguments:
             moved = float(case.wall.pose(np.array([breaking[name]]))[0, 0])
             note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"
-        made.append(((face if effect.on_face else effect.offset, effect.height), note))
+        place = (face if effect.on_face else effect.offset, effect.height)
+        if len(corners := effect.outline):
+            place = (float(corners[:, 0].mean()), float(corners[:, 1].mean()))
+        made.append((place, note))
     if arguments and case.stop_top is not None:
         made.append(((face - 0.05, case.stop_top), "SideStop(top)"))
     return made

@@ -254,6 +254,28 @@ class Response(Drawn):
         point = np.array([[0.0, require_within("height z", z, 0.0, height, "m")]])
         return self.moving.displaced(0, point)[:, 0, 0]
 
+    def at(self, t: float | None = None) -> Array:
+        """The pose of all blocks of masonry at a time, also of fixed ones that supports have moved.
+
+        Args:
+            t: time [s]; None is the last. The last sample up to it is taken.
+
+        Returns:
+            Displacement of the centroid of each block, without masses added to it, and its rotation as in `pose`, shape
+            (blocks, 3), in space (blocks, 7), for `collapse_multiplier(..., pose=...)`.
+
+        Raises:
+            ValueError: for a time outside the run.
+            AttributeError: for a wall.
+        """
+        case, k = self.of_masonry, sample_at(self.t, t)
+        moving = Moving(case, self.t, self.pose).at([k])
+        places = [moving.displaced(i, centroid[None])[0, 0] for i, centroid in enumerate(case.masonry.centroids)]
+        turns = np.eye(1, self.pose.shape[2] - len(places[0])) if self.in_space else np.zeros((1, 1))
+        turns = np.repeat(turns, len(places), axis=0)
+        turns[list(case.masonry.free)] = self.pose[k, :, len(places[0]) :]
+        return np.hstack([places, turns])
+
     @property
     def opening(self) -> Array:
         """Largest gap of each joint of masonry [m], shape (joints,)."""
