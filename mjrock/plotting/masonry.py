@@ -125,7 +125,7 @@ def _view(ax: Axes, masonry: Masonry, moving: list[Array], fixed: list[Array], l
     outside = sum(bool((corners.max(axis=0) < low).any() or (corners.min(axis=0) > high).any()) for corners in moving)
     if outside:
         said = f"{outside} of {len(moving)} blocks lie outside"
-        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=7, va="top")
+        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=8, va="top")
 
 
 @picture(limits=anything)

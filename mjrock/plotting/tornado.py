@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from ..quantities import require_kind
 from ..study.sensitivity import Sensitivity, shortened
 from .arguments import picture
+from .figures import BLUE, ORANGE
 
 SETTINGS = dict.fromkeys(("k_n", "k_s", "k_base", "k_side"), "N/m³") | {"thickness": "m", "height": "m", "length": "m"}
 SETTINGS |= {"density": "kg/m³", "thrust": "N", "strength": "N"}
@@ -33,7 +34,7 @@ def tornado(ax: Axes, found: Sensitivity) -> Axes:
     edge = most + 0.12 * width  # where an overturned wall is drawn
     for i, (name, ends) in enumerate(bars.items()):
         low, high = (edge if end == math.inf else end for end in ends)
-        colour = "0.75" if name == "together" else "#f0a35e" if name == found.governs else "#12406b"
+        colour = "0.75" if name == "together" else ORANGE if name == found.governs else BLUE
         ax.barh(i, high - low, left=low, color=colour, height=0.55)
         for end, x, side, shift in zip(ends, (low, high), ("right", "left"), (-4, 4), strict=True):
             text = found.written(end) if low == high else _apart(found, *ends)[end == ends[1]]

@@ -29,6 +29,8 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK
+from mjrock.plotting.style import Look
 from mjrock.quantities import Array
 from scripts.shared import cli
 
@@ -204,29 +206,32 @@ def shaken(masonry: mr.Masonry, motions: Iterable[mr.GroundMotion], damping: flo
     return found
 
 
-def drawn(found: dict[int, Shaken]) -> Figure:
-    """Peaks by the run, and the wall at the peak of the last run of HU12."""
-    figure = Figure(figsize=(10.0, 4.2), layout="constrained")
-    peaks, profile = figure.subplots(1, 2, width_ratios=(2, 1))
-    runs = list(found)
+def drawn(peaks: dict[int, float]) -> Figure:
+    """Peaks by the run, which has that acceleration of the table [mm]."""
+    figure = Figure(figsize=(7.4, 4.2), layout="constrained")
+    ax = figure.subplots()
+    runs = list(peaks)
+    grey: Look = {"color": "0.5", "linestyle": ":", "markersize": 4}
     for name, label, style in (
-        ("test", "test US-1", {"color": "0.2", "marker": "o"}),
-        ("twin", "its twin US-2", {"color": "0.6", "marker": "o"}),
-        ("undamped", "3DEC of the authors, pulses", {"color": "#c2571a", "marker": "s", "linestyle": ":"}),
-        ("damped", "the same with 1.5 %", {"color": "#e0a98a", "marker": "s", "linestyle": ":"}),
+        ("test", "test US-1", {"color": BLACK, "marker": "o", "markersize": 5}),
+        (
+            "twin",
+            "test of its twin US-2",
+            {"color": BLACK, "marker": "o", "markerfacecolor": "none", "linestyle": "--"},
+        ),
+        ("undamped", "3DEC of the authors, undamped", grey | {"marker": "s"}),
+        ("damped", "3DEC of the authors, damping ratio 1.5 %", grey | {"marker": "^"}),
     ):
-        peaks.plot(runs, [getattr(RUNS[run], name) for run in runs], label=label, markersize=4, **style)
-    peaks.plot(runs, [1e3 * one.peak for one in found.values()], color="#12406b", marker="D", label="explicit steps")
-    peaks.set(xlabel="run", ylabel="largest displacement at 2.06 m [mm]", yscale="log")
-    peaks.legend(frameon=False, fontsize=8)
-    shown = max(run for run in runs if RUNS[run].record == "HU12")
-    heights = (np.arange(COURSES) + 0.5) * HEIGHT / COURSES
-    shape = 1e3 * np.abs(found[shown].shape)
-    profile.plot([0.0, *shape, 0.0], [0.0, *heights, HEIGHT], color="#12406b", label="explicit steps")
-    if shown == max(run for run in RUNS if RUNS[run].record == "HU12"):
-        profile.plot(list(PROFILE.values()), list(PROFILE), "o", color="0.2", label="test US-1")
-    profile.set(xlabel=f"displacement in run {shown} [mm]", ylabel="height [m]", xlim=(0, None), ylim=(0, HEIGHT))
-    profile.legend(frameon=False, fontsize=8)
+        ax.plot(runs, [getattr(RUNS[run], name) for run in runs], label=label, linewidth=1.0, **style)
+    look = plotting.STYLES["explicit"] | {"linestyle": "-", "marker": "D", "markersize": 4}
+    ax.plot(runs, list(peaks.values()), **look)
+    shown = [run for run in (1, 5, 10, 15, 18, 21, 24) if run in runs] or runs
+    ax.set_xticks(shown, [f"{run}\n{RUNS[run].ground:.2f} g" for run in shown])
+    ax.set(xlabel="run, and the peak of its motion", ylabel="largest displacement at 2.06 m [mm]", yscale="log")
+    if runs[-1] == 24:
+        ax.axvspan(20.5, 24.5, color="0.94", zorder=0, linewidth=0)
+        ax.text(22.5, 0.15, "model and\ntest part", fontsize=8, ha="center")
+    ax.legend(frameon=False, fontsize=8)
     return figure
 
 
@@ -261,7 +266,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     motions_shown = tqdm(motions, desc="runs", disable=None, leave=False)
     found = dict(zip(runs, shaken(masonry, motions_shown, args.damping), strict=True))
-    plotting.save(drawn(found), out / "shaken_wall.png")
+    plotting.save(drawn({run: 1e3 * one.peak for run, one in found.items()}), out / "shaken_wall.png")
     header = ["run", "record", "scale", "ground [g]", "test [mm]", "twin US-2", "explicit steps", "over the test"]
     header += ["3DEC, undamped", "3DEC, 1.5 %", "joints cracked", "period [s]"]
     rows: list[list[object]] = []
