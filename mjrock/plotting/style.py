@@ -98,6 +98,15 @@ def wrapped(text: str, wide: float, size: float) -> str:
     return "\n".join(line for row in text.splitlines() for line in textwrap.wrap(row, most))
 
 
+def power_of_ten(value: float) -> str:
+    """A number as a figure has it: 5e8 as 5 times ten to the eighth, and in full from 0.001 to 9999."""
+    if value == 0 or 1e-3 <= abs(value) < 1e4:
+        return f"{value:.4g}"
+    first, exponent = f"{value:.3e}".split("e")
+    factor = "" if float(first) == 1 else rf"{float(first):.4g} \cdot "
+    return rf"${factor}10^{{{int(exponent)}}}$"
+
+
 def titled(figure: Figure, text: str, size: float = 11.0) -> float:
     """Write a title [pt] above a figure on as many lines as its width needs; the height that it takes [inch]."""
     title = wrapped(text, figure.get_figwidth(), size)

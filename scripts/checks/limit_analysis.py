@@ -18,7 +18,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting.style import several
 from scripts.shared import cli
-from scripts.shared.labels import SMALL
+from scripts.shared.labels import width_bar
 
 LENGTH, HEIGHT, FRICTION = 0.4, 0.175, 0.65
 """Of a whole block [m], and of the joints [-]."""
@@ -105,8 +105,7 @@ def drawn(found: dict[int, mr.Collapse]) -> Figure:
             fontsize=9,
         )
         ax.set_ylim(bottom=-GROUND)
-        ax.set_ylabel("")
-        ax.tick_params(labelsize=SMALL)
+        width_bar(ax)
     return figure
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import math
+import re
 from typing import Any
 
 from matplotlib.axes import Axes
+
+from mjrock.plotting.section import FORCE
 
 SMALL = 8
 """Size of words in a picture [pt]."""
@@ -19,8 +21,11 @@ def beside(
     ax.annotate(text, at, shift, textcoords="offset points", color=color, annotation_clip=False, **look)
 
 
-def power_of_ten(value: float) -> str:
-    """A number as a figure has it, 5e8 as 5 times ten to the eighth."""
-    exponent = math.floor(math.log10(value) + 1e-9)
-    first = f"{value / 10**exponent:.3g}"
-    return rf"$10^{{{exponent}}}$" if first == "1" else rf"${first} \cdot 10^{{{exponent}}}$"
+def width_bar(ax: Axes) -> None:
+    """Take the axes away, and draw a line as wide as that which their label has, with its size, below what is drawn."""
+    found = re.search(r"line ([\d.]+) pt wide: (.+)", ax.get_xlabel())
+    assert found is not None
+    ax.axis("off")
+    look: dict[str, Any] = {"transform": ax.transAxes, "clip_on": False, "solid_capstyle": "butt"}
+    ax.plot([0.3, 0.4], [-0.06, -0.06], color=FORCE, linewidth=float(found[1]), **look)
+    ax.text(0.43, -0.06, found[2], transform=ax.transAxes, fontsize=SMALL, va="center")

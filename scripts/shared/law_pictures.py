@@ -96,7 +96,7 @@ def obtained(ax: Axes, samples: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Ax
         ax.plot(*row, linestyle="", marker=marker, markersize=size, color=color, label=name, alpha=0.6)
     found = np.concatenate([row for _, row in samples.values()])
     if np.any(found == 0):
-        ax.text(limits[0], 0.02, "sticks", fontsize=SMALL, color="0.3")
+        ax.text(0.5 * sum(limits), 0.02, "0: sticks", fontsize=SMALL, color="0.3")
     ax.set(xlabel=ASKED, ylabel="restitution obtained $|e|$ [-]")
     ax.legend(frameon=False, fontsize=SMALL)
     return ax

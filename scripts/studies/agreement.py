@@ -19,9 +19,9 @@ from scipy.stats import binomtest, wilcoxon
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import power_of_ten
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
-from scripts.shared.labels import power_of_ten
 from scripts.shared.pairs import pairs
 
 WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]

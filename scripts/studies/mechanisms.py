@@ -101,7 +101,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         ax.axis("off")
         if isinstance(ax, Axes3D):
             x, y, z = (high - low for low, high in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim()))
-            ax.set_box_aspect((x, y, z), zoom=1.35)
+            ax.set_box_aspect((x, y, z), zoom=1.15)
         ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
     plotting.save(figure, out / "mechanisms.png")
     cli.report(out / "mechanisms", "\n".join(lines))

@@ -19,9 +19,9 @@ from scipy.optimize import brentq
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import power_of_ten
 from mjrock.problem.wall.effect import Effect
 from scripts.shared import cli
-from scripts.shared.labels import power_of_ten
 from scripts.shared.paper import DENSITY, FIGURE_3, K_N
 
 Values = NDArray[np.float64]
@@ -69,6 +69,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         expected = multiplier(block, effects, at)
         plotting.pushover(ax, curves, {"rigid": (at[::40], expected[::40])}).set_title(name, fontsize=9)
         ax.legend().remove()
+        for text in list(ax.texts):
+            text.remove()  # where ties yield, which the title says
         ax.label_outer()
         off = mr.pushover(case, rotations=at).multiplier - expected
         end = falls(block, effects) if curves["rigid"].end < math.inf else math.inf
