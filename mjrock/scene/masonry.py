@@ -222,6 +222,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             masonry.joint_friction,
             masonry.residual_friction,
             masonry.table.points,
+            None if masonry.pairs is None else masonry.of_pair,
         ),
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
     )

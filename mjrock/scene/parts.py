@@ -18,6 +18,7 @@ from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
+from ..problem.masonry.laws.pairs import Meets
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import forces_of, links_of
 from ..quantities import Array, Flags, Integers, frozen
@@ -281,6 +282,8 @@ class JointSprings(NamedTuple):
         friction: coefficient [-].
         residual: the same of a joint that has lost its bond [-].
         points: contact lines of a joint of the plane, and of each side of a joint in space.
+        of_pair: what two blocks without a joint have where they meet, by their numbers, or None where their joints say
+            it; None where nothing is given.
     """
 
     k_n: Array
@@ -289,6 +292,7 @@ class JointSprings(NamedTuple):
     friction: Array
     residual: Array
     points: Integers
+    of_pair: Callable[[int, int], Meets | None] | None = None
 
 
 @dataclass(frozen=True)

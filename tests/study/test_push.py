@@ -1,6 +1,7 @@
 """Slow pushes against closed forms: what a panel bears as it slides or turns, with its softening branch."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
-from mjrock.study.loading.push import warn_if_fast
+from mjrock.study.loading.push import BLOWS, Forced, Piece, warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 
@@ -62,6 +63,19 @@ def test_a_blow_is_no_strength(turned):
     struck = replace(turned, displacement=np.arange(4.0), force=np.array([0.4, -1.0, 0.9, 2.0]), inertia=inertia)
     assert struck.peak == 1.0
     assert struck.inertia_share == pytest.approx(np.sqrt((0.01**2 + 2 * 0.02**2 + 0.5**2) / 4))
+
+
+def test_what_blows_bear_is_nothing_to_compare_inertia_with():
+    """Five pieces in a row that are blows end a push; their own forces do not hide that they are."""
+    masonry, still = panel(0.9), np.zeros(4)
+    load = Forced(masonry, (), {}, None, mr.Actuator(None, None, 1, None, 1e6), 0.1)
+    blow = Piece(still + 0.01, still + 2.0, still + 1.0, still, SimpleNamespace(t=[1.0], end=None), 0.0, 0.0, 0.0)
+    load.accept(blow._replace(force=still + 0.3, inertia=still))
+    for _ in range(BLOWS):
+        assert not load.done(blow)
+        load.accept(blow)
+    assert load.done(blow) == "ends in blows at 10 mm"
+    assert load.largest == 0.3
 
 
 @pytest.mark.parametrize(("unit", "peak"), [("N", 2.0), ("-", 1.0)])

@@ -136,7 +136,7 @@ class PlainRun:
     def stored(self) -> tuple[Array, Array]:
         """Kinetic, potential and elastic energy [J], shape (n, 3), and what ties have taken, shape (n, ties)."""
         scene, flat = self.of.scene, (len(self.t), -1)
-        without = scene.structure._replace(k=np.zeros_like(scene.contacts.k))
+        without = scene.structure._replace(places=scene.places._replace(k=np.zeros_like(scene.contacts.k)))
         parts, taken = energies(without, self.pose.reshape(flat), self.velocity.reshape(flat))
         parts[:, 2] += self.elastic.sum(axis=1)
         return parts, taken
@@ -152,7 +152,7 @@ class PlainRun:
         (parts, taken), work, scene = self.stored, self.work, self.of.scene
         lost = -(work.pressed - work.pressed[0]) - (self.elastic - self.elastic[0])
         groups = (*scene.contacts.joints, "encounters")
-        of = np.append(self.of.pairs.joint, len(groups) - 1)
+        of = self.of.pairs.of_joint
         dashpots = {name: lost[:, of == i].sum(axis=1) for i, name in enumerate(groups)}
         if len(scene.bodies.names) == 1 and not self.of.problem.case.joints:
             dashpots.pop("encounters")
@@ -216,7 +216,7 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
     warn_if_plain_is_slow(scene, course.duration, h)
     model, watch = PlainModel(problem, scene, course), Stopwatch()
     frames = case.standing.frames
-    gathers = JointForces(model.pairs.joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
+    gathers = JointForces(model.pairs.of_joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:
         run = PlainRun(model, follow(model.engine(h), course, steps, stride, gathers if options.forces else None))
@@ -251,7 +251,8 @@ def require_plain(case: AnyCase) -> None:
 def response_of_plain(run: PlainRun, settings: dict[str, Any], options: Options) -> Response:
     """The response of a run."""
     model, motion = run.of, SampledMotion(run.pose, run.velocity, run.energy)
-    elsewhere = bool((run.elastic[:, -1] > 0).any())
+    encounters = model.pairs.of_joint == len(model.scene.contacts.joints)
+    elsewhere = bool((run.elastic[:, encounters] > 0).any())
     beside = BesidePoses(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
     reading = model.problem.read(model.scene, run.t, motion, released=model.course.released, beside=beside)
     plastic, account = run.plastic(), run.ledger()

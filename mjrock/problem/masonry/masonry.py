@@ -101,6 +101,7 @@ from .laws.joint_table import (
     properties_of,
 )
 from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
+from .laws.pairs import AnyPairs, Meets, asked_pair, required_pairs
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
@@ -126,6 +127,9 @@ class Masonry(Drawn):
     that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
     m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
     meet others.
+
+    Two are equal if their blocks and keywords are. A function of the joint is equal to itself alone: two lambdas of the
+    same text make two that are not equal.
 
     Args:
         blocks: the blocks, all in the plane, `Polygon` or `Compound` of these, or all in space, `Polyhedron` or
@@ -161,6 +165,9 @@ class Masonry(Drawn):
         joints: what the joints are, a `Dry` or a `Mortar` for all, or a function of the joint that gives one, in the
             place of k_n, friction, xi, k_s, frequency, points and bond, which are the short way to the same. A function
             is asked once of each joint. The joints that are found are then `joints`.
+        pairs: friction and damping of blocks that have no joint, where they meet in explicit steps and in plain models:
+            a `Dry` for all, or a function of the names of two blocks, in their order, that gives one or None. Of the
+            `Dry` `friction`, `xi` and `frequency` count. None takes the joints of the two blocks, see `solve_explicit`.
 
     Raises:
         TypeError: for a keyword that it does not take, and names the nearest one.
@@ -188,6 +195,7 @@ class Masonry(Drawn):
     law: AnyLaw | str | None
     k_s: OfJoint | None
     bond: OfBond
+    pairs: AnyPairs
 
     def __init__(
         self,
@@ -203,8 +211,9 @@ class Masonry(Drawn):
         *,
         bond: OfBond = None,
         joints: AnyJoints | None = None,
+        pairs: AnyPairs = None,
     ) -> None:
-        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance)
+        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance, pairs=required_pairs(pairs))
         given = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
         keep(self, **properties_of(joints, given | {"bond": bond}))
         if not self.joints:
@@ -338,6 +347,14 @@ class Masonry(Drawn):
     def bonds(self) -> tuple[Bond | None, ...]:
         """The bond of each joint, None where it is dry."""
         return self.table.bonds
+
+    def of_pair(self, one: int, other: int) -> Meets | None:
+        """What two blocks without a joint have where they meet, by their numbers, or None where nothing is given."""
+        dry = asked_pair(self.pairs, self.names[min(one, other)], self.names[max(one, other)])
+        if dry is None:
+            return None
+        frequency = dry.frequency or (self._lowest_frequency if dry.xi else 1.0)
+        return Meets(dry.friction, 2 * dry.xi / frequency)
 
     def areas_of(self, k: Array, joint: Integers) -> Array:
         """What part of its joint each contact line stands for [m2], from its k [N/m] and the number of its joint."""

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import applied, dragged, pulls_of
 from ...problem.masonry.limit.collapse import Collapse, limit_of, pushed
+from ...problem.masonry.limit.pose import posed
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
 from ...problem.masonry.lines import slips
 from ...problem.masonry.masonry import Masonry
@@ -45,6 +46,7 @@ def collapse_multiplier(
     associated: bool = True,
     loads: Mapping[str, ArrayLike] | None = None,
     effects: Sequence[Effect] | Effect = (),
+    pose: ArrayLike | None = None,
 ) -> Collapse:
     """The largest horizontal acceleration over g that masonry of rigid blocks stands, and the mechanism beyond it.
 
@@ -82,6 +84,12 @@ def collapse_multiplier(
         effects: what is constant beside the weight, `Load` and `Thrust`, `AddedMass`, whose inertia grows with that of
             the blocks, and `Tie`, which pulls with up to its strength however far it is drawn out, and is not slack.
             Each names its block as in a `MasonryCase`.
+        pose: where the blocks have moved, as a `Response` has them: displacement of the centroids [m] and rotation
+            [rad], positive where tops turn to the right, shape (free, 3), in space displacement and unit quaternion,
+            (free, 7); or of all blocks, with supports that have moved, as `response.at(t)` gives them. Joints are those
+            at rest. Lines press that have no gap beyond the `tolerance` of the masonry, and effects move with their
+            blocks. The multiplier is then the largest force that goes with equilibrium there, below zero where the
+            masonry is held back. Friction is associated, and joints are dry.
 
     Returns:
         The `Collapse`: `multiplier` [-], and the mechanism and the forces of the joints at it.
@@ -103,15 +111,22 @@ def collapse_multiplier(
     dilates = require_flag("associated", associated)
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
+    given = _required(masonry, effects)
+    if pose is not None:
+        masonry.require_dry("collapse_multiplier in a pose")
+        if not dilates:
+            raise ValueError("associated = False goes with masonry at rest; a pose takes associated friction")
+        masonry, given = posed(masonry, pose, given)
     none = direction is None and angle is None
     push = np.zeros(3 if masonry.in_space else 2) if none else horizontal(masonry, direction, angle)
-    given = _required(masonry, effects)
     grown = _loads(masonry, {} if loads is None else loads) + pushed(masonry, push) + dragged(masonry, given, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
     links = tuple(links_of(given).values())
     strength, constant = np.array([tie.law.strength for tie in links]), applied(masonry, given)
     ties = Pulls.of(masonry, pulls_of(masonry, links), strength)
+    if pose is not None:
+        return limit_of(masonry, push, grown, constant, ties=ties, least=-math.inf)
     falls = falling(masonry, constant, ties)
     if falls:
         under = "the weight and the effects" if given else "the weight"

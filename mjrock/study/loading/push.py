@@ -53,6 +53,8 @@ DAMPED = 0.5
 """Damping ratio of what is driven on an actuator that has no damping of its own [-]."""
 STRIKING = 0.05
 """Force of inertia over what is borne beyond which a point is part of a blow [-]."""
+BLOWS = 5
+"""Pieces in a row that are part of blows at any rate, after which a push along a direction ends."""
 OFF = 0.02
 """Difference of the work under a curve and the energy gained that is warned of, over the largest energy [-]."""
 
@@ -116,8 +118,7 @@ class Push(Drawn):
     @property
     def _peak_at(self) -> int:
         """The point of the peak."""
-        borne, inertia = np.abs(self.force) if self.unit == "N" else self.force, np.abs(self.inertia)
-        return int(np.where(inertia <= STRIKING * borne, borne, -1.0).argmax())
+        return int(without_blows(np.abs(self.force) if self.unit == "N" else self.force, self.inertia).argmax())
 
     def __repr__(self) -> str:
         peak = f"{self.peak / 1e3:.4g} kN" if self.unit == "N" else f"{self.peak:.4g} of the weight"
@@ -145,7 +146,8 @@ def push(
     An actuator is driven to displacements one after the other, to and fro for a cyclic test. A direction is that of a
     horizontal force on every block in proportion to its weight. The force is the one that lets the common centroid of
     the blocks move slowly along the direction, so that its work is what the masonry gains and what is taken in it. It
-    ends before `to` where nothing is borne any more and the masonry would go on by itself.
+    ends before `to` where nothing is borne any more and the masonry would go on by itself, and where five pieces in a
+    row are blows at any rate, as where blocks have left the mechanism and strike others.
 
     Args:
         masonry: the masonry.
@@ -213,6 +215,11 @@ class Piece(NamedTuple):
     level: float
     stretch: float
     gained: float
+
+
+def without_blows(borne: Array, inertia: Array) -> Array:
+    """What is borne, below nothing at points that are part of a blow."""
+    return np.where(np.abs(inertia) <= STRIKING * borne, borne, -1.0)
 
 
 def means(values: Array) -> Array:
@@ -291,7 +298,7 @@ class Load:
     def accept(self, piece: Piece) -> None:
         """Go on from the end of a piece."""
         self.start, self.level, self.gained = piece.answer.end, piece.level, piece.gained
-        self.largest = max(self.largest, float(np.abs(piece.force).max()))
+        self.largest = max(self.largest, float(without_blows(np.abs(piece.force), piece.inertia).max()))
 
     def share(self, piece: Piece) -> float:
         """Root mean square of the inertia in a piece, over the largest force so far [-]."""
@@ -365,7 +372,7 @@ class Forced(Load):
         self.least = min(LEAST * self.weight / self.actuator.stiffness, self.to / PIECES)
         self.mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
         going = 0.0 if self.start is None else float(self.mass @ (self.start[1][:, : len(way)] @ way) / self.mass.sum())
-        self.speed, self.stretch = max(going, 0.0), math.nan
+        self.speed, self.stretch, self.blows = max(going, 0.0), math.nan, 0
         self.step = max(self.least, self.speed * FIRST)
 
     @property
@@ -421,6 +428,7 @@ class Forced(Load):
         """Go on from the end of a piece, with the step in which the multiplier would grow as it is to."""
         share = 2.0 if self.strikes(piece) else self.rise / max(self.grown(piece), 1e-9)
         self.speed = 2 * self.step / piece.answer.t[-1] - self.speed
+        self.blows = self.blows + 1 if self.strikes(piece) else 0
         self.step = min(max(self.step * min(max(share, 0.5), 2.0), self.least), self.to / PIECES)
         super().accept(piece)
         self.stretch = piece.stretch
@@ -436,7 +444,8 @@ class Forced(Load):
         if piece.displacement[-1] > self.to:
             return f"moved by {1e3 * self.to:.4g} mm"
         if self.strikes(piece):
-            return ""
+            at = 1e3 * piece.displacement[-1]
+            return f"ends in blows at {at:.4g} mm" if self.blows == BLOWS else ""
         if piece.force[-1] < 0 and self.largest > LEAST:
             return f"goes on by itself from {1e3 * piece.displacement[-1]:.4g} mm"
         return f"nothing gives way to {HIGHEST:g}" if piece.force[-1] >= HIGHEST else ""
