@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ....quantities import GRAVITY, Array, require_flag, require_kind, require_whole, require_within, shown
+from ....quantities import Array, require_flag, require_kind, require_whole, require_within, shown
 from ...wall.bending import VerticalBending
 from ...wall.block import Block
 from ...wall.effects import SideStop
@@ -227,7 +227,6 @@ def bending_between_floors(bending: VerticalBending) -> list[Polygon]:
     wall, crack = bending.wall, bending.crack_height
     thickness, height, deep = 2 * wall.b, 2 * wall.h, bending.floor_depth
     left, right = bending.floor_ends
-    density = bending.load / (GRAVITY * wall.length * (right - left) * deep)
     low, top = height + 0.5 * deep, height + 1.5 * deep
 
     def part(name: str, sides: tuple[float, float], levels: tuple[float, float], density: float = 2000.0) -> Polygon:
@@ -238,7 +237,7 @@ def bending_between_floors(bending: VerticalBending) -> list[Polygon]:
         part("base", (-2 * thickness, 3 * thickness), (-thickness, 0.0)),
         part("lower", (0.0, thickness), (0.0, crack), wall.density),
         part("upper", (0.0, thickness), (crack, height), wall.density),
-        part("floor", (left, right), (height, height + deep), density),
+        part("floor", (left, right), (height, height + deep), bending.floor_density),
         part("inner_guide", (left - thickness, left), (low, top)),
         part("outer_guide", (right, right + thickness), (low, top)),
     ]
