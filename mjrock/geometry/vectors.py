@@ -24,7 +24,7 @@ def vector(values: Array, i: int, axes: Vector) -> Vector:
 
 
 read = by_type(lambda values: (_one, _two, _three)[values.shape[0] - 1])
-"""The vector or the spin in a field of a row, whose type has its size."""
+"""The vector or the angular velocity in a field of a row; its length is that of the field."""
 
 
 def _one(values: Array) -> Vector:
@@ -49,7 +49,7 @@ def components(values: Array, axes: Vector) -> Vector:
 
 @inlined
 def spin_components(values: Array, axes: Vector) -> Vector:
-    """The spin, or the moment, in an array: one number in the plane and three in space."""
+    """The angular velocity, or the moment, in an array: one number in the plane and three in space."""
     if len(axes) == 2:
         return (values[0],)
     return values[0], values[1], values[2]
@@ -57,7 +57,7 @@ def spin_components(values: Array, axes: Vector) -> Vector:
 
 @inlined
 def put(values: Array, a: Vector) -> None:
-    """Write a vector or a spin into an array."""
+    """Write a vector or an angular velocity into an array."""
     values[0] = a[0]
     if len(a) > 1:
         values[1] = a[1]
@@ -67,7 +67,7 @@ def put(values: Array, a: Vector) -> None:
 
 @inlined
 def increase(values: Array, a: Vector) -> None:
-    """Add a vector or a spin to the one in an array."""
+    """Add a vector or an angular velocity to the one in an array."""
     values[0] += a[0]
     if len(a) > 1:
         values[1] += a[1]
@@ -77,7 +77,7 @@ def increase(values: Array, a: Vector) -> None:
 
 @inlined
 def no_spin(axes: Vector) -> Vector:
-    """The spin of a body that does not turn."""
+    """The angular velocity of a body that does not rotate: zero."""
     if len(axes) == 2:
         return (0.0,)
     return 0.0, 0.0, 0.0
@@ -105,7 +105,7 @@ def minus(a: Vector, b: Vector) -> Vector:
 
 @inlined
 def scaled(factor: float, a: Vector) -> Vector:
-    """A vector or a spin times a number."""
+    """A vector or an angular velocity times a number."""
     if len(a) == 1:
         return (factor * a[0],)
     if len(a) == 2:
@@ -133,7 +133,7 @@ def dot(a: Vector, b: Vector) -> float:
 
 @inlined
 def spun(spin: Vector, r: Vector) -> Vector:
-    """Spin x r: the velocity of a point at r from the axis of a spin."""
+    """omega x r: the velocity of a point at r from an axis of rotation."""
     if len(r) == 2:
         return spin[0] * r[1], -spin[0] * r[0]
     return spin[1] * r[2] - spin[2] * r[1], spin[2] * r[0] - spin[0] * r[2], spin[0] * r[1] - spin[1] * r[0]
@@ -141,7 +141,7 @@ def spun(spin: Vector, r: Vector) -> Vector:
 
 @inlined
 def moment(r: Vector, force: Vector) -> Vector:
-    """r x force: the moment of a force at r, with the components of a spin."""
+    """r x force: the moment of a force at r; one number in the plane, three in space."""
     if len(r) == 2:
         return (r[1] * force[0] - r[0] * force[1],)
     return (r[1] * force[2] - r[2] * force[1], r[2] * force[0] - r[0] * force[2], r[0] * force[1] - r[1] * force[0])

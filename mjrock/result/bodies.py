@@ -110,11 +110,11 @@ class Moving:
         return displaced(points - self.case.centroids[block], self.pose_of(block))
 
     def at(self, numbers: Sequence[int] | Integers) -> Moving:
-        """The same at some of the times."""
+        """The body at some of the times."""
         return replace(self, t=self.t[numbers], pose=self.pose[numbers])
 
     def between(self, times: Array) -> Moving:
-        """The same at other times [s], with poses that are linear between those of the samples."""
+        """The body at other times [s]; poses are interpolated linearly between the samples."""
         columns = self.pose.reshape(len(self.t), -1).T
         pose = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1)
         pose = pose.reshape(len(times), *self.pose.shape[1:])

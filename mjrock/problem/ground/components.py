@@ -28,8 +28,8 @@ DIRECTION_IN_NAME = (
     re.compile(r"(?<=[A-Za-z\d-])(\d{3})(?=(?:\.\w*)?$)"),
     re.compile(rf"({UPRIGHT_CODES})(?=(?:\.\w*)?$)"),
 )
-"""Where the name of a file has a direction: between what are no letters, as a channel, after a number as REXEL has it,
-as three digits at the end, and as up or down at the end."""
+"""Where the name of a file states a direction: between characters that are no letters, as a channel, after a number as
+REXEL has it, as three digits at the end, and as up or down at the end."""
 SQUARE = 5.0
 """How far two azimuths of a record may be from square to each other [degrees]."""
 IDENTITY = ("NETWORK", "STATION_CODE", "STATION_NAME", "LOCATION", "EVENT_ID", "EVENT_NAME")

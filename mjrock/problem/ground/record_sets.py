@@ -50,7 +50,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         return _joined(self, other) if isinstance(other, Mapping) else NotImplemented
 
     def __ror__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
-        """The same with the other one first."""
+        """The records of both; those of this set where both have one of a name."""
         return _joined(other, self) if isinstance(other, Mapping) else NotImplemented
 
     @property

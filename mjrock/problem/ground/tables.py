@@ -43,7 +43,7 @@ from .records import (
 UNEVEN_TIME = 0.01
 """How far a printed time may lie from the even grid, as a share of the time step."""
 UNEVEN_ROUNDED = 0.1
-"""The same where the time has so few decimals that it cannot lie closer."""
+"""The same for times that are rounded to so few decimals that they cannot lie closer."""
 SLOW_SAMPLING = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
 ALONE = 5.0

@@ -47,7 +47,7 @@ class Solid:
 
     @property
     def fixed(self) -> bool:
-        """Whether it is the ground, or a fixed block."""
+        """Whether it is the ground or a fixed block, which does not move."""
         return self.body < 0
 
     @cached_property
@@ -125,7 +125,7 @@ class Face(NamedTuple):
 
 
 class Meeting(Protocol):
-    """What a joint says of what it joins: `Joint` and `SpaceJoint` of masonry, `WallJoint` of a wall."""
+    """A joint and the two bodies that it connects: `Joint` and `SpaceJoint` of masonry, `WallJoint` of a wall."""
 
     @property
     def name(self) -> str:
@@ -173,7 +173,7 @@ class WallJoint(NamedTuple):
 
 
 class Standing(Protocol):
-    """What stands: its solids and joints, of a wall or of masonry. What is not asked for is not made."""
+    """The bodies and joints of a wall or of masonry at rest. Each property is computed when it is first read."""
 
     @property
     def solids(self) -> tuple[Solid, ...]:
@@ -199,14 +199,14 @@ def in_space(vectors: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class WallStanding:
-    """A wall on a slab, and where it has a side stop against one of a height [m]."""
+    """A wall on its base, with a side stop of a height [m] or without one."""
 
     wall: Block
     stop_top: float | None
 
     @cached_property
     def solids(self) -> tuple[Solid, ...]:
-        """The wall without its openings, the slab below it, and the one beside it."""
+        """The wall less its openings, the base as a slab below it, and the side stop as a slab beside it."""
         wall, b = self.wall, self.wall.b
         slabs = [("base", -3 * b, 3 * b, -b, 0.0)]
         slabs += [] if self.stop_top is None else [("side", -3 * b, -b, 0.0, self.stop_top)]
@@ -227,7 +227,7 @@ class WallStanding:
 
     @property
     def frames(self) -> JointFrames:
-        """Where they are."""
+        """Position and axes of the base and of the side stop."""
         sides, top = len(self.joints), self.stop_top or 0.0
         names, numbers = ("base", "side")[:sides], np.arange(sides)
         middle = np.array([(0.0, 0.0), (-self.wall.b, 0.5 * top)])[:sides]
@@ -237,7 +237,7 @@ class WallStanding:
 
     @property
     def faces(self) -> tuple[tuple[Face, Face], ...]:
-        """Those of the slabs and of the wall."""
+        """The faces of base and side stop, each with the face of the wall that lies on it."""
         b, foot, right, down = self.wall.b, np.array([-self.wall.b, 0.0]), np.array([1.0, 0.0]), np.array([0.0, -1.0])
         reaches = [(right, (-2 * b, 4 * b), (0.0, 2 * b))]
         if self.stop_top is not None:
@@ -249,7 +249,7 @@ class WallStanding:
 
 
 def _met(parts: Sequence[Convex]) -> tuple[Flags, ...]:
-    """No faces that nothing meets."""
+    """For each part which of its faces lie inside the body: none."""
     return tuple(np.zeros(len(part.faces), dtype=bool) for part in parts)
 
 
