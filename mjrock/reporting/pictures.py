@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
@@ -85,7 +86,10 @@ def wall_drawn(case: Case, words: Words) -> Figure:
         if effect.told is None:
             continue
         x, beside = (left.get_xlim()[0], (12, 3)) if effect.on_face else (case.block.b, (26, -10))
-        note = left.annotate(told_name(name, effect, words), (x, effect.height), beside, **look)
+        said, z = told_name(name, effect, words), effect.height
+        if len(effect.outline):  # below the crack of wedges there is room
+            x, z, beside, said = left.get_xlim()[0], 0.15 * z, (2, 0), fill(said, 12)
+        note = left.annotate(said, (x, z), beside, **look)
         note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
     for ax, title in ((left, "section"), (right, "elevation")):
         ax.axis("off")
