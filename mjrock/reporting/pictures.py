@@ -35,7 +35,7 @@ FAR = 2.0
 """A limit that is farther than the motion by this factor would flatten it."""
 NAMED = 5
 """Most runs of one record that are told apart by their lines."""
-LOW = 0.2
+NEAR_THE_AXIS = 0.2
 """Height over that of a diagram below which a label would lie on its axis [-]."""
 OPENED = 0.06
 """Rotation at which the mechanism is drawn [rad]."""
@@ -133,7 +133,7 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
         colour = HOLDS if state.ratio >= 1 else FAILS
         ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
         ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
-        below = (-4, -11) if held > LOW * top else (-16, 4)  # the axis is near the curve
+        below = (-4, -11) if held > NEAR_THE_AXIS * top else (-16, 4)  # the axis is near the curve
         for d, a, beside in ((state.capacity, held, below), (state.demand, stiff * state.demand, (4, 4))):
             ax.annotate(words(name), (d, a), beside, textcoords="offset points", fontsize=SMALL, zorder=6)
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
