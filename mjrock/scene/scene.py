@@ -49,7 +49,7 @@ class Scene:
         title: what the scene is, in words, for the model text.
         facts: numbers and texts that the model records.
         made_of: solids and joints of the bodies and of what they stand on; None of a scene that is written by hand.
-        springs: what the joints are made of, or None.
+        springs: what the joints of masonry are made of, or None.
 
     Raises:
         ValueError: for parts that do not fit the bodies, two things of one name, or bodies that do not stand.
