@@ -11,13 +11,11 @@ from typing import Any
 import numpy as np
 
 from ..geometry.frames import SPACE
-from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers
 from ..result.forces import Forces, Gathered, forces_of
 from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion, thinned
-from ..result.problem import problem_of
 from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
 from ..result.ties import Plastic, plastic_of, told_of_ties
@@ -38,18 +36,25 @@ POSITION_ROUNDING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s], and the times of
-    the checks [s]."""
+    """A run by explicit steps: what stood, what was kept of the motion, and when [s], and the times of the checks
+    [s]."""
 
-    case: AnyCase
-    contacts: Contacts | None
-    scene: Scene
     setup: Setup
     followed: Followed
     books: Books
     samples: Samples
     t: Array
     checked: Array
+
+    @property
+    def case(self) -> AnyCase:
+        """What was asked."""
+        return self.setup.problem.case
+
+    @property
+    def scene(self) -> Scene:
+        """What stood."""
+        return self.setup.scene
 
     @property
     def links(self) -> Iterator[tuple[Any, Row, str]]:
@@ -156,8 +161,7 @@ def reading_of(run: Run) -> Reading:
     left = search is not None and bool(search.handed_over.any())
     cracked = dict(item for law in system.laws for item in law.cracked(run.scene).items())
     beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked)
-    problem = problem_of(run.case, run.contacts)
-    return problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
+    return run.setup.problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
 
 
 def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
