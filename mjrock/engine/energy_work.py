@@ -24,8 +24,8 @@ from ..result.ledger import Ledger
 from ..scene.course import Course
 from ..scene.dampers import taken_by_dampers
 from ..scene.ground import Shaking, mean_acceleration
+from ..scene.potential import breaks, spring_energy
 from ..scene.scene import Scene
-from ..scene.structure import breaks, spring_energy
 from .record import Record, StepKinds, Steps, Windows
 from .rows import Points, Step, impratio_of, points_of, row_of
 from .sliding import slip_of

@@ -23,8 +23,7 @@ from ..quantities import GRAVITY, Array
 from ..scene.checks import GROUND
 from ..scene.scene import Scene
 from .rows import ContactRows, Step, points_of, set_rows
-from .shapes import in_space, meshes, sites, world
-from .tags import section, tag, value_text
+from .shapes import in_space, meshes, section, sites, tag, value_text, world
 
 HEAD = """\
 <mujoco model="rocking wall">

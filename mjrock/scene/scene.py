@@ -26,9 +26,8 @@ from .checks import require_on
 from .dampers import Dampers
 from .masses import kinetic_energies
 from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links
-from .potential import Potential, highest_frequency, rocking_frequency, tie_frequency
+from .potential import Potential, Structure, energies, highest_frequency, rocking_frequency, tie_frequency
 from .rest import lowered, settled
-from .structure import Structure, energies
 
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
@@ -181,7 +180,7 @@ class Scene:
         return self.accounts(self.at_rest.reshape(1, -1).copy(), np.zeros((1, len(self.bodies.masses))))[0][0]
 
     def accounts(self, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
-        """Kinetic, potential and elastic energy, and what ties have taken, see `structure.energies`."""
+        """Kinetic, potential and elastic energy, and what ties have taken, see `potential.energies`."""
         return energies(self.structure, q, v, broken)
 
     def energy(self, pose: Array, velocity: Array) -> Array:

@@ -6,7 +6,6 @@ import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -25,8 +24,8 @@ from ...result.response import End, Response, State
 from ...result.start import require_unbreakable
 from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
 from ...scene.course import Course
+from ...scene.potential import energies
 from ...scene.scene import Scene
-from ...scene.structure import energies
 from ..estimate import warn_if_plain_is_slow
 from ..mjcf import Keyframe
 from ..model import SimulationError, released
@@ -233,7 +232,7 @@ def require_plain(case: AnyCase) -> None:
             )
 
 
-def response_of_plain(run: PlainRun, settings: dict[str, Any], options: Options) -> Response:
+def response_of_plain(run: PlainRun, settings: dict[str, float], options: Options) -> Response:
     """The response of a run."""
     model, at, motion = run.of, run.at, SampledMotion(run.at.pose, run.at.velocity, run.energy)
     elsewhere = bool((at.elastic[:, -1] > 0).any())

@@ -19,8 +19,7 @@ from ...quantities import GRAVITY
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
 from ..mjcf import SPARSE_FROM, Keyframe, camera_of, extent_of, forced, linked
-from ..shapes import BALL, HINGE, in_space, inertia_of_body, sites, tints
-from ..tags import section, tag
+from ..shapes import BALL, HINGE, in_space, inertia_of_body, section, sites, tag, tints
 from .pairs import POINTS, PairRows, Pairs
 from .pieces import Piece
 
