@@ -9,7 +9,7 @@ step, judge (how long the next may be). The rules are in modules of their own: `
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -287,7 +287,7 @@ def allowed_step(setting: Setting, pace: Pace, openings: Openings, h: float) -> 
 @compiled
 def fitted_loop(
     memory: EngineArrays, setting: Setting, pace: Pace, state: Progress, clock: StepClock, record: Record
-) -> tuple[tuple[float | bool, ...], int]:
+) -> tuple[tuple[Any, ...], int]:
     """Steps that fit the motion until the record is full or the run is over.
 
     Returns the values of the clock, see `compiled`, and how many steps they were.

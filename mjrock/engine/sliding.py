@@ -60,7 +60,8 @@ class Sliding(NamedTuple):
     def of(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
         """No contact slides at the start."""
         none, ways = np.zeros((2, len(points.rubs)), dtype=np.bool_), np.zeros_like(points.places.normal)
-        return cls(coulomb and bool(points.rubs.any()), method, *none, np.zeros(len(points.rubs)), ways)
+        rubs = coulomb and bool(points.rubs.any())
+        return cls(rubs, method, none[0], none[1], np.zeros(len(points.rubs)), ways)
 
 
 class Slipping(NamedTuple):

@@ -110,9 +110,9 @@ class Scene:
     def places(self) -> Places:
         """The contacts for the compiled functions."""
         points = self.contacts
-        ends_of = points.body, points.at, points.face_body, points.face_at
-        law = points.joint, points.k, points.c, points.friction, points.tension, points.cohesion
-        return Places(self.freedom.axes, *ends_of, points.normal, self.bodies.between(*ends_of), self.radius, *law)
+        between = self.bodies.between(points.body, points.at, points.face_body, points.face_at)
+        columns = {name: getattr(points, name) for name in Places._fields if hasattr(points, name)}
+        return Places(axes=self.freedom.axes, between=between, radius=self.radius, **columns)
 
     @cached_property
     def sense(self) -> Array:
