@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+import html
 import inspect
+import os
 import re
 import sys
 import types
@@ -14,9 +16,13 @@ from typing import Any
 import matplotlib
 from docutils import nodes
 from latex2mathml.converter import convert
+from matplotlib.figure import Figure
+from sphinx.util.inspect import TypeAliasForwardRef
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
+
+import made_pages  # noqa: E402
 
 import mjrock  # noqa: E402
 from scripts.studies.in_the_browser import falling_arch  # noqa: E402
@@ -25,6 +31,7 @@ matplotlib.use("agg")
 
 project = "mjrock"
 author = "The mjrock developers"
+SENTENCE = "Rigid blocks of masonry under earthquakes, in MuJoCo, by explicit steps and by rocking theory."
 copyright = "the mjrock developers, Apache-2.0"
 release = version = mjrock.__version__
 
@@ -38,6 +45,7 @@ nitpicky = True  # a name that leads nowhere is an error
 nitpick_ignore_regex = [
     ("py:class", r"(numpy|matplotlib|collections|concurrent|pathlib|os|typing|mujoco|pandas)\b.*"),
     ("py:class", r"mjrock\.[\w.]+"),
+    ("py:class", r"Array|ArrayLike|Flags|Integers"),
 ]
 
 myst_heading_anchors = 3
@@ -46,6 +54,8 @@ html_math_renderer = "mathml"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
+autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "Flags", "Integers")}
+TypeAliasForwardRef.__repr__ = lambda alias: alias.name  # type: ignore[method-assign]  # inside a tuple too
 autodoc_default_options = {"members": True}
 python_maximum_signature_line_length = 88
 napoleon_numpy_docstring = False
@@ -75,12 +85,20 @@ html_static_path = ["static"]
 LIVE = HERE / "build" / "live"
 html_extra_path = ["build/live"]
 html_css_files = ["mjrock.css"]
+html_favicon = html_logo = "static/mark.svg"
+html_theme_options = {"sidebar_hide_name": False}
+html_baseurl = os.environ.get(
+    "READTHEDOCS_CANONICAL_URL", ""
+)  # where a card of the site is found, if it is put on the web
 html_copy_source = False
 html_show_sourcelink = False
 templates_path: list[str] = []
 
-LISTED = re.findall(r"^\.\. auto\w+:: (mjrock[\w.]*)$", (HERE / "api.md").read_text("utf-8"), re.MULTILINE)
-PUBLIC = {name.rpartition(".")[2]: name for name in LISTED}
+PUBLIC = {
+    full.rpartition(".")[2]: full
+    for page in sorted((HERE / "api").glob("*.md"))
+    for _, full in made_pages.NAMED.findall(page.read_text("utf-8"))
+}
 """Where the reference has each public name."""
 MARKS = re.compile(r"(``[^`]*``)|`([^`]*)`|([|*])")
 """Text between backticks, or a mark that reStructuredText would take for its own."""
@@ -117,7 +135,8 @@ def plain(app: object, what: str, name: str, obj: object, options: object, lines
 def without_ranges(
     app: object, what: str, name: str, obj: object, options: object, signature: str | None, returns: str | None
 ) -> tuple[str | None, str | None]:
-    """A signature without the declared ranges of its numbers, which the text has."""
+    """A signature without the declared ranges of numbers, which the text has, and `...` for what a factory makes."""
+    signature = signature and signature.replace("<factory>", "...")
     return signature and re.sub(r"(?:\w+\.)*Annotated\[(.+?), Within\([^()]*\)\]", r"\1", signature), returns
 
 
@@ -138,8 +157,21 @@ def write_live_view() -> None:
     mjrock.plotting.view(falling_arch(), LIVE / "arch_view.html")
 
 
+def write_card() -> None:
+    """Write the picture that a message shows which links to the site: a façade as it falls, and the name."""
+    film = made_pages.whole("facade_in_space.gif", 0.7)
+    figure = Figure(figsize=(12.0, 6.3), dpi=100)
+    ax = figure.add_axes((0.0, 0.2, 1.0, 0.8))
+    ax.imshow(film.crop((0, film.height // 9, film.width, 8 * film.height // 9)), aspect="equal")
+    ax.axis("off")
+    figure.text(0.04, 0.09, "mjrock", fontsize=44, weight="bold", va="center")
+    figure.text(0.96, 0.09, "rocking masonry in MuJoCo and by theory", fontsize=24, va="center", ha="right")
+    figure.savefig(LIVE / "card.png")
+
+
 compile_loops()
 write_live_view()
+write_card()
 
 
 def as_mathml(display: str) -> Callable[[Any, nodes.math | nodes.math_block], None]:
@@ -152,8 +184,29 @@ def as_mathml(display: str) -> Callable[[Any, nodes.math | nodes.math_block], No
     return visit
 
 
+def made(app: Any, page: str, source: list[str]) -> None:
+    """The text of a page as the site has it, which is made anew when what it is made of changes."""
+    source[0] = made_pages.made(page, source[0])
+    for other in made_pages.made_of(page):
+        app.env.note_dependency(other)
+
+
+def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
+    """Load pictures below the first as they come into sight, and say what a link to a page shows."""
+    first, *others = re.split(r"(?=<img )", context.get("body") or "")
+    above, others = "".join([first, *others[:1]]), others[1:]
+    context["body"] = above + "".join(part.replace("<img ", '<img loading="lazy" ', 1) for part in others)
+    title = re.sub(r"<[^>]*>", "", context.get("title", project))
+    said = {"og:title": title, "og:site_name": project, "og:image": f"{app.config.html_baseurl}card.png"}
+    said |= {"og:description": SENTENCE, "twitter:card": "summary_large_image"}
+    tags = "".join(f'<meta property="{name}" content="{html.escape(text)}">' for name, text in said.items())
+    context["metatags"] = context.get("metatags", "") + tags
+
+
 def setup(app: object) -> None:
     """Write formulas, and read docstrings as plain text, before napoleon does, and signatures without ranges."""
     app.add_html_math_renderer("mathml", (as_mathml("inline"), None), (as_mathml("block"), None))  # type: ignore[attr-defined]
     app.connect("autodoc-process-docstring", plain, priority=100)  # type: ignore[attr-defined]
     app.connect("autodoc-process-signature", without_ranges)  # type: ignore[attr-defined]
+    app.connect("source-read", made)  # type: ignore[attr-defined]
+    app.connect("html-page-context", finished)  # type: ignore[attr-defined]

@@ -59,6 +59,7 @@ if TYPE_CHECKING:
     from .problem.wall.bending import VerticalBending
     from .problem.wall.block import Block
     from .problem.wall.case import Case
+    from .problem.wall.corner import Corner
     from .problem.wall.damper import Damper, FrictionDamper
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
     from .problem.wall.section import Gable, Opening
@@ -101,7 +102,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
     "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "Compound",
-    "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "Dry",
+    "ContactParameters", "ContactWarning", "Contacts", "Corner", "CoulombFriction", "Damper", "DampingLaw", "Dry",
     "DynamicCheck", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion",
     "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters",
     "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact",

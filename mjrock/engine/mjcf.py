@@ -52,7 +52,6 @@ HEAD = """\
     <texture name="paving" type="2d" builtin="checker" rgb1="0.72 0.72 0.7" rgb2="0.66 0.66 0.64" width="64"
              height="64"/>
     <material name="paving" texture="paving" texrepeat="1 1" texuniform="true"/>
-    <material name="brick" rgba="0.7 0.33 0.23 1"/>
     <material name="plaster" rgba="0.85 0.82 0.76 1"/>{meshes}
   </asset>
 """

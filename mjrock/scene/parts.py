@@ -18,8 +18,9 @@ from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
+from ..problem.masonry.laws.pairs import Meets
 from ..problem.wall.effect import Effect, LinkLaw
-from ..problem.wall.effects import forces_of, links_of
+from ..problem.wall.effects import constant_forces_of, link_effects
 from ..quantities import Array, Flags, Integers, frozen
 from .checks import GROUND, keep_array, require_inertia, require_others
 from .masses import mass_diagonals, principal, products_of
@@ -292,6 +293,8 @@ class JointSprings(NamedTuple):
         friction: coefficient [-].
         residual: the same of a joint that has lost its bond [-].
         points: contact lines of a joint of the plane, and of each side of a joint in space.
+        of_pair: what two blocks without a joint have where they meet, by their numbers, or None where their joints say
+            it; None where nothing is given.
     """
 
     k_n: Array
@@ -300,6 +303,7 @@ class JointSprings(NamedTuple):
     friction: Array
     residual: Array
     points: Integers
+    of_pair: Callable[[int, int], Meets | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -329,7 +333,7 @@ def attachments(
         place: where an effect acts, from the origin of the world, at rest [m].
         centroids: of the bodies at rest [m], shape (bodies, d).
     """
-    links, forces, d = links_of(effects), forces_of(effects), centroids.shape[1]
+    links, forces, d = link_effects(effects), constant_forces_of(effects), centroids.shape[1]
 
     def on(some: Collection[Effect]) -> tuple[Integers, Array, Array]:
         bodies = number[[effect.block for effect in some]]

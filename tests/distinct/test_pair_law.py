@@ -31,7 +31,8 @@ def scene(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
         SimpleNamespace(below=low, above=high, width=width, area=2 * width, length=2.0)
         for (low, high), width in zip(ends, widths, strict=True)
     ]
-    springs = {name: np.ones(len(ends)) for name in ("k_n", "k_s", "retardation")} | {"residual": residual}
+    springs = {name: np.ones(len(ends)) for name in ("k_n", "k_s", "retardation")}
+    springs |= {"residual": residual, "of_pair": None}
     return SimpleNamespace(
         standing=SimpleNamespace(solids=blocks, joints=joints),
         springs=SimpleNamespace(**springs | {name: np.array(each) for name, each in known.items()}),

@@ -1,10 +1,10 @@
 """Pictures of forces: rendered, and looked at where statics says that a line passes, and beside it."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from everyday import slow
 from masonry_blocks import GROUND, box
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -83,14 +83,15 @@ def test_bars_are_along_the_force_and_as_long():
         assert not any(coloured(figure, ax, [place + half + [0, 0.05], place - half - [0, 0.05], place + BESIDE]))
 
 
-@pytest.mark.parametrize("in_space", [slow(False), True])
+@pytest.mark.slow
+@pytest.mark.parametrize("in_space", [False, True])
 def test_a_film_shows_the_line_where_blocks_have_gone(in_space):
     """Magnified, the picture has the line where it has the blocks."""
     run = corbelled(in_space)
     moved = run.pose.copy()
     moved[-1, :, 0] += 0.01
     of = (Solids if in_space else Bodies).of(run, 50.0, limits=[(-1, 2), *[(-1, 1)] * in_space, (-0.5, 2)])
-    of = type(of)(**{**vars(of), "t": run.t[[0, -1]], "poses": moved[[0, -1]]})
+    of = replace(of, moving=replace(of.moving, t=run.t[[0, -1]], pose=moved[[0, -1]]))
     figure, update = animation.scene(of, [], run.case, pressed=(run, "thrust"))
     ax = figure.axes[0]
     places = np.insert(PLACES, 1, 0.0, axis=1) if in_space else PLACES

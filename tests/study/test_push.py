@@ -1,6 +1,7 @@
 """Slow pushes against closed forms: what a panel bears as it slides or turns, with its softening branch."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
-from mjrock.study.loading.push import warn_if_fast
+from mjrock.study.loading.push import BLOWS, Forced, Piece, warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 
@@ -62,6 +63,19 @@ def test_a_blow_is_no_strength(turned):
     struck = replace(turned, displacement=np.arange(4.0), force=np.array([0.4, -1.0, 0.9, 2.0]), inertia=inertia)
     assert struck.peak == 1.0
     assert struck.inertia_share == pytest.approx(np.sqrt((0.01**2 + 2 * 0.02**2 + 0.5**2) / 4))
+
+
+def test_what_blows_bear_is_nothing_to_compare_inertia_with():
+    """Five pieces in a row that are blows end a push; their own forces do not hide that they are."""
+    masonry, still = panel(0.9), np.zeros(4)
+    load = Forced(masonry, (), {}, None, mr.Actuator(None, None, 1, None, 1e6), 0.1)
+    blow = Piece(still + 0.01, still + 2.0, still + 1.0, still, SimpleNamespace(t=[1.0], end=None), 0.0, 0.0, 0.0)
+    load.accept(blow._replace(force=still + 0.3, inertia=still))
+    for _ in range(BLOWS):
+        assert not load.done(blow)
+        load.accept(blow)
+    assert load.done(blow) == "ends in blows at 10 mm"
+    assert load.largest == 0.3
 
 
 @pytest.mark.parametrize(("unit", "peak"), [("N", 2.0), ("-", 1.0)])
@@ -334,6 +348,18 @@ def test_local_damping_needs_springs_along_the_faces():
 def test_what_is_wrong_is_named(given, said):
     with pytest.raises(ValueError, match=said):
         mr.push(panel(0.9), *given)
+
+
+def test_steps_that_gain_energy_are_told_with_what_a_push_takes(monkeypatch):
+    """A push has no argument timestep."""
+
+    def gains(case, **options):
+        raise RuntimeError("0.4 J, 0.40% of the energy, appeared from nowhere by t = 2 s; take timestep = 1 s")
+
+    monkeypatch.setattr("mjrock.study.loading.push.solve_explicit", gains)
+    with pytest.raises(RuntimeError, match=r"from nowhere by t = 2 s, in a piece .* local_damping = 0\.1") as told:
+        mr.push(panel(0.9), 1, 0.1)
+    assert "timestep" not in str(told.value)
 
 
 def test_an_angle_is_for_a_direction_in_space():

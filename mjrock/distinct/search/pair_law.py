@@ -5,7 +5,8 @@ mortared joint without its bond. So a joint that has slid is as stiff as one tha
 none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more, since a block
 of a wall has joints on two sides. Where their faces lie over each other by less than a tenth of the area of such a
 joint, they have less in proportion. So blocks that only touch along their edges carry no force. The places where a pair
-touches share its stiffness.
+touches share its stiffness. Friction and damping of two that had none are those that `pairs` of the masonry gives them,
+if it does.
 
 A block without any joint is loose. It has what a joint over its largest face would have, per area that of the softest
 joint of the masonry. Where it is the softer block, the pair has that over the area on which the two faces lie, as a
@@ -22,12 +23,13 @@ others.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...geometry.hull import Side, area_vector
+from ...problem.masonry.laws.pairs import Meets
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
@@ -72,6 +74,7 @@ class PairLaw(NamedTuple):
             friction, (p,).
         of_block: likewise of each block as a pair without a joint takes it.
         fixed, loose: which blocks are fixed, and which have no joint, shape (blocks,).
+        given: friction and dashpot over spring of pairs without a joint that were asked for.
     """
 
     jointed: Integers
@@ -79,6 +82,7 @@ class PairLaw(NamedTuple):
     of_block: tuple[Array, Array]
     fixed: Flags
     loose: Flags
+    given: GivenPairs
 
     @classmethod
     def of_joints(cls, scene: Scene, lines: Rows) -> PairLaw:
@@ -100,13 +104,13 @@ class PairLaw(NamedTuple):
         loose = shared[:, 0] == 0
         shared[loose], rough[loose] = _of_loose(scene, sums, friction, loose)
         fixed = np.array([solid.fixed for solid in solids])
-        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose)
+        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose, GivenPairs(springs.of_pair, blocks))
 
     @property
     def slowest(self) -> float:
         """The largest dashpot over its spring [s]."""
         shared = np.concatenate([self.of_pair[0], self.of_block[0]])
-        return float((shared[:, 1] / shared[:, 0]).max())
+        return max(float((shared[:, 1] / shared[:, 0]).max()), self.given.slowest)
 
     def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
         """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
@@ -116,6 +120,7 @@ class PairLaw(NamedTuple):
         friction, had = self.of_block[1][ends].min(axis=0), are_among(pair, self.jointed)
         there = np.searchsorted(self.jointed, pair[had])
         shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
+        self.given.take(pair, shared, friction, ~had)
         over = area / shared[:, -1]
         part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
@@ -135,6 +140,38 @@ class PairLaw(NamedTuple):
         alike = ~fixed.any(axis=0) & ~(less | more).any(axis=1)
         rules |= alike & self.loose[ends].any(axis=0)  # the loose one of two
         return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
+
+
+class GivenPairs:
+    """Friction and dashpot over spring of pairs of blocks without a joint, each of which is asked for once.
+
+    Args:
+        of_pair: see `JointSprings`.
+        blocks: how many there are.
+    """
+
+    def __init__(self, of_pair: Callable[[int, int], Meets | None] | None, blocks: int) -> None:
+        self.of_pair, self.blocks = of_pair, blocks
+        self.known: dict[int, Meets | None] = {}
+
+    @property
+    def slowest(self) -> float:
+        """The largest dashpot over its spring of those that were asked for [s]."""
+        return max((meets.retardation for meets in self.known.values() if meets is not None), default=0.0)
+
+    def take(self, pair: Integers, shared: Array, friction: Array, alone: Flags) -> None:
+        """Write dashpots (n, 5) and friction (n,) of the pairs that have no joint and are given."""
+        if self.of_pair is None:
+            return
+        for number in np.unique(pair[alone]).tolist():
+            if number not in self.known:
+                self.known[number] = self.of_pair(*divmod(number, self.blocks))
+            if (meets := self.known[number]) is not None:
+                there = alone & (pair == number)
+                sprung = there & np.isfinite(shared[:, 2])
+                friction[there] = meets.friction
+                shared[there, 1] = meets.retardation * shared[there, 0]
+                shared[sprung, 3] = meets.retardation * shared[sprung, 2]
 
 
 def part_of_face(over: Array) -> Array:

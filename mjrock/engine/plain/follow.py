@@ -271,7 +271,7 @@ class JointForces:
     """What presses on joints and fixed blocks.
 
     Args:
-        joint: number of the joint of each pair, shape (p,).
+        joint: number of the joint of each pair and of all others, how many there are where it is none, shape (p + 1,).
         above: number of the body above each joint, shape (joints,).
         fixed: number of each fixed block by its name.
     """
@@ -294,7 +294,7 @@ class JointForces:
             for piece, sense in ((engine.pieces[first], -1.0), (engine.pieces[second], 1.0)):
                 if piece.block in self.fixed:
                     held[self.fixed[piece.block]] -= sense * force[ways]
-                elif pair < len(self.joint) and piece.body == self.above[self.joint[pair]]:
+                elif self.joint[pair] < len(self.above) and piece.body == self.above[self.joint[pair]]:
                     about = moment if freedom != PLANE else moment[1:2]
                     loads[self.joint[pair]] += sense * np.concatenate([force[ways], about])
         return loads, held

@@ -2,16 +2,19 @@
 
 A joint has k_n times its area, and MuJoCo finds four points where two faces lie on each other, two where one stands on
 an edge: a point has a quarter of the joint. Any two pieces without a joint meet with the frequency and the damping of
-the median joint: MuJoCo then gives each two of them the stiffness that their masses ask for.
+the median joint: MuJoCo then gives each two of them the stiffness that their masses ask for. Those for which the
+masonry gives friction and damping are pairs with that stiffness.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations, product
 
 import numpy as np
 
 from ...method import METHOD
+from ...problem.masonry.laws.pairs import Meets
 from ...quantities import Array, Integers
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
@@ -32,11 +35,11 @@ POINTS = 4
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Neighbours, and in the last place what any two others have, as if their inverse weight were one.
+    """Neighbours and others whose law is given, and last what any two others have, as if their inverse weight were one.
 
     Args:
         pieces: numbers of the two pieces of each pair, shape (p, 2).
-        joint: number of their joint, shape (p,).
+        of_joint: number of their joint, or how many joints there are where they have none, shape (p + 1,).
         weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (p + 1,).
         k, c: spring [N/m] and dashpot [N s/m] of one point, shape (p + 1,).
         friction: coefficient of friction [-], shape (p + 1,).
@@ -44,7 +47,7 @@ class Pairs:
     """
 
     pieces: Integers
-    joint: Integers
+    of_joint: Integers
     weight: Array
     k: Array
     c: Array
@@ -67,8 +70,16 @@ class Pairs:
         law = np.stack([weight, k, c, friction])
         others = [1.0, *np.median([weight * k, weight * c, friction], axis=1)]
         held = METHOD.held_masses if len(bodies.names) == 1 else HELD_MASSES
-        weight, k, c, friction = np.column_stack([law, others])
-        return cls(found, contacts.joint[some], weight, k, c, friction, held)
+        alone, given = _given(scene, pieces, found)
+        heavy = inverse[carrier[alone]].sum(axis=1)
+        stiff = np.divide(others[1], heavy)
+        law = np.column_stack([law, [heavy, stiff, given[:, 1] * stiff, given[:, 0]]])
+        found = np.concatenate([found, alone])
+        order = np.lexsort(found.T[::-1])
+        none = np.full(len(alone) + 1, len(contacts.joints))
+        of_joint = np.append(contacts.joint[some], none)[np.append(order, len(found))]
+        weight, k, c, friction = np.column_stack([law[:, order], others])
+        return cls(found[order], of_joint, weight, k, c, friction, held)
 
     def rows(self, timestep: float) -> PairRows:
         """What MuJoCo needs for the pairs at a step [s], see `mjrock.engine.rows`."""
@@ -93,6 +104,24 @@ class PairRows:
     impedance: Array
     grip: Array
     impratio: float
+
+
+def _given(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers, Array]:
+    """Pieces of two blocks without a joint whose law the masonry gives, shape (n, 2), and the friction and dashpot over
+    spring of each two, shape (n, 2)."""
+    alone, given = list[tuple[int, int]](), list[Meets]()
+    if scene.springs is not None and scene.springs.of_pair is not None:
+        names = [solid.name for solid in scene.standing.solids]
+        jointed = {frozenset((pieces[a].block, pieces[b].block)) for a, b in found.tolist()}
+        by_block = {name: [i for i, each in enumerate(pieces) if each.block == name and each.meets] for name in names}
+        for i, j in combinations(range(len(names)), 2):
+            one, other = by_block[names[i]], by_block[names[j]]
+            held = all(pieces[k].body == GROUND for k in (*one[:1], *other[:1]))
+            if held or {names[i], names[j]} in jointed or (meets := scene.springs.of_pair(i, j)) is None:
+                continue
+            pairs = [(min(pair), max(pair)) for pair in product(one, other)]
+            alone, given = [*alone, *pairs], [*given, *[meets] * len(pairs)]
+    return np.reshape(alone, (-1, 2)).astype(np.int64), np.reshape(given, (-1, 2)).astype(float)
 
 
 def _carriers(scene: Scene, pieces: list[Piece]) -> tuple[Integers, Integers]:

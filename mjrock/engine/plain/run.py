@@ -138,7 +138,7 @@ class PlainRun:
         (parts, taken), at, work, scene = self.stored, self.at, self.at.work, self.of.scene
         lost = -(work.pressed - work.pressed[0]) - (at.elastic - at.elastic[0])
         groups = (*scene.contacts.joints, "encounters")
-        of = np.append(self.of.pairs.joint, len(groups) - 1)
+        of = self.of.pairs.of_joint
         dashpots = {name: lost[:, of == i].sum(axis=1) for i, name in enumerate(groups)}
         if len(scene.bodies.names) == 1 and not self.of.problem.case.joints:
             dashpots.pop("encounters")
@@ -200,7 +200,7 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
     warn_if_plain_is_slow(scene, course.duration, h)
     model, watch = PlainModel(problem, scene, course), Stopwatch()
     frames = case.standing.frames
-    gathers = JointForces(model.pairs.joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
+    gathers = JointForces(model.pairs.of_joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:
         samples = follow(model.engine(h), course, steps, stride, gathers if options.forces else None)
@@ -235,7 +235,8 @@ def require_plain(case: AnyCase) -> None:
 def response_of_plain(run: PlainRun, settings: dict[str, float], options: Options) -> Response:
     """The response of a run."""
     model, at, motion = run.of, run.at, SampledMotion(run.at.pose, run.at.velocity, run.energy)
-    elsewhere = bool((at.elastic[:, -1] > 0).any())
+    encounters = model.pairs.of_joint == len(model.scene.contacts.joints)
+    elsewhere = bool((at.elastic[:, encounters] > 0).any())
     beside = BesidePoses(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
     reading = model.problem.read(model.scene, at.t, motion, released=model.course.released, beside=beside)
     plastic, account = run.plastic(), run.ledger()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, NamedTuple
@@ -18,15 +17,16 @@ from ...quantities import (
     require_real,
     require_text,
     shown,
+    warn_of,
     within_ranges,
 )
 from ..wall.block import Block
 from ..wall.case import Case
-from .interface import Interface, Points, reference_frequency
+from .interface import Interface, PointCount, reference_frequency
 from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named, rebound_over_uplift
-from .restitution import UNLIKE, Restitution
+from .restitution import ANOTHER_WALL, Restitution
 
-HOLDS = 10.0
+HOLDS_NEARLY = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
 OfBase = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
 """Stiffness of the base of a wall."""
@@ -72,7 +72,7 @@ def _doubts(
             f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on the "
             "contacts of this one (docs/damping.md); CALIBRATED is made for them"
         )
-    if side_friction or (friction is not None and friction < HOLDS):
+    if side_friction or (friction is not None and friction < HOLDS_NEARLY):
         yield (
             f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
             f"side_friction = {side_friction}; matched_contacts finds the damping for them"
@@ -117,7 +117,7 @@ class Contacts:
         xi_base: float,
         k_side: OfSide = None,
         xi_side: float = 0.0,
-        points: Points = 2,
+        points: PointCount = 2,
         friction: Rubbing = None,
         side_friction: Rubbing = None,
         law: str = "given",
@@ -161,7 +161,7 @@ class Contacts:
         k_base: OfBase,
         k_side: OfSide = None,
         law: AnyLaw | str | None = None,
-        points: Points = 2,
+        points: PointCount = 2,
         amplitude: Annotated[float, Within(1e-3, 1, name="amplitude theta_0/alpha")] = 0.5,
         friction: Rubbing = None,
         side_friction: Rubbing = None,
@@ -196,17 +196,16 @@ class Contacts:
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
             for doubt in _doubts(law, points, k_side, friction, side_friction):
-                warnings.warn(doubt, stacklevel=3)
+                warn_of(doubt)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
         if unlikely := e.doubt(wall, None):
-            warnings.warn(unlikely, Implausible, stacklevel=3)
+            warn_of(unlikely, Implausible)
         if k_side is not None and (lifts := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
-            warnings.warn(
+            warn_of(
                 f"no rebound can lift an edge as e asks for it from {amplitude:g} alpha: it would turn the wall "
                 f"{lifts:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then "
-                f"elastic or larger than asked for. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3",
-                stacklevel=3,
+                f"elastic or larger than asked for. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3"
             )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
@@ -235,13 +234,12 @@ class Contacts:
         Warns:
             Implausible: if the damping was chosen for a stop of another height.
         """
-        if self.stop_top is not None and not math.isclose(top, self.stop_top, rel_tol=UNLIKE):
-            warnings.warn(
+        if self.stop_top is not None and not math.isclose(top, self.stop_top, rel_tol=ANOTHER_WALL):
+            warn_of(
                 f"the damping was chosen for a side stop up to {self.stop_top:.4g} m, and that of the case reaches "
                 f"{top:.4g} m; take Restitution.from_geometry(wall, stop_top={top:.4g}) and "
                 f"matched_contacts(..., side_stop=SideStop({top:.4g}))",
                 Implausible,
-                stacklevel=3,
             )
         return self._stopping if top == self._stopping.face else replace(self._stopping, face=top)
 

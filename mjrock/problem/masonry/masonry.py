@@ -43,8 +43,8 @@ from .blocks.joints_in_space import SpaceJoint, joints_in_space
 from .blocks.polygon import Polygon
 from .blocks.polyhedron import Polyhedron
 from .builders.in_plane import (
-    MOST_BLOCKS,
-    Ends,
+    MOST_BODIES,
+    Taper,
     arch_of,
     bending_between_floors,
     between_beams,
@@ -57,19 +57,18 @@ from .builders.in_plane import (
 from .builders.in_space import (
     box_on_ground,
     column_of,
-    corner_of,
     dome_of,
     facade_of,
     ground_below,
+    wall_corner,
     wallette_of,
     walls_of,
 )
 from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import (
     NEARLY,
-    WIDEST,
+    WIDEST_TOLERANCE,
     along_lines,
-    gaps,
     nearly,
     not_joined,
     odd_axis,
@@ -77,8 +76,9 @@ from .drawing import (
     odd_frequency,
     odd_sizes,
     remedy,
-    said_of,
+    smallest_gap,
     split_faces,
+    touches_told,
     with_sizes,
 )
 from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
@@ -101,6 +101,7 @@ from .laws.joint_table import (
     properties_of,
 )
 from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
+from .laws.pairs import AnyPairs, Meets, asked_pair, required_pairs
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
@@ -126,6 +127,9 @@ class Masonry(Drawn):
     that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
     m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
     meet others.
+
+    Two are equal if their blocks and keywords are. A function of the joint is equal to itself alone: two lambdas of the
+    same text make two that are not equal.
 
     Args:
         blocks: the blocks, all in the plane, `Polygon` or `Compound` of these, or all in space, `Polyhedron` or
@@ -161,6 +165,9 @@ class Masonry(Drawn):
         joints: what the joints are, a `Dry` or a `Mortar` for all, or a function of the joint that gives one, in the
             place of k_n, friction, xi, k_s, frequency, points and bond, which are the short way to the same. A function
             is asked once of each joint. The joints that are found are then `joints`.
+        pairs: friction and damping of blocks that have no joint, where they meet in explicit steps and in plain models:
+            a `Dry` for all, or a function of the names of two blocks, in their order, that gives one or None. Of the
+            `Dry` `friction`, `xi` and `frequency` count. None takes the joints of the two blocks, see `solve_explicit`.
 
     Raises:
         TypeError: for a keyword that it does not take, and names the nearest one.
@@ -188,6 +195,7 @@ class Masonry(Drawn):
     law: AnyLaw | str | None
     k_s: OfJoint | None
     bond: OfBond
+    pairs: AnyPairs
 
     def __init__(
         self,
@@ -197,21 +205,22 @@ class Masonry(Drawn):
         xi: OfJoint | None = None,
         frequency: OfJoint | None = None,
         points: OfCount | None = None,
-        tolerance: Annotated[float, Within(1e-9, WIDEST, "m")] = 1e-5,
+        tolerance: Annotated[float, Within(1e-9, WIDEST_TOLERANCE, "m")] = 1e-5,
         law: AnyLaw | str | None = None,
         k_s: OfJoint | None = None,
         *,
         bond: OfBond = None,
         joints: AnyJoints | None = None,
+        pairs: AnyPairs = None,
     ) -> None:
-        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance)
+        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance, pairs=required_pairs(pairs))
         given = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
         keep(self, **properties_of(joints, given | {"bond": bond}))
         if not self.joints:
             side = "a face" if self.in_space else "an edge"
             raise ValueError(
                 f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
-                f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
+                f"{smallest_gap(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
             )
         if law is not None:
             keep(self, law=required_law(law))
@@ -339,6 +348,14 @@ class Masonry(Drawn):
         """The bond of each joint, None where it is dry."""
         return self.table.bonds
 
+    def of_pair(self, one: int, other: int) -> Meets | None:
+        """What two blocks without a joint have where they meet, by their numbers, or None where nothing is given."""
+        dry = asked_pair(self.pairs, self.names[min(one, other)], self.names[max(one, other)])
+        if dry is None:
+            return None
+        frequency = dry.frequency or (self._lowest_frequency if dry.xi else 1.0)
+        return Meets(dry.friction, 2 * dry.xi / frequency)
+
     def areas_of(self, k: Array, joint: Integers) -> Array:
         """What part of its joint each contact line stands for [m2], from its k [N/m] and the number of its joint."""
         return np.asarray(k / self.table.k_n[joint])
@@ -378,7 +395,7 @@ class Masonry(Drawn):
             odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
         sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
-        alone = f"without a joint {said_of(touches, self.names)}" if touches else ""
+        alone = f"without a joint {touches_told(touches, self.names)}" if touches else ""
         return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
 
     @classmethod
@@ -432,7 +449,7 @@ class Masonry(Drawn):
     def arch(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
@@ -477,7 +494,7 @@ class Masonry(Drawn):
     def bridge(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
@@ -512,7 +529,7 @@ class Masonry(Drawn):
     def barrel_vault(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         length: Annotated[float, Within(0.01, 1000, "m")],
         unit: float,
         span_angle: float = math.pi,
@@ -540,7 +557,7 @@ class Masonry(Drawn):
     def groin_vault(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         length: float,
         unit: float,
         span_angle: float = math.pi,
@@ -728,7 +745,7 @@ class Masonry(Drawn):
     @classmethod
     def column(
         cls,
-        width: Ends,
+        width: Taper,
         height: Annotated[float, Within(0.01, 1000, "m")],
         drums: Annotated[int, Within(1, 1000, whole=True)],
         *,
@@ -757,7 +774,7 @@ class Masonry(Drawn):
     def dome(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         lunes: Annotated[int, Within(4, 360, whole=True)],
         hoops: Annotated[int, Within(1, 360, whole=True)],
         *,
@@ -862,7 +879,7 @@ class Masonry(Drawn):
             >>> round(float(mr.collapse_multiplier(corner, angle=-math.pi / 4).multiplier), 4)
             0.3714
         """
-        return cls(corner_of(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
+        return cls(wall_corner(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
 
     @classmethod
     def from_obj(
@@ -1137,9 +1154,10 @@ class Masonry(Drawn):
         if loose:
             raise ValueError(
                 f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
-                f"{self.tolerance:g} m; {gaps(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
+                f"{self.tolerance:g} m; "
+                f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
             )
-        wider = min(NEARLY * self.tolerance, WIDEST)
+        wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
         apart = not_joined(self.blocks, self.joints, wider)
         if odd := nearly([joint.name for joint in self._joints_within(wider, apart)], wider):
             warnings.warn(odd, Implausible, stacklevel=6)
@@ -1161,9 +1179,9 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
             which = [f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}" for b in (block, blocks[0])]
             raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
     free = sum(not block.fixed for block in blocks)
-    if not 0 < free < len(blocks) <= MOST_BLOCKS:
+    if not 0 < free < len(blocks) <= MOST_BODIES:
         raise ValueError(
-            f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BLOCKS} are "
+            f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BODIES} are "
             "needed"
         )
     for name, number in Counter(names_of(blocks)).items():

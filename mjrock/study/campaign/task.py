@@ -6,8 +6,9 @@ import dataclasses
 import hashlib
 import time
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
@@ -20,7 +21,7 @@ from ...quantities import spelt
 Value = str | int | float | None
 
 
-def plain(value: object) -> Value:
+def table_value(value: object) -> Value:
     """A value as a table holds it: text, a 64-bit integer, a float or None; NaN becomes None, a truth value 0 or 1.
     ValueError for anything else."""
     if isinstance(value, np.generic):
@@ -61,39 +62,43 @@ def fingerprint(*contents: object) -> str:
         TypeError: for a value whose content is not known, such as a function.
     """
     digest = hashlib.sha256()
-    for piece in _pieces(contents):
-        digest.update(b"%d:" % len(piece) + piece)
+    _hand_on(contents, lambda piece: digest.update(b"%d:" % len(piece) + piece))
     return digest.hexdigest()[:32]
 
 
-def _pieces(value: object) -> Iterator[bytes]:
-    """The content of a value as bytes that tell it from any other."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        yield type(value).__name__.encode()
-        for field in dataclasses.fields(value):
-            if field.compare:
-                yield field.name.encode()
-                yield from _pieces(getattr(value, field.name))
-    elif isinstance(value, np.ndarray):
-        yield f"{value.dtype.str}{value.shape}".encode()
-        yield np.ascontiguousarray(value).tobytes()
-    elif isinstance(value, Mapping):
-        yield b"{%d" % len(value)
-        for name in sorted(value):
-            yield from _pieces(name)
-            yield from _pieces(value[name])
-    elif isinstance(value, tuple | list):
-        yield b"[%d" % len(value)
-        for item in value:
-            yield from _pieces(item)
-    elif isinstance(value, np.generic):
-        yield from _pieces(value.item())
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        yield repr(float(value)).encode()  # 1 and 1.0 are the same thickness
+def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
+    """Hand on the content of a value, as pieces of bytes that tell it from any other."""
+    if isinstance(value, np.generic):
+        _hand_on(value.item(), add)
     elif value is None or isinstance(value, bool | str):
-        yield repr(value).encode()
+        add(repr(value).encode())
+    elif isinstance(value, int | float):
+        add(repr(float(value)).encode())  # 1 and 1.0 are the same thickness
+    elif isinstance(value, tuple | list):
+        add(b"[%d" % len(value))
+        for item in value:
+            _hand_on(item, add)
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        add(type(value).__name__.encode())
+        for name in _compared(type(value)):
+            add(name.encode())
+            _hand_on(getattr(value, name), add)
+    elif isinstance(value, np.ndarray):
+        add(f"{value.dtype.str}{value.shape}".encode())
+        add(np.ascontiguousarray(value).tobytes())
+    elif isinstance(value, Mapping):
+        add(b"{%d" % len(value))
+        for name in sorted(value):
+            _hand_on(name, add)
+            _hand_on(value[name], add)
     else:
         raise TypeError(f"{spelt(value)} is of no type whose content can be hashed")
+
+
+@cache
+def _compared(kind: type) -> tuple[str, ...]:
+    """The fields of a dataclass that take part in comparison."""
+    return tuple(field.name for field in dataclasses.fields(kind) if field.compare)
 
 
 VERSION = f"mjrock {__version__}, MuJoCo {mujoco.__version__}"
@@ -135,7 +140,7 @@ class Refused:
         held: dict[str, object] = {}
         for name, value in labels.items():
             try:
-                held[name] = plain(value)
+                held[name] = table_value(value)
             except ValueError:
                 held[name] = table_text(value)
         return cls(failed_row(error)["error"], held)
@@ -186,7 +191,7 @@ def carry_out(task: Task, history: Path | None) -> Row:
 
 def _named(what: str, value: object) -> Any:
     try:
-        return plain(value)
+        return table_value(value)
     except ValueError as error:
         raise ValueError(f"{what}: {error}") from None
 

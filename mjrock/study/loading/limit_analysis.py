@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import applied, dragged, pulls_of
 from ...problem.masonry.limit.collapse import Collapse, limit_of, pushed
+from ...problem.masonry.limit.pose import posed
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
-from ...problem.masonry.lines import slips
+from ...problem.masonry.lines import mean_slip_rates
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effect import Effect
-from ...problem.wall.effects import links_of
+from ...problem.wall.effects import link_effects
 from ...quantities import (
     Array,
     Implausible,
@@ -45,6 +46,7 @@ def collapse_multiplier(
     associated: bool = True,
     loads: Mapping[str, ArrayLike] | None = None,
     effects: Sequence[Effect] | Effect = (),
+    pose: ArrayLike | None = None,
 ) -> Collapse:
     """The largest horizontal acceleration over g that masonry of rigid blocks stands, and the mechanism beyond it.
 
@@ -82,6 +84,12 @@ def collapse_multiplier(
         effects: what is constant beside the weight, `Load` and `Thrust`, `AddedMass`, whose inertia grows with that of
             the blocks, and `Tie`, which pulls with up to its strength however far it is drawn out, and is not slack.
             Each names its block as in a `MasonryCase`.
+        pose: where the blocks have moved, as a `Response` has them: displacement of the centroids [m] and rotation
+            [rad], positive where tops turn to the right, shape (free, 3), in space displacement and unit quaternion,
+            (free, 7); or of all blocks, with supports that have moved, as `response.at(t)` gives them. Joints are those
+            at rest. Lines press that have no gap beyond the `tolerance` of the masonry, and effects move with their
+            blocks. The multiplier is then the largest force that goes with equilibrium there, below zero where the
+            masonry is held back. Friction is associated, and joints are dry.
 
     Returns:
         The `Collapse`: `multiplier` [-], and the mechanism and the forces of the joints at it.
@@ -103,15 +111,22 @@ def collapse_multiplier(
     dilates = require_flag("associated", associated)
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
+    given = _required(masonry, effects)
+    if pose is not None:
+        masonry.require_dry("collapse_multiplier in a pose")
+        if not dilates:
+            raise ValueError("associated = False goes with masonry at rest; a pose takes associated friction")
+        masonry, given = posed(masonry, pose, given)
     none = direction is None and angle is None
     push = np.zeros(3 if masonry.in_space else 2) if none else horizontal(masonry, direction, angle)
-    given = _required(masonry, effects)
     grown = _loads(masonry, {} if loads is None else loads) + pushed(masonry, push) + dragged(masonry, given, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
-    links = tuple(links_of(given).values())
+    links = tuple(link_effects(given).values())
     strength, constant = np.array([tie.law.strength for tie in links]), applied(masonry, given)
     ties = Pulls.of(masonry, pulls_of(masonry, links), strength)
+    if pose is not None:
+        return limit_of(masonry, push, grown, constant, ties=ties, least=-math.inf)
     falls = falling(masonry, constant, ties)
     if falls:
         under = "the weight and the effects" if given else "the weight"
@@ -140,7 +155,7 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Eff
     """Effects as a case of the masonry takes them. An error names one whose force the motion alone decides."""
     given = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
     for i, effect in enumerate(given):
-        links = links_of([effect]).values()
+        links = link_effects([effect]).values()
         if effect.force_vector is None and not effect.mass_added and not any(link.law.holds for link in links):
             raise TypeError(
                 f"effects[{i}] is a {type(effect).__name__}, whose force depends on the motion; limit analysis takes "
@@ -165,7 +180,7 @@ def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tup
     if limit_of(masonry, found.direction, grown, constant, ties=ties).multiplier < BORNE:
         return ()
     count, lines = len(masonry.joints), masonry.lines
-    rates = np.abs(slips(masonry.blocks, lines, count) @ found.motion.ravel()).reshape(3, count)
+    rates = np.abs(mean_slip_rates(masonry.blocks, lines, count) @ found.motion.ravel()).reshape(3, count)
     widths = np.array([joint.width for joint in masonry.joints])
     twists = (found.forces.normal > 0) & (masonry.joint_friction > 0) & (rates[2] * widths > MOVES * rates.max())
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)

@@ -18,13 +18,23 @@ from ...files import aligned
 from ...notebook import html_of
 from ...problem.ground.code_spectrum import SpectrumOfCode
 from ...problem.ground.motion import GroundMotion
-from ...problem.ground.oscillator import SHORTEST
+from ...problem.ground.oscillator import SHORTEST_PERIOD
 from ...problem.ground.spectrum import response_spectrum
 from ...problem.masonry.case import require_wall
 from ...problem.wall.bending import VerticalBending
 from ...problem.wall.case import Case
 from ...problem.wall.ties_on_wall import moment_at_strength
-from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, short_repr, shown, takes
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Implausible,
+    ratio_said,
+    require_real,
+    require_within,
+    short_repr,
+    shown,
+    takes,
+)
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
@@ -107,7 +117,7 @@ class Verdict(NamedTuple):
     def __repr__(self) -> str:
         return (
             f"<{self.what}, {self.limit_state}: {self.capacity:.4g} for {self.demand:.4g} {self.unit}, "
-            f"ratio {self.ratio:.2f} {self.said}, {self.clause}>"
+            f"ratio {ratio_said(self.ratio)} {self.said}, {self.clause}>"
         )
 
     @property
@@ -131,7 +141,7 @@ def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
     rows += [
         (
-            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, f"{one.ratio:.2f}"),
+            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_said(one.ratio)),
             *(one.said, one.clause),
         )
         for one in verdicts
@@ -305,11 +315,12 @@ class MechanismCheck:
             note = said.get(f"{step.key} {step.of}".strip(), step.clause)
             if step.key == "ratio" and (gone := self.broken_before(step.of)):
                 note += f", without {', '.join(gone)}, broken"
-            rows.append((what + (f" [{step.unit}]" if step.unit else ""), f"{step.value:.{digits}f}", note))
+            value = ratio_said(step.value) if step.key.endswith("ratio") else f"{step.value:.{digits}f}"
+            rows.append((what + (f" [{step.unit}]" if step.unit else ""), value, note))
         return rows
 
     def __repr__(self) -> str:
-        ratios = ", ".join(f"{one.limit_state} {one.ratio:.2f} {one.said}" for one in self.verdicts[-2:])
+        ratios = ", ".join(f"{one.limit_state} {ratio_said(one.ratio)} {one.said}" for one in self.verdicts[-2:])
         return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 
@@ -461,7 +472,7 @@ def _masses(case: Case) -> tuple[Array, Array]:
 def _asked(demand: Demand, period: float, damping: float, shortest: float) -> float:
     """The displacement that is asked for at a period [m], by a record the largest from the shortest period on [s]."""
     if isinstance(demand, GroundMotion):
-        periods = np.geomspace(max(min(shortest, period), SHORTEST), max(period, SHORTEST), PERIODS)
+        periods = np.geomspace(max(min(shortest, period), SHORTEST_PERIOD), max(period, SHORTEST_PERIOD), PERIODS)
         return float(response_spectrum(demand, periods, damping).Sd.max())
     if isinstance(demand, SpectrumOfCode):
         return float(demand.displacement(period, damping))

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ...bars import Bar
 from ...distinct.explicit import solve_explicit
 from ...notebook import Drawn
-from ...problem.masonry.actuator import LARGEST, Actuator
+from ...problem.masonry.actuator import LARGEST_STROKE, Actuator
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import laden
 from ...problem.masonry.masonry import Masonry
@@ -53,6 +53,8 @@ DAMPED = 0.5
 """Damping ratio of what is driven on an actuator that has no damping of its own [-]."""
 STRIKING = 0.05
 """Force of inertia over what is borne beyond which a point is part of a blow [-]."""
+BLOWS = 5
+"""Pieces in a row that are part of blows at any rate, after which a push along a direction ends."""
 OFF = 0.02
 """Difference of the work under a curve and the energy gained that is warned of, over the largest energy [-]."""
 
@@ -116,8 +118,7 @@ class Push(Drawn):
     @property
     def _peak_at(self) -> int:
         """The point of the peak."""
-        borne, inertia = np.abs(self.force) if self.unit == "N" else self.force, np.abs(self.inertia)
-        return int(np.where(inertia <= STRIKING * borne, borne, -1.0).argmax())
+        return int(without_blows(np.abs(self.force) if self.unit == "N" else self.force, self.inertia).argmax())
 
     def __repr__(self) -> str:
         peak = f"{self.peak / 1e3:.4g} kN" if self.unit == "N" else f"{self.peak:.4g} of the weight"
@@ -145,7 +146,8 @@ def push(
     An actuator is driven to displacements one after the other, to and fro for a cyclic test. A direction is that of a
     horizontal force on every block in proportion to its weight. The force is the one that lets the common centroid of
     the blocks move slowly along the direction, so that its work is what the masonry gains and what is taken in it. It
-    ends before `to` where nothing is borne any more and the masonry would go on by itself.
+    ends before `to` where nothing is borne any more and the masonry would go on by itself, and where five pieces in a
+    row are blows at any rate, as where blocks have left the mechanism and strike others.
 
     Args:
         masonry: the masonry.
@@ -166,6 +168,7 @@ def push(
 
     Raises:
         TypeError, ValueError: for a value outside its range, or masonry that does not stand.
+        RuntimeError: where undamped masonry swings so long that its steps gain energy.
 
     Warns:
         UserWarning: where the motion was not slow: where the work under the curve is not the energy that was gained, or
@@ -175,9 +178,9 @@ def push(
     allowed = require_within("inertia", inertia, 1e-4, 0.5)
     falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
     turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
-    require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST, LARGEST, "m")
+    require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST_STROKE, LARGEST_STROKE, "m")
     if turns.any():
-        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST, "m")
+        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST_STROKE, "m")
     given = _required(masonry, effects, start)
     options = {"mass_damping": mass_damping, "local_damping": local_damping}
     if isinstance(driver, Actuator) and angle is None:
@@ -213,6 +216,11 @@ class Piece(NamedTuple):
     level: float
     stretch: float
     gained: float
+
+
+def without_blows(borne: Array, inertia: Array) -> Array:
+    """What is borne, below nothing at points that are part of a blow."""
+    return np.where(np.abs(inertia) <= STRIKING * borne, borne, -1.0)
 
 
 def means(values: Array) -> Array:
@@ -253,14 +261,30 @@ class Load:
             case = MasonryCase(self.masonry, t[-1], effects=(*self.effects, driven))
             warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
             warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
-            spacing = t[-1] / (POINTS * SAMPLES)
-            answer = solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
+            answer = self._answer(case)
         *_, force = answer.actuators.values()  # effects may have others
         gone = np.interp(answer.t, t, path)
         stretch, inertia = self.stretched(answer, force, gone), self.inertia(answer, gone)
         place, gained = self.level + gone - stretch, self._gained(answer, stretch)
         end = self.level + gone[-1], stretch[-1], gained[-1]
         return Piece(means(place), means(force) - inertia, inertia, means(gained), answer, *map(float, end))
+
+    def _answer(self, case: MasonryCase) -> Response:
+        """The motion of a piece.
+
+        Raises:
+            RuntimeError: where steps gain energy. They gain a share of what swings in each period, so that undamped
+                masonry that has cracked gains much in a long piece.
+        """
+        spacing = case.duration / (POINTS * SAMPLES)
+        try:
+            return solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
+        except RuntimeError as broken:
+            what = str(broken).partition("; take ")[0]
+            raise RuntimeError(
+                f"{what}, in a piece of the push of {case.duration:.3g} s at {1e3 * self.level:.4g} mm: masonry that "
+                "has given way swings; damp its motion by local_damping = 0.1 or mass_damping = 5, or its joints by xi"
+            ) from None
 
     def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
         """How far the spring of the actuator is pressed at the samples [m], without the part of its dashpot."""
@@ -291,7 +315,7 @@ class Load:
     def accept(self, piece: Piece) -> None:
         """Go on from the end of a piece."""
         self.start, self.level, self.gained = piece.answer.end, piece.level, piece.gained
-        self.largest = max(self.largest, float(np.abs(piece.force).max()))
+        self.largest = max(self.largest, float(without_blows(np.abs(piece.force), piece.inertia).max()))
 
     def share(self, piece: Piece) -> float:
         """Root mean square of the inertia in a piece, over the largest force so far [-]."""
@@ -365,7 +389,7 @@ class Forced(Load):
         self.least = min(LEAST * self.weight / self.actuator.stiffness, self.to / PIECES)
         self.mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
         going = 0.0 if self.start is None else float(self.mass @ (self.start[1][:, : len(way)] @ way) / self.mass.sum())
-        self.speed, self.stretch = max(going, 0.0), math.nan
+        self.speed, self.stretch, self.blows = max(going, 0.0), math.nan, 0
         self.step = max(self.least, self.speed * FIRST)
 
     @property
@@ -421,6 +445,7 @@ class Forced(Load):
         """Go on from the end of a piece, with the step in which the multiplier would grow as it is to."""
         share = 2.0 if self.strikes(piece) else self.rise / max(self.grown(piece), 1e-9)
         self.speed = 2 * self.step / piece.answer.t[-1] - self.speed
+        self.blows = self.blows + 1 if self.strikes(piece) else 0
         self.step = min(max(self.step * min(max(share, 0.5), 2.0), self.least), self.to / PIECES)
         super().accept(piece)
         self.stretch = piece.stretch
@@ -436,7 +461,8 @@ class Forced(Load):
         if piece.displacement[-1] > self.to:
             return f"moved by {1e3 * self.to:.4g} mm"
         if self.strikes(piece):
-            return ""
+            at = 1e3 * piece.displacement[-1]
+            return f"ends in blows at {at:.4g} mm" if self.blows == BLOWS else ""
         if piece.force[-1] < 0 and self.largest > LEAST:
             return f"goes on by itself from {1e3 * piece.displacement[-1]:.4g} mm"
         return f"nothing gives way to {HIGHEST:g}" if piece.force[-1] >= HIGHEST else ""

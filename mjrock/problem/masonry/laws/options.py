@@ -12,6 +12,7 @@ from ....quantities import within_ranges
 from ...damping.contacts import AnyLaw
 from .dry import Properties
 from .joint_table import PROPERTIES, AnyJoints, OfBond, OfCount, OfJoint, properties_of
+from .pairs import AnyPairs
 
 Class = TypeVar("Class", bound=type)
 
@@ -28,6 +29,7 @@ class OtherOptions(TypedDict, total=False):
     bond: OfBond
     law: AnyLaw | str | None
     tolerance: float
+    pairs: AnyPairs
 
 
 class JointOptions(OtherOptions, total=False):

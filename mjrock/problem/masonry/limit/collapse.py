@@ -108,6 +108,7 @@ def limit_of(
     *,
     associated: bool = True,
     ties: Pulls | None = None,
+    least: float = 0.0,
 ) -> Collapse:
     """The multiplier at which rigid masonry moves that stands under its weight, and its mechanism.
 
@@ -119,15 +120,16 @@ def limit_of(
         applied: constant ones beside the weight, likewise.
         associated: whether sliding opens joints.
         ties: that hold the blocks, or None.
+        least: multiplier of associated friction that is looked for, below nothing where masonry is held back.
 
     Raises:
-        ValueError: if no state without dilatancy is found.
+        ValueError: if no state without dilatancy is found, or no multiplier from `least` on holds the masonry.
     """
     weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
     turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
     across = axes_along(lines.normal, resultant) if turned else lines.across
-    search, ties = _associated if associated else _without_dilatancy, ties or Pulls.of(masonry)
-    found = search(masonry, weight + np.ravel(applied), grown, across, ties)
+    state = masonry, weight + np.ravel(applied), grown, across, ties or Pulls.of(masonry)
+    found = _associated(*state, least) if associated else _without_dilatancy(*state)
     if found is None:
         return Collapse(math.inf, push, (), np.zeros_like(grown), masonry=masonry)
     total, multipliers = float(np.abs(weight).sum()), found.multipliers
@@ -168,7 +170,7 @@ class Found(NamedTuple):
 
 
 def _associated(
-    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls, least: float
 ) -> Found | None:
     """The state of associated friction, None where nothing gives way."""
     sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
@@ -177,13 +179,15 @@ def _associated(
     raised, count, end = (grown.ravel() / total / sizes)[:, None], pressed.shape[1], pressed.shape[1] + len(held)
     highest = np.concatenate([np.full(count, np.inf), held / total, ties.strength / total, [np.inf]])
     bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
-    prices[-1] = -1.0
+    bounds[-1, 0], prices[-1] = least, -1.0
     columns = hstack([pressed, pulls, ties.columns, raised])
     answer = scipy.optimize.linprog(
         prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry)
     )
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
         return None  # unbounded
+    if answer.status == 2 and least < 0:
+        raise ValueError("pose: no multiplier of the forces that grow holds the masonry there, either way")
     if answer.status != 0:
         raise ValueError(f"masonry: the programme for its multiplier has no answer: {answer.message}")
     shares, limits = (

@@ -1,0 +1,211 @@
+"""Masonry in a pose: its blocks where they have moved, and the contact lines that press there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ....geometry.convex import within
+from ....geometry.frames import PLANE, SPACE
+from ....geometry.poses import at_rest, rotations
+from ....quantities import Array, Flags, Integers, keep, require_array
+from ...wall.effect import Anchored, Effect
+from ..blocks.compound import AnyBlock, Compound
+from ..blocks.joints import Joint
+from ..blocks.joints_in_space import SpaceJoint
+from ..blocks.polygon import Polygon
+from ..blocks.polyhedron import Polyhedron
+from ..effects import placed
+from ..lines import Lines
+from ..masonry import Masonry
+
+SUNK, BEYOND = 0.05, 0.01
+"""How deep a contact line may lie behind its face, and in space how far a point may lie beside it, over the width of
+the joint [-]."""
+UNIT = 1e-6
+"""Difference of the length of a quaternion from 1 that is put down to rounding [-]."""
+
+
+Numbers = int | Sequence[int] | Integers
+"""The number of a block, or of each of some."""
+
+
+class Moves(NamedTuple):
+    """Where the blocks have moved, also the fixed ones.
+
+    Args:
+        turn: matrices of their rotations, shape (blocks, d, d).
+        rest, place: their centroids at rest and in the pose [m], shape (blocks, d).
+    """
+
+    turn: Array
+    rest: Array
+    place: Array
+
+    @classmethod
+    def of(cls, masonry: Masonry, pose: ArrayLike) -> Moves:
+        """Those of a pose of all blocks or of the free ones.
+
+        Raises:
+            ValueError: for another shape, or quaternions that are not of unit length.
+        """
+        blocks, freedom = len(masonry.blocks), SPACE if masonry.in_space else PLANE
+        moved = at_rest(blocks, freedom).reshape(blocks, freedom.nq)
+        some = list(range(blocks)) if np.shape(pose) == moved.shape else list(masonry.free)
+        moved[some] = require_array("pose", pose, moved[some].shape)
+        if masonry.in_space:
+            length = np.linalg.norm(moved[:, 3:], axis=1)
+            if (off := np.abs(length - 1)).max() > UNIT:
+                raise ValueError(f"pose has a quaternion of the length {length[off.argmax()]:g}; the valid one is 1")
+        d = freedom.translations
+        return cls(rotations(moved), masonry.centroids, masonry.centroids + moved[:, :d])
+
+    def at(self, block: Numbers, points: Array) -> Array:
+        """Where points of blocks are that are given at rest [m], shape (n, d)."""
+        return np.asarray(self.place[block] + self.turned(block, points - self.rest[block]))
+
+    def turned(self, block: Numbers, vectors: Array) -> Array:
+        """Vectors of blocks as they are turned from rest, shape (n, d)."""
+        return np.asarray((self.turn[block] @ vectors[..., None])[..., 0])
+
+    def block(self, number: int, block: AnyBlock) -> AnyBlock:
+        """A block where it has moved."""
+        if isinstance(block, Compound):
+            return replace(block, parts=tuple(self.part(number, part) for part in block.parts))
+        return self.part(number, block)
+
+    def part(self, number: int, part: Polygon | Polyhedron) -> Polygon | Polyhedron:
+        """A convex part of a block where it has moved."""
+        corners = np.array(part.vertices)
+        return replace(part, vertices=self.at([number] * len(corners), corners))  # type: ignore[arg-type]
+
+
+def posed(masonry: Masonry, pose: ArrayLike, effects: Sequence[Effect] = ()) -> tuple[Masonry, tuple[Effect, ...]]:
+    """Masonry whose blocks have moved, with the contact lines that press in the pose, and effects that moved with them.
+
+    Its joints are those at rest. In the plane a block that has slid rests on the corner of the block below, where that
+    ends.
+
+    Raises:
+        ValueError: for a pose of another shape, blocks that have moved into one another by more than a twentieth of a
+            joint, and in space for points that have slid off their face.
+    """
+    moves = Moves.of(masonry, pose)
+    moved = object.__new__(type(masonry))
+    keep(moved, **{each.name: getattr(masonry, each.name) for each in fields(masonry)}, table=masonry.table)
+    lines = _in_the_plane(masonry, moves) if not masonry.in_space else _in_space(masonry, moves)
+    joints = [_joint(joint, moves) for joint in masonry.joints]
+    blocks = tuple(moves.block(i, block) for i, block in enumerate(masonry.blocks))
+    keep(moved, blocks=blocks, joints=tuple(joints), lines=lines)
+    return moved, tuple(_carried(masonry, effect, moves) for effect in effects)
+
+
+def _joint(joint: Joint | SpaceJoint, moves: Moves) -> Joint | SpaceJoint:
+    """A joint on the block below."""
+    if isinstance(joint, Joint):
+        start, end = moves.at([joint.below] * 2, np.array([joint.start, joint.end])).tolist()
+        return replace(joint, start=tuple(start), end=tuple(end))
+    below = [joint.below] * len(joint.vertices)
+    places = tuple(map(tuple, moves.at(below, np.array(joint.vertices)).tolist()))
+    return replace(joint, vertices=places, direction=tuple(moves.turned(joint.below, joint.normal).tolist()))
+
+
+def _carried(masonry: Masonry, effect: Effect, moves: Moves) -> Effect:
+    """An effect where its block, and that of its anchor, have moved."""
+    held = np.array(placed(masonry, effect))
+    changes: dict[str, object] = {"at": moves.at(effect.block, held), "height": None}
+    if isinstance(effect, Anchored):
+        anchor, block = effect.anchor_of(held), effect.anchor_block
+        changes["anchor"] = anchor if block is None else moves.at(block, anchor)
+    elif effect.offset:
+        changes["offset"] = 0.0
+    return replace(effect, **changes)  # type: ignore[type-var]
+
+
+def _gaps(lines: Lines, moves: Moves) -> tuple[Array, Array, Array]:
+    """Where lines are [m], the normals of the faces, and the gaps [m]."""
+    at, normal = moves.at(lines.body, lines.at), moves.turned(lines.face, lines.normal)
+    return at, normal, ((at - moves.at(lines.face, lines.at)) * normal).sum(axis=1)
+
+
+def _in_the_plane(masonry: Masonry, moves: Moves) -> Lines:
+    """The lines that press. Where one has slid past the end of its face, the corner there meets the other face."""
+    lines, slack = masonry.lines, masonry.tolerance
+    at, normal, gap = _gaps(lines, moves)
+    faces, own = (_edges(masonry, moves, of, lines.joint) for of in (lines.face, lines.body))
+    along, long = _along(faces, at)
+    past = (along < -slack) | (along > long + slack)
+    corner = np.where((along < 0)[:, None], faces[:, 0], faces[:, 1])
+    outward = -moves.turned(lines.body, lines.normal)
+    along, long = _along(own, corner)
+    meets = ~past | ((along > -slack) & (along < long + slack))
+    gap = np.where(past, ((corner - at) * outward).sum(axis=1), gap)
+    body, face = np.where(past, [lines.face, lines.body], [lines.body, lines.face])
+    at, normal = np.where(past[:, None], [corner, outward], [at, normal])
+    return _pressed(masonry, lines._replace(body=body, face=face, at=at, normal=normal), np.where(meets, gap, np.inf))
+
+
+def _edges(masonry: Masonry, moves: Moves, of: Integers, joint: Integers) -> Array:
+    """Ends of the edges of some blocks that make joints [m], shape (n, 2, 2)."""
+    ends = []
+    for block, number in zip(of.tolist(), joint.tolist(), strict=True):
+        below, above = masonry.joints[number].sides
+        side = below if block == masonry.joints[number].below else above
+        ends.append(moves.at([block] * 2, np.asarray(masonry.blocks[block].sides[side].corners)))
+    return np.array(ends)
+
+
+def _along(edges: Array, at: Array) -> tuple[Array, Array]:
+    """How far points lie along edges, and how long these are [m], shape (n,) each."""
+    way = edges[:, 1] - edges[:, 0]
+    long = np.hypot(*way.T)
+    return ((at - edges[:, 0]) * way).sum(axis=1) / long, long
+
+
+def _in_space(masonry: Masonry, moves: Moves) -> Lines:
+    """The points that press."""
+    at, normal, gap = _gaps(masonry.lines, moves)
+    back = (
+        moves.rest[masonry.lines.face]
+        + (np.swapaxes(moves.turn[masonry.lines.face], 1, 2) @ (at - moves.place[masonry.lines.face])[..., None])[
+            ..., 0
+        ]
+    )
+    for name, past in _slid_off(masonry, back, gap <= masonry.tolerance):
+        raise ValueError(
+            f"pose: the joint {name} has slid {past:.3g} m off its face; limit analysis of blocks in space takes poses "
+            f"in which joints turn and open, and slide by up to {BEYOND:g} of their width past an edge"
+        )
+    return _pressed(masonry, masonry.lines._replace(at=at, normal=normal), gap)
+
+
+def _slid_off(masonry: Masonry, back: Array, pressed: Flags) -> Iterator[tuple[str, float]]:
+    """Names of joints with a point that presses beside its face, and how far it lies there [m].
+
+    Points are seen from the face, at rest.
+    """
+    for number, joint in enumerate(masonry.space_joints):
+        for own, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            there = (masonry.lines.joint == number) & (masonry.lines.face == own) & pressed
+            face = (np.asarray(masonry.blocks[own].sides[side].corners) - joint.outline[0]) @ joint.axes.T
+            flat = (back[there] - joint.outline[0]) @ joint.axes.T
+            past = -within(face if own == joint.below else face[::-1], flat).min(initial=0.0)
+            if past > BEYOND * joint.width:
+                yield joint.name, float(past)
+
+
+def _pressed(masonry: Masonry, lines: Lines, gap: Array) -> Lines:
+    """The lines whose gap is closed [m]."""
+    widths = np.array([joint.width for joint in masonry.joints])[lines.joint]
+    deepest = int((gap / widths).argmin())
+    if gap[deepest] < -SUNK * widths[deepest]:
+        name = masonry.joints[lines.joint[deepest]].name
+        raise ValueError(
+            f"pose: the blocks of the joint {name} are {-gap[deepest]:.3g} m inside one another; the valid range is up "
+            f"to {SUNK:g} of its width"
+        )
+    return Lines(*(values[gap <= masonry.tolerance] for values in lines))  # type: ignore[arg-type]
