@@ -59,6 +59,11 @@ def bending() -> tuple[mr.Masonry, float]:
     return mr.Masonry.between_floors(wall, LOAD), mr.VerticalBending(wall, LOAD).multiplier
 
 
+def sideways() -> tuple[mr.Masonry, float]:
+    """A strip that bends between side walls."""
+    return mr.Masonry.between_sides(STRIP), STRIP.multiplier
+
+
 def corner() -> tuple[mr.Masonry, float]:
     """A corner that overturns along the diagonal."""
     t, h = THICKNESS, 0.75 * HEIGHT
@@ -75,10 +80,15 @@ def gable() -> tuple[mr.Masonry, float]:
     return mr.Masonry([ground, mr.Polyhedron(corners, name="gable")], friction=0.7), 1.5 * THICKNESS / h
 
 
+STRIP = mr.HorizontalBending(mr.Block.from_size(THICKNESS, 1.5, 5.0), thrust=40e3)
+"""A strip between side walls, and what these bear."""
+
+
 MECHANISMS = {
     "simple overturning": (simple, None),
     "composite overturning": (composite, None),
     "vertical bending": (bending, None),
+    "horizontal bending": (sideways, 0.0),
     "corner": (corner, -math.pi / 4),
     "gable": (gable, 0.0),
 }
@@ -88,12 +98,13 @@ MECHANISMS = {
 def main(argv: Sequence[str] | None = None) -> None:
     """Push and draw them."""
     out = cli.folder(cli.parser(__doc__, "mechanisms").parse_args(argv).out)
-    figure = Figure(figsize=(14, 3.6), layout="constrained")
-    places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.3, 1.3])
+    figure = Figure(figsize=(16, 3.6), layout="constrained")
+    places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.3, 1.3, 1.3])
     lines = []
     for i, (name, (make, angle)) in enumerate(MECHANISMS.items()):
         masonry, alpha_0 = make()
-        found = mr.collapse_multiplier(masonry) if angle is None else mr.collapse_multiplier(masonry, angle=angle)
+        effects = STRIP.tie if make is sideways else ()
+        found = mr.collapse_multiplier(masonry, None if angle is not None else 1, angle=angle, effects=effects)
         lines.append(f"{name}: {found.multiplier:.4f} by limit analysis, {alpha_0:.4f} by the closed form")
         ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
         plotting.mechanism(ax, found, share=0.06, forces=False)

@@ -61,6 +61,7 @@ CALLS = OF_NUMBERS | {
     ),
     "Wedge": (mr.Wedge, {"angle": 0.4, "thickness": 0.5, "height": 4.0, "number": 2, "density": None}),
     "Corner": (mr.Corner, {"thickness": 0.5, "height": 4.0, "angle": 0.4, "density": 2000.0}),
+    "HorizontalBending": (mr.HorizontalBending, {"wall": WALL, "thrust": 1e4, "crack": None}),
     "VerticalBending": (mr.VerticalBending, {"wall": WALL, "load": 2e4, "bearing": None, "crack": None}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
     "ScatteredRestitution": (mr.ScatteredRestitution, {"mean": E, "sd": 0.01, "seed": 1}),
