@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+import html
 import inspect
+import os
 import re
 import sys
 import types
@@ -14,9 +16,12 @@ from typing import Any
 import matplotlib
 from docutils import nodes
 from latex2mathml.converter import convert
+from matplotlib.figure import Figure
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
+
+import made_pages  # noqa: E402
 
 import mjrock  # noqa: E402
 from scripts.studies.in_the_browser import falling_arch  # noqa: E402
@@ -25,6 +30,7 @@ matplotlib.use("agg")
 
 project = "mjrock"
 author = "The mjrock developers"
+SENTENCE = "Rigid blocks of masonry under earthquakes, in MuJoCo, by explicit steps and by rocking theory."
 copyright = "the mjrock developers, Apache-2.0"
 release = version = mjrock.__version__
 
@@ -75,12 +81,20 @@ html_static_path = ["static"]
 LIVE = HERE / "build" / "live"
 html_extra_path = ["build/live"]
 html_css_files = ["mjrock.css"]
+html_favicon = html_logo = "static/mark.svg"
+html_theme_options = {"sidebar_hide_name": False}
+html_baseurl = os.environ.get(
+    "READTHEDOCS_CANONICAL_URL", ""
+)  # where a card of the site is found, if it is put on the web
 html_copy_source = False
 html_show_sourcelink = False
 templates_path: list[str] = []
 
-LISTED = re.findall(r"^\.\. auto\w+:: (mjrock[\w.]*)$", (HERE / "api.md").read_text("utf-8"), re.MULTILINE)
-PUBLIC = {name.rpartition(".")[2]: name for name in LISTED}
+PUBLIC = {
+    full.rpartition(".")[2]: full
+    for page in sorted((HERE / "api").glob("*.md"))
+    for _, full in made_pages.NAMED.findall(page.read_text("utf-8"))
+}
 """Where the reference has each public name."""
 MARKS = re.compile(r"(``[^`]*``)|`([^`]*)`|([|*])")
 """Text between backticks, or a mark that reStructuredText would take for its own."""
@@ -138,8 +152,20 @@ def write_live_view() -> None:
     mjrock.plotting.view(falling_arch(), LIVE / "arch_view.html")
 
 
+def write_card() -> None:
+    """Write the picture of the site that a message shows which links to it: a film's middle frame and the name."""
+    figure = Figure(figsize=(12.0, 6.3), dpi=100)
+    ax = figure.add_axes((0, 0, 1, 1))
+    ax.imshow(made_pages.whole("facade_in_space.gif"))
+    ax.axis("off")
+    figure.text(0.04, 0.9, "mjrock", fontsize=44, weight="bold", va="top")
+    figure.text(0.04, 0.1, "Rocking masonry: MuJoCo, explicit steps and theory", fontsize=26)
+    figure.savefig(LIVE / "card.png")
+
+
 compile_loops()
 write_live_view()
+write_card()
 
 
 def as_mathml(display: str) -> Callable[[Any, nodes.math | nodes.math_block], None]:
@@ -152,8 +178,27 @@ def as_mathml(display: str) -> Callable[[Any, nodes.math | nodes.math_block], No
     return visit
 
 
+def made(app: object, page: str, source: list[str]) -> None:
+    """The text of a page as the site has it."""
+    source[0] = made_pages.made(page, source[0])
+
+
+def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
+    """Load pictures below the first as they come into sight, and say what a link to a page shows."""
+    first, *others = re.split(r"(?=<img )", context.get("body") or "")
+    above, others = "".join([first, *others[:1]]), others[1:]
+    context["body"] = above + "".join(part.replace("<img ", '<img loading="lazy" ', 1) for part in others)
+    title = re.sub(r"<[^>]*>", "", context.get("title", project))
+    said = {"og:title": title, "og:site_name": project, "og:image": f"{app.config.html_baseurl}card.png"}
+    said |= {"og:description": SENTENCE, "twitter:card": "summary_large_image"}
+    tags = "".join(f'<meta property="{name}" content="{html.escape(text)}">' for name, text in said.items())
+    context["metatags"] = context.get("metatags", "") + tags
+
+
 def setup(app: object) -> None:
     """Write formulas, and read docstrings as plain text, before napoleon does, and signatures without ranges."""
     app.add_html_math_renderer("mathml", (as_mathml("inline"), None), (as_mathml("block"), None))  # type: ignore[attr-defined]
     app.connect("autodoc-process-docstring", plain, priority=100)  # type: ignore[attr-defined]
     app.connect("autodoc-process-signature", without_ranges)  # type: ignore[attr-defined]
+    app.connect("source-read", made)  # type: ignore[attr-defined]
+    app.connect("html-page-context", finished)  # type: ignore[attr-defined]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -15,8 +16,9 @@ def scrape(block: object, variables: dict[str, Any], gallery: dict[str, Any]) ->
     if not isinstance(figure, Figure):
         return ""
     path = next(variables["image_path_iterator"])
-    figure.savefig(path, dpi=130)
-    return str(figure_rst([path], gallery["src_dir"]))
+    figure.savefig(path, dpi=150)
+    title = Path(variables["src_file"]).read_text(encoding="utf-8").split("\n")[1]
+    return str(figure_rst([path], gallery["src_dir"], title))
 
 
 def _get_sg_image_scraper() -> Callable[..., str]:

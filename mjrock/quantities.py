@@ -6,6 +6,7 @@ import inspect
 import math
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields
 from functools import cache, wraps
@@ -41,6 +42,8 @@ P = ParamSpec("P")
 Result = TypeVar("Result")
 
 
+PASSED = ("mjrock", "functools", "contextlib")
+"""Packages whose lines a warning does not point to."""
 MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
 
@@ -92,6 +95,28 @@ def _shortened(value: object) -> str:
     if isinstance(value, np.ndarray | tuple | list):
         return f"<{len(value)} values>" if len(value) > NAMED else f"({', '.join(map(_shortened, value))})"
     return f"{value:.6g}" if isinstance(value, float) else spelt(value)
+
+
+def warn_of(message: str, kind: type[Warning] = UserWarning) -> None:
+    """Warn of something at the line of the user that led to it: the nearest one outside the package."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in PASSED:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, kind, stacklevel=level)
+
+
+def ratio_said(ratio: float) -> str:
+    """Capacity over demand with two decimals, cut off and not rounded, so that none below one reads as one."""
+    cut = math.floor(100 * ratio + 1e-9) if ratio <= 99 else 9900
+    return "> 99" if ratio > 99 else f"{(min(cut, 99) if ratio < 1 else cut) / 100:.2f}"
+
+
+def share_said(share: float) -> str:
+    """Demand over capacity with two decimals, rounded up, so that none above one reads as one."""
+    if math.isinf(share):
+        return "inf"
+    up = math.ceil(100 * share - 1e-9)
+    return f"{(max(up, 101) if share > 1 else up) / 100:.2f}"
 
 
 def require_real(name: str, value: object) -> float:

@@ -6,7 +6,11 @@ import numpy as np
 
 import mjrock as mr
 from mjrock.distinct.assembly import copied
+from mjrock.distinct.kinds.actuators import Actuators
+from mjrock.distinct.kinds.constant_forces import ConstantForces
+from mjrock.distinct.kinds.dampers import Dampers
 from mjrock.distinct.kinds.lists import no_laws
+from mjrock.distinct.kinds.ties import Ties
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
@@ -18,7 +22,7 @@ GROUND = mr.Polyhedron.box((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground")
 
 
 def free_body(mass, inertia, spin):
-    """A body far from everything, with a spin about its axes."""
+    """A body far from everything, with a spin about its axes, in tables as those of a run, whose loop serves."""
     kind, inverse = kinds(3), np.linalg.inv(inertia)[None]
     body = rows(
         kind.body,
@@ -31,7 +35,9 @@ def free_body(mass, inertia, spin):
     )
     none = {"lines": kind.line, "edges": kind.edge, "ways": kind.way}
     tables: dict = {name: rows(of, 0) for name, of in none.items()}
-    tables |= {"links": (), "laws": no_laws(3), "guided": np.zeros(0, dtype=np.int64)}
+    links = [kind(kind.table(3, 0)) for kind in (Ties, Dampers, ConstantForces)]
+    links.insert(2, Actuators(Actuators.table(3, 0), moving((), 1)))
+    tables |= {"links": tuple(links), "laws": no_laws(3), "guided": np.zeros(0, dtype=np.int64)}
     return System(axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), **tables)
 
 

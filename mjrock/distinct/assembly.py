@@ -73,10 +73,10 @@ def add_joints(lines: Rows, scene: Scene) -> Rows:
     ]
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
     ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)
-    above = number[[joint.above for joint in joints]][of] == lines["body"]
+    above = scene.sense > 0
     fixed = np.cumsum(number < 0) - 1
     below = fixed[[joint.below for joint in joints]]
-    lines["sense"], lines["fixed"] = np.where(above, 1.0, -1.0), np.where(lines["face"] < 0, below[of], -1)
+    lines["sense"], lines["fixed"] = scene.sense, np.where(lines["face"] < 0, below[of], -1)
     lines["first"], lines["last"] = ends[of, np.where(above, 0, 1)].T
     lines["own_first"], lines["own_last"] = ends[of, np.where(above, 1, 0)].T
     lines["margin"] = margins(lines, edges)

@@ -26,9 +26,8 @@ from ..scene.dampers import taken_by_dampers
 from ..scene.ground import Shaking, mean_acceleration
 from ..scene.scene import Scene
 from ..scene.structure import breaks, spring_energy
-from .points import Points, points_of
 from .record import Record, StepKinds, Steps, Windows
-from .rows import Step, impratio_of, row_of
+from .rows import Points, Step, impratio_of, points_of, row_of
 from .sliding import slip_of
 
 
@@ -70,21 +69,20 @@ def contact_work(scene: Scene, steps: Steps) -> ContactWork:
     joints = scene.contacts.joints
     work = Work(np.zeros((len(steps.t), len(joints))), np.zeros(len(steps.t)), np.zeros(2))
     points, room = points_of(scene, steps.method), LedgerRoom.of(scene)
-    _contact_work(points, scene.contacts.joint, steps.record, steps.windows, steps.kinds, room, work)
+    _contact_work(points, steps.record, steps.windows, steps.kinds, room, work)
     lift, pressed = work.impulses.tolist()
     return ContactWork(joints, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
 
 
 def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     """The ledger of a run."""
-    windows, broken = steps.windows, breaks(scene.ties, steps.pose, scene.places.freedom)
+    windows, broken = steps.windows, breaks(scene.ties, steps.pose)
     stored, taken = scene.accounts(windows.pose, windows.velocity, broken)
     lost = lost_by_breaking(scene, broken, len(steps.t))
     stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
     joints, dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
-    record = steps.record
-    dampers = taken_by_dampers(scene.dampers, scene.freedom, record.pose, windows.mean, windows.width, record.damping)
+    dampers = taken_by_dampers(scene.dampers, steps.pose, windows.mean, windows.width, steps.record.damping)
     dashpots = np.concatenate([dashpots, dampers], axis=1)
     return Ledger(
         t=windows.t,
@@ -114,9 +112,7 @@ def given_back(scene: Scene, steps: Steps) -> Array:
     """
     pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
     pose[::2], pose[1::2] = steps.pose, moved(steps.pose, steps.h[:, None] * steps.record.after, scene.freedom)[:-1]
-    broken = np.maximum(
-        2 * breaks(scene.ties, steps.pose, scene.places.freedom) - 1, 0
-    )  # before the drift that ends at the pose
+    broken = np.maximum(2 * breaks(scene.ties, steps.pose) - 1, 0)  # before the drift that ends at the pose
     stored = scene.accounts(pose, np.zeros((len(pose), len(scene.bodies.masses))), broken)[0].sum(axis=1)
     gained: Array = stored[2::2] - stored[1::2]
     return gained
@@ -213,8 +209,8 @@ def take_rows(points: Points, step: Step, room: LedgerRoom) -> float:
     """Write dashpot and inertia of the row of every contact in a step, and return impratio [-]."""
     impratio = math.inf
     for i in range(len(room.inertia)):
-        room.dashpot[i], room.inertia[i] = row_of(points.law, points.inertia, i, step)
-        impratio = min(impratio, impratio_of(points.inertia, i, room.inertia[i], step.h))
+        room.dashpot[i], room.inertia[i] = row_of(points, i, step)
+        impratio = min(impratio, impratio_of(points, i, room.inertia[i], step.h))
     return impratio
 
 
@@ -270,41 +266,41 @@ def pressed_in(
     points: Points, record: Record, step: Step, room: LedgerRoom, impratio: float, n: int, i: int
 ) -> Pressed:
     """Contact i in step n of a record, whose frames, rates and rows are in the room."""
-    places, law, inertia = points.places, points.law, room.inertia[i]
+    places, inertia = points.places, room.inertia[i]
     closed = gap(places, i, room.frames, room.middle, room.acceleration)
-    drag = drag_of(law.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
-    pressed = -(law.k[i] * closed.value + drag.dashpot + drag.sprung)
+    drag = drag_of(places.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
+    pressed = -(places.k[i] * closed.value + drag.dashpot + drag.sprung)
     row, along, coulomb = max(pressed, 0.0), 0.0, not math.isnan(record.friction[n, i])
-    if law.friction[i] > 0 and (closed.value < 0 or n == 0):
+    if places.friction[i] > 0 and (closed.value < 0 or n == 0):
         along = record.friction[n, i]
         if not coulomb:
             slip = slip_along(places, i, room.frames, record.after[n], record.after[n])
             stopping = -impratio * inertia * slip / step.h
-            row, along = cone_force(pressed, stopping, impratio * inertia, inertia, law.friction[i])
+            row, along = cone_force(pressed, stopping, impratio * inertia, inertia, places.friction[i])
     return Pressed(closed.value, drag.dashpot, pressed, row, along, coulomb)
 
 
 @compiled
 def _contact_work(
-    points: Points, joint: Integers, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, work: Work
+    points: Points, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, work: Work
 ) -> None:
-    """Add up the work of dashpots and friction in the window of each step; `joint` is that of each contact."""
-    places, law = points.places, points.law
+    """Add up the work of dashpots and friction in the window of each step."""
+    places, joint = points.places, points.places.joint
     for n in range(len(record.h)):
         take_step(record, windows, places.axes, n, room)
         kind = kinds.kind[n]
         step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
         impratio = take_rows(points, step, room)
-        for i in range(len(law.k)):
+        for i in range(len(joint)):
             now = pressed_in(points, record, step, room, impratio, n, i)
-            given = spring_energy(places, law.k, i, room.seam) - spring_energy(places, law.k, i, room.next_seam)
+            given = spring_energy(places, i, room.seam) - spring_energy(places, i, room.next_seam)
             if not kinds.released_on[i] if n == 0 else now.gap >= 0:
                 work.dashpots[n, joint[i]] += given
                 continue
             # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
             opened = gap(places, i, room.frames, room.mean, room.mean).rate * windows.width[n]
             work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 0 else given
-            if law.friction[i] > 0:
+            if places.friction[i] > 0:
                 lift = now.row - max(now.law, 0.0)  # what a sliding cone presses on top of the law
                 if points.rubs[i] and lift > 0:
                     work.impulses[0] += lift * step.h

@@ -22,9 +22,8 @@ from ..result.forces import Forces, Gathered, forces_of
 from ..result.ties import Plastic, motion_of_ties
 from ..scene.scene import Scene
 from .energy_work import LedgerRoom, pressed_in, take_rows, take_step
-from .points import Points, points_of
 from .record import Record, StepKinds, Steps, Windows
-from .rows import Step
+from .rows import Points, Step, points_of
 from .sliding import slip_of
 
 
@@ -33,14 +32,13 @@ class Loads(NamedTuple):
 
     Args:
         steps: numbers of the steps, shape (n,).
-        joint, sense: the joint of each contact, and 1 where its body is above that or -1, shape (m,).
+        sense: 1 where the body of a contact is above its joint or -1, shape (m,).
         fixed: number of the fixed block below each joint, or -1, shape (joints,).
         rest: centroids of the bodies at rest [m].
         loads, held: see `Gathered`.
     """
 
     steps: Integers
-    joint: Integers
     sense: Array
     fixed: Integers
     rest: Array
@@ -57,10 +55,9 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
         plastic: what ties have yielded.
     """
     chosen, sample = np.unique(np.searchsorted(steps.windows.t, t, side="right") - 1, return_inverse=True)
-    frames, contacts, d = case.standing.frames, scene.contacts, scene.freedom.translations
+    frames, d = case.standing.frames, scene.freedom.translations
     room = np.zeros((len(chosen), len(frames.names), scene.freedom.nv)), np.zeros((len(chosen), len(frames.blocks), d))
-    sense = np.where(frames.above[contacts.joint] == contacts.body, 1.0, -1.0)
-    loads = Loads(chosen, contacts.joint, sense, frames.fixed, frames.rest, *room)
+    loads = Loads(chosen, scene.sense, frames.fixed, frames.rest, *room)
     points = points_of(scene, steps.method)
     _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.of(scene), loads)
     pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
@@ -80,7 +77,7 @@ def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, 
         kind = kinds.kind[n]
         step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
         impratio = take_rows(points, step, room)
-        for i in range(len(points.law.k)):
+        for i in range(len(places.k)):
             now = pressed_in(points, record, step, room, impratio, n, i)
             if not kinds.released_on[i] if n == 0 else now.gap >= 0:
                 continue
@@ -88,7 +85,7 @@ def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, 
             slipping = room.middle if now.coulomb else record.after[n]
             way = slip_of(meets.normal, over_face(places, i, meets, room.frames, slipping)).way
             force = plus(scaled(now.row, meets.normal), scaled(now.along, way))
-            body, joint = places.body[i], into.joint[i]
+            body, joint = places.body[i], places.joint[i]
             at = plus(vector(into.rest, body, axes), plus(place(room.frames, body, axes), meets.arm))
             load = into.loads[row, joint]
             increase(load, scaled(into.sense[i], force))

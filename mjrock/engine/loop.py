@@ -18,10 +18,9 @@ from ..quantities import ON_ITS_FACE, Array
 from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
 from .pace import Pace, approached, judged, step_of, while_loaded, while_taut
-from .points import Points, Reach
 from .progress import Progress, StepClock
 from .record import Record
-from .rows import set_rows
+from .rows import Points, set_rows
 from .setting import Setting, push
 from .shaken import add_change, find_answer, take_mean
 from .sliding import Sliding, any_slid, find_acceleration, give_rows_back, slide, sliding_changed, time_to_stop
@@ -65,10 +64,10 @@ def lies_on_its_face(q: Array, axes: tuple[int, ...]) -> bool:
 
 
 @inlined
-def out_of_reach(reach: Reach, openings: Openings) -> bool:
+def out_of_reach(points: Points, openings: Openings) -> bool:
     """Whether a contact has opened, or is overlapped, by more than a run follows."""
-    for i in range(len(reach.bears)):  # noqa: SIM110, numba knows no any()
-        if not -reach.overlapped <= openings.value[i] <= reach.opened:
+    for i in range(len(points.bears)):  # noqa: SIM110, numba knows no any()
+        if not -points.overlapped <= openings.value[i] <= points.opened:
             return True
     return False
 
@@ -119,7 +118,7 @@ def shift_velocity(
 def set_step(memory: EngineArrays, points: Points, pace: Pace, step: float) -> None:
     """Set timestep, rows and friction for a step of another length."""
     memory.options[TIMESTEP] = step
-    memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, step), memory.rows)
+    memory.options[IMPRATIO] = set_rows(points, step_of(pace, step), memory.rows)
 
 
 @inlined
@@ -197,17 +196,16 @@ def settle_pose(memory: EngineArrays, setting: Setting, pace: Pace, state: Progr
 @inlined
 def settle_ties(memory: EngineArrays, setting: Setting, frames: Array) -> None:
     """Let ties yield and break at a pose. For the engine, one that has broken is slack up to any length."""
-    axes = setting.points.places.axes
     for i in range(len(setting.ties.k)):
-        if snaps(setting.ties, i, frames, memory.velocity, axes):
+        if snaps(setting.ties, i, frames, memory.velocity):
             memory.plastic[memory.upper[i]] = FAR
-        stretch(setting.ties, i, frames, memory.velocity, axes)
+        stretch(setting.ties, i, frames, memory.velocity)
 
 
 @inlined
 def allowed_step(setting: Setting, pace: Pace, openings: Openings, h: float) -> float:
     """The step that the pace allows, shortened for loaded contacts and taut ties."""
-    loaded = while_loaded(pace, setting.points.reach, openings, h)
+    loaded = while_loaded(pace, setting.points, openings, h)
     return while_taut(pace, setting.ties, openings, loaded)
 
 
@@ -237,7 +235,7 @@ def fitted_loop(
         to_touch = 0.0
         if not unpredictable:
             ahead = step / pace.method.approach if shaken else step
-            to_touch = step_to_touch(state.springs, openings, ahead, allowed, least, pace.short, state.touches)
+            to_touch = step_to_touch(state.touches, openings, ahead, allowed, least, pace.short)
             if shaken:
                 stop = time_to_stop(points.places, sliding, state.frames, state.velocity_now, state.acceleration_now)
                 step, to_touch = approached(pace, min(step, max(pace.method.approach * stop, pace.short)), to_touch)
@@ -257,7 +255,7 @@ def fitted_loop(
             set_step(memory, points, pace, step)
         record.t[n], record.h[n] = t, step
         make_step(memory, setting, sliding, state.frames, record, n)
-        ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points.reach, openings)
+        ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points, openings)
         sliding_turned = sliding_changed(sliding)
         change = change_of_acceleration(memory, setting, state, t, previous, step, no_rate or sliding_turned)
         moves = kinetic(setting.masses, setting.products, memory.velocity)

@@ -22,8 +22,7 @@ from ..method import METHOD, Method
 from ..quantities import GRAVITY, Array
 from ..scene.checks import GROUND
 from ..scene.scene import Scene
-from .points import points_of
-from .rows import ContactRows, Step, set_rows
+from .rows import ContactRows, Step, points_of, set_rows
 from .shapes import in_space, meshes, sites, world
 from .tags import section, tag, value_text
 
@@ -54,7 +53,6 @@ HEAD = """\
     <texture name="paving" type="2d" builtin="checker" rgb1="0.72 0.72 0.7" rgb2="0.66 0.66 0.64" width="64"
              height="64"/>
     <material name="paving" texture="paving" texrepeat="1 1" texuniform="true"/>
-    <material name="brick" rgba="0.7 0.33 0.23 1"/>
     <material name="plaster" rgba="0.85 0.82 0.76 1"/>{meshes}
   </asset>
 """
@@ -157,7 +155,7 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float = 0.25, method:
     """The rows of a scene at a fixed step."""
     points, m = points_of(scene, method), len(scene.contacts.k)
     rows, step = ContactRows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
-    return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.links.c)
+    return FixedRows(rows, set_rows(points, step, rows), scene.links.c)
 
 
 def linked(scene: Scene) -> Iterator[str]:

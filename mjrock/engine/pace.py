@@ -32,8 +32,7 @@ from ..quantities import Array
 from ..scene.course import Course
 from ..scene.dampers import damping_rate
 from ..scene.scene import Scene
-from .points import Reach, inverse_weights, points_of
-from .rows import Step
+from .rows import Points, Step, inverse_weights, points_of
 from .solref import longest_represented_step
 from .touches import Openings
 
@@ -70,11 +69,11 @@ class Pace(NamedTuple):
     @classmethod
     def of(cls, scene: Scene, course: Course, accuracy: float, method: Method = METHOD) -> Pace:
         """The limits for a scene and what happens to it."""
-        short, weight = short_step(scene, accuracy, method), points_of(scene, method).inertia.weight
+        short, weight = short_step(scene, accuracy, method), points_of(scene, method).weight
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
         represented = min(longest_represented_step(k, W) for k, W in zip(scene.contacts.k, weight, strict=True))
         stable = method.stable / max(scene.tie_frequency, 1e-300)
-        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.freedom, scene.bodies.principal)
+        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.bodies.principal)
         slowed = math.sqrt(method.dashpot * accuracy) / max(slowing, 1e-300)
         longest = max(short, min(rocking, represented, stable, slowed, *course.sampling))
         damped = scene.contacts.c / (longest * scene.contacts.k) if scene.limits.damped_joints else 0.0
@@ -120,15 +119,15 @@ def step_of(pace: Pace, h: float) -> Step:
 
 
 @inlined
-def while_loaded(pace: Pace, reach: Reach, openings: Openings, h: float) -> float:
+def while_loaded(pace: Pace, points: Points, openings: Openings, h: float) -> float:
     """The step h [s], shortened to what every loaded contact stays loaded in, but not below the short step.
 
     h^2/2 |g2| <= stays |g| for every loaded point, with g its gap and g2 what the velocities alone make of its second
     rate.
     """
-    for i in range(len(reach.bears)):
+    for i in range(len(points.bears)):
         g, swept = openings.value[i], openings.swept[i]
-        if -g > pace.method.loaded * reach.bears[i] > 0 and 0.5 * h * h * abs(swept) > -pace.method.stays * g:
+        if -g > pace.method.loaded * points.bears[i] > 0 and 0.5 * h * h * abs(swept) > -pace.method.stays * g:
             h = math.sqrt(-2 * pace.method.stays * g / abs(swept))
     return max(h, pace.short)
 

@@ -14,7 +14,7 @@ from .setting import Setting
 from .shaken import Shaken
 from .sliding import Sliding
 from .sticking import Joints
-from .touches import Openings, Springs, Touches
+from .touches import Openings, Touches
 
 
 class Progress(NamedTuple):
@@ -29,7 +29,6 @@ class Progress(NamedTuple):
         openings: gap of each contact, slack of each tie, and their rates.
         closed: which contacts are closed and which ties are taut, shape (m + t,).
         touches: room for the touches of a step.
-        springs: of the contacts and the ties.
         joints: where sticking edges stuck.
         sliding: which contacts slide.
         shaken: the ground in the last step, and how the bodies answer to it.
@@ -45,7 +44,6 @@ class Progress(NamedTuple):
     openings: Openings
     closed: Flags
     touches: Touches
-    springs: Springs
     joints: Joints
     sliding: Sliding
     shaken: Shaken
@@ -53,12 +51,12 @@ class Progress(NamedTuple):
     @classmethod
     def of(cls, memory: EngineArrays, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
         """The state before the first step."""
-        springs, freedom = Springs.of(setting.points.law, setting.ties), setting.points.places.freedom
-        frames = frames_of(memory.pose, freedom)
-        closed = np.zeros(len(springs.k), dtype=np.bool_)
+        places = setting.points.places
+        frames, touches = frames_of(memory.pose, places.freedom), Touches.of(places, setting.ties)
+        count = len(touches.k)
         acceleration, rate, change, velocity_now, acceleration_now = np.zeros((5, len(memory.velocity)))
         rates = acceleration, rate, change, velocity_now, acceleration_now
-        touching = Openings.of(springs), closed, Touches.of(springs), springs
+        touching = Openings.of(count), np.zeros(count, dtype=np.bool_), touches
         return cls(*rates, frames, frames.copy(), *touching, joints, sliding, Shaken.of(setting))
 
 

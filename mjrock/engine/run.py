@@ -65,7 +65,7 @@ class EngineRun:
         Raises:
             StepError: if energy appears from nowhere before a wall cannot come back, or before the first block falls.
         """
-        broken, nq, nv = breaks(scene.ties, steps.pose, scene.freedom), scene.freedom.nq, scene.freedom.nv
+        broken, nq, nv = breaks(scene.ties, steps.pose), scene.freedom.nq, scene.freedom.nv
         stored, taken = scene.accounts(steps.pose, steps.velocity, broken)
         energy = stored.sum(axis=1) - scene.rest_energies.sum()
         bodies = len(scene.bodies.names)
@@ -178,7 +178,7 @@ def balance(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:
     windows = steps.windows
     yields = bool(np.isfinite(scene.links.sprung.strength).any())  # a tie yields between the marks too
     at = np.arange(marks[-1] + 1) if yields else marks
-    broken = (breaks(scene.ties, steps.pose, scene.places.freedom),) if yields else ()
+    broken = (breaks(scene.ties, steps.pose),) if yields else ()
     stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
     own = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
     return np.asarray(own[marks] if yields else own)

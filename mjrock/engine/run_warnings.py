@@ -13,8 +13,8 @@ from ..result.response import Response
 from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from .energy_work import contact_work
-from .points import points_of
 from .record import Steps
+from .rows import points_of
 from .run import EngineRun
 
 SCATTER = 0.1

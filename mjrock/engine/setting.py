@@ -17,7 +17,7 @@ from ..scene.ground import Ground, push_ground
 from ..scene.masses import gyroscopic
 from ..scene.scene import Scene
 from .memory import TIMESTEP, EngineArrays
-from .points import Points, points_of
+from .rows import Points, points_of
 
 
 class Setting(NamedTuple):
@@ -92,9 +92,9 @@ def push(memory: EngineArrays, setting: Setting, frames: Array, t: float) -> Non
     if len(dampers.c) > 0:
         for j in range(len(memory.applied)):
             memory.applied[j] = memory.velocity[j] + (ahead * memory.acceleration[j] if setting.refines else 0.0)
-        damping_forces(dampers, frames, memory.applied, axes, setting.damping)
+        damping_forces(dampers, frames, memory.applied, setting.damping)
     memory.applied[:] = 0.0
     if setting.refines:
-        damp(dampers, frames, setting.damping, axes, memory.applied)
+        damp(dampers, frames, setting.damping, memory.applied)
         add_gyroscopic_correction(memory, setting, axes, ahead)
     push_ground(setting.ground, setting.masses, axes, t, memory.options[TIMESTEP], memory.applied)

@@ -11,7 +11,7 @@ from ..geometry.frames import PLANE
 from ..quantities import Array
 from ..scene.checks import GROUND
 from ..scene.scene import Scene
-from ..scene.tints import BRICKS, told_apart
+from ..scene.tints import TINTS, told_apart
 from .tags import tag, value_text
 
 BALL = (("x", "slide", "1 0 0"), ("y", "slide", "0 1 0"), ("z", "slide", "0 0 1"))
@@ -41,19 +41,16 @@ def world(scene: Scene) -> Iterator[str]:
             height = float(scene.contacts.face_at[faces[name]][-1])
             yield from _ground(scene, name, hidden=scene.freedom != PLANE and height in paved)
             paved.add(height)
-    shades = [{}] * len(scene.bodies.names) if scene.freedom == PLANE else tints(scene)
-    for j in range(len(scene.bodies.names)):
-        yield from _body(scene, j, faces, shades[j])
+    for j, tint in enumerate(tints(scene)):
+        yield from _body(scene, j, faces, tint)
 
 
 def tints(scene: Scene) -> list[dict[str, object]]:
-    """Colours of the bodies: where there are several, another one than those of the blocks they touch."""
+    """Colours of the bodies, each another one than those of the bodies that it touches."""
     count, contacts = len(scene.bodies.names), scene.contacts
-    if count == 1:
-        return [{}]
     touching = zip(contacts.body.tolist(), contacts.face_body.tolist(), strict=True)
     chosen = told_apart(count, (pair for pair in touching if GROUND not in pair))
-    return [{"rgba": (*BRICKS[tint], 1.0)} for tint in chosen]
+    return [{"rgba": (*TINTS[tint], 1.0)} for tint in chosen]
 
 
 def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) -> Iterator[str]:
@@ -68,9 +65,9 @@ def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) 
         yield "    " + tag("joint", name=f"{prefix}turn", type="ball")
     for part, outline in zip(part_names(scene, j), scene.bodies.parts_of(j), strict=True):
         if _is_box(outline):
-            yield "    " + tag("geom", name=part, type="box", size=_half(scene, outline), material="brick", **tint)
+            yield "    " + tag("geom", name=part, type="box", size=_half(scene, outline), **tint)
         else:
-            yield "    " + tag("geom", name=part, type="mesh", mesh=part, material="brick", **tint)
+            yield "    " + tag("geom", name=part, type="mesh", mesh=part, **tint)
     for face in (face for face, i in faces.items() if scene.contacts.face_body[i] == j):
         yield "    " + tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face]))
     for i in np.flatnonzero(scene.contacts.body == j):

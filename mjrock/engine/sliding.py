@@ -24,7 +24,7 @@ from ..geometry.vectors import Vector, dot, minus, plus, scaled, tangent
 from ..method import METHOD, Method
 from ..quantities import Array, Flags
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
-from .points import Points
+from .rows import Points
 from .setting import Setting, push
 from .solref import inertia_of
 from .touches import ROUNDING
@@ -120,7 +120,7 @@ def take_way(memory: EngineArrays, places: Places, sliding: Sliding, i: int, mee
 @inlined
 def pressing_force(memory: EngineArrays, points: Points, i: int, meets: Meeting, frames: Array) -> float:
     """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
-    places, d, W = points.places, memory.rows.solimp[i, 0], points.inertia.weight[i]
+    places, d, W = points.places, memory.rows.solimp[i, 0], points.weight[i]
     rate = dot(meets.normal, over_face(places, i, meets, frames, memory.velocity))
     closing = dot(meets.normal, over_face(places, i, meets, frames, memory.acceleration))
     sprung = memory.rows.solref[i, 0] * meets.gap + memory.rows.solref[i, 1] * rate
@@ -141,8 +141,8 @@ def find_sliding(memory: EngineArrays, points: Points, sliding: Sliding, frames:
         meets = where_friction_acts(places, meeting(places, i, frames))
         if meets.gap > -ROUNDING * places.radius:
             continue
-        mu, now = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
-        inertia = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
+        mu, now = places.friction[i], slipping(places, i, meets, frames, memory.velocity)
+        inertia = inertia_of(memory.rows.solimp[i, 0], points.weight[i])
         stopping = inertia * abs(now.speed) / memory.options[TIMESTEP]
         pressing = pressing_force(memory, points, i, meets, frames)
         beyond = memory.options[IMPRATIO] * stopping > sliding.method.slides * mu * pressing
@@ -180,7 +180,7 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
             meets = where_friction_acts(places, meeting(places, i, frames))
             slip = slipping(places, i, meets, frames, memory.velocity).speed
             pressing = pressing_force(memory, points, i, meets, frames)
-            force = -math.copysign(points.law.friction[i] * pressing, slip)
+            force = -math.copysign(places.friction[i] * pressing, slip)
             turned = take_way(memory, places, sliding, i, meets, frames)
             change, turning = max(change, abs(force - sliding.force[i])), max(turning, turned * abs(force))
             largest = max(largest, abs(force), abs(sliding.force[i]))

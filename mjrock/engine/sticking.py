@@ -29,9 +29,8 @@ from ..geometry.vectors import Vector, dot, minus, spun
 from ..quantities import Array, Integers
 from ..scene.scene import Scene
 from .pace import Pace, step_of
-from .points import Points, Reach
 from .record import Record
-from .rows import Step, row_of
+from .rows import Points, Step, row_of
 from .sliding import slipping
 
 EQUAL = 1e-6
@@ -95,15 +94,15 @@ def sticks(points: Points, i: int, frames: Array, before: Array, after: Array, s
 
     The friction row stops the slip with the force that this takes, as long as the force is within the cone.
     """
-    places, law = points.places, points.law
+    places = points.places
     start = gap(places, i, frames, before, before)
     if start.value >= 0:
         return False
-    dashpot, inertia = row_of(law, points.inertia, i, step)
+    dashpot, inertia = row_of(points, i, step)
     acceleration = (gap(places, i, frames, after, after).rate - start.rate) / step.h
-    pressing = -(law.k[i] * start.value + dashpot * start.rate + inertia * acceleration)
+    pressing = -(places.k[i] * start.value + dashpot * start.rate + inertia * acceleration)
     slip = slipping(places, i, where_friction_acts(places, meeting(places, i, frames)), frames, after).speed
-    return pressing > 0 and abs(impratio * inertia * slip / step.h) <= law.friction[i] * pressing
+    return pressing > 0 and abs(impratio * inertia * slip / step.h) <= places.friction[i] * pressing
 
 
 @inlined
@@ -122,11 +121,12 @@ def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
 
 
 @inlined
-def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
+def presses(points: Points, body: int, frames: Array) -> bool:
     """Whether a contact of a body is closed that bears nothing while the scene is at rest."""
+    places = points.places
     for i in range(len(places.body)):
         of_body = places.body[i] == body or places.face_body[i] == body
-        if of_body and reach.bears[i] == 0 and depth(places, i, frames) > 0:
+        if of_body and points.bears[i] == 0 and depth(places, i, frames) > 0:
             return True
     return False
 
@@ -160,7 +160,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> No
     joints.stuck[j] = i
     if i < 0:
         return
-    meets, ways = meeting(places, i, frames), ways_along(places, i, frames, places.axes)
+    meets, ways = meeting(places, i, frames), ways_along(places, i, frames)
     for k in range(len(ways)):
         place = dot(ways[k], meets.across)
         if first:
@@ -170,7 +170,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> No
             shift(frames, body, ways[k], joints.anchor[j, k] - place)
     if first:
         return
-    pressed = presses(places, points.reach, body, frames)
+    pressed = presses(points, body, frames)
     for axis in range(len(places.axes)):
         if pressed:
             frames[body, axis] = moved.pose[start + axis]

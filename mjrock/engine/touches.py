@@ -16,23 +16,10 @@ import numpy as np
 from ..compiled import inlined
 from ..geometry.kinematics import Places, Ties, opening
 from ..quantities import Array, Flags
-from .rows import ContactLaw
 
 ROUNDING = 1e-6
 """Gap below which a contact has neither opened nor closed, over the radius of the contact spheres [-], which goes with
 the size of the bodies: some 1e-12 m. A joint that bears nothing rests at a gap of zero."""
-
-
-class Springs(NamedTuple):
-    """Springs [N/m] and dashpots [N s/m] of the contacts, and after them of the ties, shape (m + t,) each."""
-
-    k: Array
-    c: Array
-
-    @classmethod
-    def of(cls, law: ContactLaw, ties: Ties) -> Springs:
-        """Those of a scene."""
-        return cls(np.append(law.k, ties.k), np.append(law.c, np.zeros_like(ties.k)))
 
 
 class Openings(NamedTuple):
@@ -44,21 +31,29 @@ class Openings(NamedTuple):
     swept: Array
 
     @classmethod
-    def of(cls, springs: Springs) -> Openings:
-        """Room for the openings of some springs."""
-        return cls(*np.zeros((4, len(springs.k))))
+    def of(cls, count: int) -> Openings:
+        """Room for so many openings."""
+        return cls(*np.zeros((4, count)))
 
 
 class Touches(NamedTuple):
-    """Touches of a step: time until each [s], infinite where there is none, and closing speed [m/s], (m + t,) each."""
+    """Touches of a step, of the contacts and after them of the ties, shape (m + t,) each.
 
+    Args:
+        k, c: springs [N/m] and dashpots [N s/m].
+        time, speed: time until each touch [s], infinite where there is none, and closing speed [m/s].
+    """
+
+    k: Array
+    c: Array
     time: Array
     speed: Array
 
     @classmethod
-    def of(cls, springs: Springs) -> Touches:
-        """Room for the touches of some springs."""
-        return cls(*np.zeros((2, len(springs.k))))
+    def of(cls, places: Places, ties: Ties) -> Touches:
+        """Room for the touches of a scene."""
+        k, c = np.append(places.k, ties.k), np.append(places.c, np.zeros_like(ties.k))
+        return cls(k, c, *np.zeros((2, len(k))))
 
 
 @inlined
@@ -91,29 +86,28 @@ def closure_changed(places: Places, openings: Openings, closed: Flags) -> bool:
 
 
 @inlined
-def predict(springs: Springs, openings: Openings, now: float, h: float, least: float, touches: Touches) -> float:
+def predict(touches: Touches, openings: Openings, now: float, h: float, least: float) -> float:
     """Find the touches of a step that matter, and return the time until the first one [s], or infinity.
 
     A touch that is ignored is noticed up to a step h too late. It then misplaces k (v h)^2 / 4 in the spring and
     c h v^2 in the dashpot.
 
     Args:
-        springs: of the contacts and the ties.
+        touches: with the springs and the dashpots. Time and speed are written; the time is infinite where a contact is
+            closed, does not touch, or touches too faintly.
         openings: how they open and close now.
         now: the step within which touches count [s].
         h: the step up to which a touch that is ignored would be noticed too late [s].
         least: energy that may be misplaced [J].
-        touches: what is written. The time is infinite where a contact is closed, does not touch, or touches too
-            faintly.
     """
     first = math.inf
-    for i in range(len(springs.k)):
+    for i in range(len(touches.k)):
         touches.time[i] = math.inf
         g, g1, g2 = openings.value[i], openings.rate[i], openings.linear[i] + openings.swept[i]
         if g < 0 or g + now * (g1 + 0.5 * now * g2) > 0:
             continue
         closing = math.sqrt(max(0.0, g1 * g1 - 2 * g * g2))
-        if (0.25 * springs.k[i] * h + springs.c[i]) * h * (closing * closing) > least:
+        if (0.25 * touches.k[i] * h + touches.c[i]) * h * (closing * closing) > least:
             touches.time[i], touches.speed[i] = 2 * g / (closing - g1), closing
             first = min(first, touches.time[i])
     return first
@@ -130,15 +124,13 @@ def hardest(touches: Touches, latest: float) -> float:
 
 
 @inlined
-def step_to_touch(
-    springs: Springs, openings: Openings, now: float, h: float, least: float, short: float, touches: Touches
-) -> float:
+def step_to_touch(touches: Touches, openings: Openings, now: float, h: float, least: float, short: float) -> float:
     """Length of a step that ends half a short step after the touch that falls within it, or zero if none does [s].
 
     Of several touches in one short window, the hardest is the start of the window. `now` is the step that is about to
     be made, `short` the short step [s], and the other arguments are those of `predict`.
     """
-    first = predict(springs, openings, now, h, least, touches)
+    first = predict(touches, openings, now, h, least)
     if first == math.inf:
         return 0.0
     return hardest(touches, first + 0.5 * short) + 0.5 * short

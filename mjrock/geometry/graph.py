@@ -19,7 +19,8 @@ def components(pairs: ArrayLike, count: int) -> Integers:
         pairs: the two nodes of each edge, shape (edges, 2).
         count: number of nodes.
     """
-    return np.asarray(scipy.sparse.csgraph.connected_components(_graph(pairs, count), directed=False)[1])
+    found = scipy.sparse.csgraph.connected_components(_graph(pairs, count), directed=False)[1]
+    return np.asarray(found, dtype=np.int64)  # as all numbers are: a loop is compiled anew for those of another size
 
 
 def nearest_roots(pairs: ArrayLike, count: int, roots: Sequence[int]) -> Integers:
@@ -33,7 +34,7 @@ def nearest_roots(pairs: ArrayLike, count: int, roots: Sequence[int]) -> Integer
     found = scipy.sparse.csgraph.dijkstra(
         _graph(pairs, count), directed=False, indices=roots, min_only=True, return_predecessors=True
     )
-    return np.asarray(found[2])
+    return np.asarray(found[2], dtype=np.int64)
 
 
 def _graph(pairs: ArrayLike, count: int) -> Any:

@@ -9,7 +9,7 @@ the velocity of the point over the body of the face, in which the face is at res
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,9 @@ from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, tangents, 
 
 
 class Places(NamedTuple):
-    """Contact points and the faces that they meet, as arrays for compiled functions. Vectors have d = 2 or 3 numbers.
+    """Contact points, the faces that they meet and their law, as columns for compiled functions.
+
+    Vectors have d = 2 or 3 numbers.
 
     Args:
         axes: of the freedom of the bodies, see `Freedom`.
@@ -31,6 +33,10 @@ class Places(NamedTuple):
         normal: unit vector out of the face at rest, shape (m, d).
         between: vector from the origin of the face to the point, at rest [m], shape (m, d).
         radius: of the spheres that stand for the points in MuJoCo [m].
+        joint: number of the joint that each point belongs to, shape (m,).
+        k, c: spring [N/m] and dashpot [N s/m] of each, shape (m,).
+        friction: coefficient of friction, zero for none [-], shape (m,).
+        tension, cohesion: what the bond of each holds along the normal and along the face without pressure [N], (m,).
     """
 
     axes: tuple[int, ...]
@@ -41,6 +47,12 @@ class Places(NamedTuple):
     normal: Array
     between: Array
     radius: float
+    joint: Integers
+    k: Array
+    c: Array
+    friction: Array
+    tension: Array
+    cohesion: Array
 
     @property
     def freedom(self) -> Freedom:
@@ -48,15 +60,31 @@ class Places(NamedTuple):
         return Freedom(self.axes)
 
 
-class Ties(NamedTuple):
-    """Ties between points of two bodies, or of a body and the ground, as arrays for compiled functions.
+class LinkEnds(NamedTuple):
+    """The ends of links between points of two bodies, or of a body and the ground, as columns for compiled functions.
 
     Args:
-        body: the body that each tie holds, shape (t,).
+        axes: of the freedom of the bodies, see `Freedom`.
+        body: the body that each link holds, shape (t,).
         at: position of the held point from the centroid of that body, at rest [m], shape (t, d).
         anchor_body: the body of the anchor, -1 for the ground, shape (t,).
         anchor_at: the anchor from the centroid of its body, at rest, or from the origin of the world [m], shape (t, d).
         between: vector from the anchor to the held point, at rest [m], shape (t, d).
+    """
+
+    axes: tuple[int, ...]
+    body: Integers
+    at: Array
+    anchor_body: Integers
+    anchor_at: Array
+    between: Array
+
+
+class Ties(NamedTuple):
+    """Links with a spring, as columns for compiled functions.
+
+    Args:
+        links: their ends.
         k: stiffness [N/m], shape (t,).
         reach: length up to which the tie is slack [m], shape (t,). It grows as the tie yields, and is infinite once
             the tie has broken.
@@ -65,11 +93,7 @@ class Ties(NamedTuple):
         squeeze: shortening below its reach at which it yields [m], zero for one that only pulls, shape (t,).
     """
 
-    body: Integers
-    at: Array
-    anchor_body: Integers
-    anchor_at: Array
-    between: Array
+    links: LinkEnds
     k: Array
     reach: Array
     stretch: Array
@@ -78,14 +102,16 @@ class Ties(NamedTuple):
 
 
 class AppliedForces(NamedTuple):
-    """Forces that keep size and direction and follow a point of a body, as arrays for compiled functions.
+    """Forces that keep size and direction and follow a point of a body, as columns for compiled functions.
 
     Args:
+        axes: of the freedom of the bodies, see `Freedom`.
         body: the body that each force acts on, shape (f,).
         at: position of its point from the centroid of that body, at rest [m], shape (f, d).
         force: its components [N], shape (f, d).
     """
 
+    axes: tuple[int, ...]
     body: Integers
     at: Array
     force: Array
@@ -176,15 +202,24 @@ def over_face(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -
 
 
 @inlined
-def ways_along(places: Places, i: int, frames: Array, axes: tuple[int, ...]) -> tuple[Vector, ...]:
+def turned_vector(a: Vector, frames: Array, body: int) -> Vector:
+    """A vector of a body, or of the ground, in the axes of the world."""
+    return a if body < 0 else displaced(a, frames, body, a)
+
+
+@inlined
+def face_ways(normal: Vector, frames: Array, face: int) -> tuple[Vector, ...]:
+    """`ways_along` for a normal at rest and the body of the face."""
+    if len(normal) == 2:
+        return (turned_vector(tangent(normal), frames, face),)
+    first, second = tangents(normal)
+    return turned_vector(first, frames, face), turned_vector(second, frames, face)
+
+
+@inlined
+def ways_along(places: Places, i: int, frames: Array) -> tuple[Vector, ...]:
     """Unit vectors along the face of point i: one in the plane, and in space the two `tangents` that turn with it."""
-    face = places.face_body[i]
-    if len(axes) == 2:
-        return (tangent(meeting(places, i, frames).normal),)
-    first, second = tangents(vector(places.normal, i, axes))
-    if face < 0:
-        return first, second
-    return displaced(first, frames, face, first), displaced(second, frames, face, second)
+    return face_ways(vector(places.normal, i, places.axes), frames, places.face_body[i])
 
 
 @inlined
@@ -225,20 +260,21 @@ def push_apart(places: Places, i: int, meets: Meeting, frames: Array, force: Vec
 
 
 @inlined
-def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array, axes: tuple[int, ...]) -> Gap:
+def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array) -> Gap:
     """How much longer tie i may still become before it pulls [m], and how that changes; otherwise as `gap`."""
-    at = ends(ties, i, frames, axes)
-    across, velocity = at.across, parting(ties, i, at, frames, v, axes)
-    turning = spin(frames, v, ties.body[i], axes)
+    links = ties.links
+    at, axes, anchor = ends(links, i, frames), links.axes, links.anchor_body[i]
+    across, velocity = at.across, parting(links, i, at, frames, v)
+    turning = spin(frames, v, links.body[i], axes)
     centripetal = spun(turning, spun(turning, at.arm))
-    if ties.anchor_body[i] >= 0:
-        turning = spin(frames, v, ties.anchor_body[i], axes)
+    if anchor >= 0:
+        turning = spin(frames, v, anchor, axes)
         centripetal = minus(centripetal, spun(turning, spun(turning, at.anchor_arm)))
     length = math.sqrt(dot(across, across))
     direction = scaled(1 / length, across)
     longer = dot(direction, velocity)
     swept = dot(direction, centripetal) + (dot(velocity, velocity) - longer * longer) / length
-    pulling = dot(direction, parting(ties, i, at, frames, a, axes))
+    pulling = dot(direction, parting(links, i, at, frames, a))
     return Gap(ties.reach[i] - length, -longer, -pulling, -swept)
 
 
@@ -247,16 +283,16 @@ def opening(places: Places, ties: Ties, i: int, frames: Array, v: Array, a: Arra
     """The gap of contact i, or the slack of the tie that follows after the contacts."""
     if i < len(places.body):
         return gap(places, i, frames, v, a)
-    return slack(ties, i - len(places.body), frames, v, a, places.axes)
+    return slack(ties, i - len(places.body), frames, v, a)
 
 
 @inlined
-def stretch(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> tuple[float, float]:
+def stretch(ties: Ties, i: int, frames: Array, v: Array) -> tuple[float, float]:
     """Elastic elongation of tie i, and by how much it has just yielded either way [m]. Its reach is brought up to date.
 
     The velocities v of the bodies make no difference.
     """
-    pulled = -slack(ties, i, frames, v, v, axes).value
+    pulled = -slack(ties, i, frames, v, v).value
     yielded = max(pulled - ties.stretch[i], 0.0)
     if ties.squeeze[i] == 0:
         ties.reach[i] += yielded
@@ -267,20 +303,20 @@ def stretch(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) 
 
 
 @inlined
-def snaps(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> bool:
+def snaps(ties: Ties, i: int, frames: Array, v: Array) -> bool:
     """Whether tie i is longer than its limit and breaks now. It is slack from then on."""
     if ties.limit[i] == math.inf or ties.reach[i] == math.inf:
         return False
-    if ties.reach[i] - slack(ties, i, frames, v, v, axes).value <= ties.limit[i]:
+    if ties.reach[i] - slack(ties, i, frames, v, v).value <= ties.limit[i]:
         return False
     ties.reach[i] = math.inf
     return True
 
 
 @inlined
-def displacement(forces: AppliedForces, i: int, frames: Array, axes: tuple[int, ...]) -> Vector:
+def displacement(forces: AppliedForces, i: int, frames: Array) -> Vector:
     """Displacement of the point of force i from rest [m]."""
-    body = forces.body[i]
+    body, axes = forces.body[i], forces.axes
     return displaced(place(frames, body, axes), frames, body, vector(forces.at, i, axes))
 
 
@@ -313,9 +349,10 @@ class Ends(NamedTuple):
 
 
 @inlined
-def ends(links: Any, i: int, frames: Array, axes: tuple[int, ...]) -> Ends:
-    """The ends of link i of ties or dampers, see `kinematics.Ties`."""
-    body, anchor, at = links.body[i], links.anchor_body[i], vector(links.at, i, axes)
+def ends(links: LinkEnds, i: int, frames: Array) -> Ends:
+    """The ends of link i."""
+    axes, body, anchor = links.axes, links.body[i], links.anchor_body[i]
+    at = vector(links.at, i, axes)
     arm = plus(at, rotation_change(frames, body, at))
     across = plus(vector(links.between, i, axes), plus(place(frames, body, axes), minus(arm, at)))
     if anchor < 0:
@@ -326,9 +363,9 @@ def ends(links: Any, i: int, frames: Array, axes: tuple[int, ...]) -> Ends:
 
 
 @inlined
-def parting(links: Any, i: int, at: Ends, frames: Array, v: Array, axes: tuple[int, ...]) -> Vector:
+def parting(links: LinkEnds, i: int, at: Ends, frames: Array, v: Array) -> Vector:
     """Velocity of the point of link i over its anchor [m/s]; for accelerations the part that is linear in them."""
-    body, anchor = links.body[i], links.anchor_body[i]
+    axes, body, anchor = links.axes, links.body[i], links.anchor_body[i]
     velocity = plus(linear(v, body, axes), spun(spin(frames, v, body, axes), at.arm))
     if anchor < 0:
         return velocity

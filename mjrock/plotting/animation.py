@@ -24,7 +24,6 @@ from ..files import replacing
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
-from ..result.bodies import Moving
 from ..result.response import Response
 from .bodies import Bodies
 from .forces import forces_on, require_shown
@@ -217,7 +216,7 @@ def animate(
     require_kind("response", response, Response)
     bodies: Bodies | Solids
     if response.in_space:
-        bodies = Solids.of(response, require_within("magnify", magnify, 0.01, 1e4), camera, limits)
+        bodies = Solids.of(response, magnify, camera, limits)
     elif camera is not None:
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     else:
@@ -248,9 +247,9 @@ def animate_bodies(
     """Write the motion of any rigid bodies in their plane as a moving picture.
 
     The bodies and their motion `t`, `outlines`, `rests`, `poses` and `fixed` are those of
-    `mjrock.plotting.bodies.Bodies`. All else, the path that is returned and the errors are those of `animate`.
+    `mjrock.plotting.bodies.Bodies.loose`. All else, the path that is returned and the errors are those of `animate`.
     """
-    bodies = Bodies(t, outlines, rests, poses, magnify, fixed, limits=limits)  # type: ignore[arg-type]
+    bodies = Bodies.loose(t, outlines, rests, poses, magnify, fixed, limits)
     return _film(bodies, path, [], None, speed=speed, fps=fps, title=title, dpi=dpi)
 
 
@@ -338,9 +337,9 @@ def scene(
     ax: Axes = (figure if halves is None else halves[0]).subplots(subplot_kw=depth)
     updates = _standing(ax, bodies, case)
     if pressed is not None:
-        moving = Moving(pressed[0].case, bodies.t, bodies.poses, bodies.magnify)
-        updates.append(forces_on(ax, pressed[0], moving, pressed[1]))
-    scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
+        updates.append(forces_on(ax, pressed[0], bodies.moving, pressed[1]))
+    magnify = bodies.moving.magnify
+    scale = "true to scale" if magnify == 1 else f"displacements x {magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
     clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)
     clock.set_animated(True)

@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..geometry.poses import displaced
 from ..problem.masonry.case import AnyCase
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, keep, require_array, require_kind, require_reals, require_row, require_within, shown
+from ..quantities import (
+    Array,
+    Integers,
+    require_array,
+    require_kind,
+    require_reals,
+    require_row,
+    require_within,
+    shown,
+)
 from ..result.bodies import Moving
 from ..result.response import Response
+from ..scene.tints import TINTS, colours_of, told_apart
 
 
 def require_masonry(what: str, response: Response) -> Masonry:
@@ -26,13 +36,6 @@ def require_masonry(what: str, response: Response) -> Masonry:
 
 Ends = tuple[Array, Array]
 """The lowest and the highest x and z of something [m], shape (2,) each."""
-
-
-def interpolated(times: Array, t: Array, poses: Array) -> Array:
-    """Poses of shape (n, bodies, numbers) at other times, linearly."""
-    columns = poses.reshape(len(t), -1).T
-    between = np.stack([np.interp(times, t, column) for column in columns], axis=-1)
-    return between.reshape(len(times), *poses.shape[1:])
 
 
 def ends_of(points: Array) -> tuple[Array, Array]:
@@ -90,67 +93,124 @@ def _outlines(name: str, given: object) -> tuple[Array, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
-    """Rigid bodies in their plane, and their motion.
+class Loose:
+    """Bodies of the plane without joints, in place of a case.
 
     Args:
-        t: times [s], shape (n,), increasing.
-        outlines: corners of each body about its centroid, at rest [m], one array of shape (corners, 2) each.
-        rests: centroid of each body at rest, x and z [m], shape (bodies, 2).
-        poses: displacement x, z of each centroid from rest [m] and rotation [rad], shape (n, bodies, 3). A positive
-            rotation turns the top of a body to the right, towards positive x.
-        magnify: factor on the displacement of every point [-], 0.01 to 10000; 1 is true to scale.
-        fixed: outlines of fixed bodies, in place [m].
-        shifts: displacement of each fixed body that is moved, by its number among them [m], shape (n, 2) each.
-        limits: lowest and highest x, and lowest and highest z, of the picture [m]; None shows what moves, see `extent`.
-
-    Raises:
-        TypeError, ValueError: for arrays that do not fit together, or a factor outside its range.
+        outlines: corners of each about its centroid, at rest [m], shape (corners, 2) each.
+        rests: centroid of each at rest [m], shape (bodies, 2).
+        grounds: corners of fixed bodies [m], which are numbered after the others.
     """
 
-    t: Array
     outlines: tuple[Array, ...]
     rests: Array
-    poses: Array
-    magnify: float = 1.0
-    fixed: tuple[Array, ...] = ()
-    shifts: Mapping[int, Array] = field(default_factory=dict)
-    limits: Array | None = None
+    grounds: tuple[Array, ...]
 
-    def __post_init__(self) -> None:
-        times = require_row("t", self.t, "time [s]")
-        if not (np.diff(times) >= 0).all():
-            raise ValueError(f"t = {shown(self.t)} decreases; one row of increasing times [s] is needed")
-        keep(self, outlines=_outlines("outlines", self.outlines), fixed=_outlines("fixed", self.fixed), t=times)
-        count = len(self.outlines)
-        keep(
-            self,
-            limits=required_limits(self.limits, "xz"),
-            magnify=require_within("magnify", self.magnify, 0.01, 1e4),
-            rests=require_array("rests", self.rests, (count, 2)),
-            poses=require_array("poses", self.poses, (len(times), count, 3)),
-        )
+    @property
+    def fixed(self) -> dict[int, Array]:
+        """Corners of the fixed bodies [m], by their numbers."""
+        return dict(enumerate(self.grounds, len(self.outlines)))
+
+    @property
+    def centroids(self) -> Array:
+        """Centroids of all [m], shape (all, 2); fixed ones are given about the origin."""
+        return np.concatenate([self.rests, np.zeros((len(self.grounds), 2))])
+
+    def body_of(self, block: int) -> int | None:
+        """The number of a body, None of a fixed one."""
+        return block if block < len(self.outlines) else None
+
+    def support_of(self, block: int) -> None:
+        """Nothing moves what is fixed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Rigid bodies of the plane, as a picture shows them.
+
+    Args:
+        moving: where they are.
+        colours: red, green and blue of those that are not fixed, 0 to 1, shape (bodies, 3).
+        limits: lowest and highest x, and lowest and highest z, of the picture [m]; None shows what moves, see `extent`.
+    """
+
+    moving: Moving
+    colours: Array
+    limits: Array | None = None
 
     @classmethod
     def of(cls, response: Response, magnify: float = 1.0, limits: ArrayLike | None = None) -> Bodies:
         """The bodies of a response: the wall, or the blocks of masonry that are not fixed."""
         require_kind("response", response, Response)
-        case, t = response.case, response.t
-        if case.in_space:
+        if response.case.in_space:
             response.of_masonry.masonry.require_plane("Bodies")
-        moved = {i: case.support_of(block) for i, block in enumerate(case.fixed)}
-        shifts = {i: support.at(t) for i, support in moved.items() if support is not None}
-        corners = tuple(case.fixed.values())
-        return cls(t, case.outlines, case.rests, response.pose, magnify, corners, shifts, limits)  # type: ignore[arg-type]
+        magnify = require_within("magnify", magnify, 0.01, 1e4)
+        return cls.at_poses(response.case, response.t, response.pose, magnify, limits)
 
-    def of_case(self, case: AnyCase) -> Moving:
-        """Where the bodies of the case are drawn."""
-        return Moving(case, self.t, self.poses, self.magnify)
+    @classmethod
+    def at_poses(
+        cls,
+        case: AnyCase,
+        t: Array,
+        pose: Array,
+        magnify: float = 1.0,
+        limits: ArrayLike | None = None,
+    ) -> Bodies:
+        """The bodies of a case at times [s] and poses, see `Moving`."""
+        free = [solid.body >= 0 for solid in case.standing.solids]
+        colours = colours_of(case.standing)[free]
+        return cls(Moving(case, t, pose, magnify), colours, required_limits(limits, "xz"))
+
+    @classmethod
+    def loose(
+        cls,
+        t: ArrayLike,
+        outlines: object,
+        rests: ArrayLike,
+        poses: ArrayLike,
+        magnify: float = 1.0,
+        fixed: object = (),
+        limits: ArrayLike | None = None,
+    ) -> Bodies:
+        """Bodies that are given one by one.
+
+        Args:
+            t: times [s], shape (n,), increasing.
+            outlines: corners of each body about its centroid, at rest [m], one array of shape (corners, 2) each.
+            rests: centroid of each body at rest, x and z [m], shape (bodies, 2).
+            poses: displacement x, z of each centroid from rest [m] and rotation [rad], shape (n, bodies, 3). A positive
+                rotation turns the top of a body to the right, towards positive x.
+            magnify: factor on the displacement of every point [-], 0.01 to 10000; 1 is true to scale.
+            fixed: outlines of fixed bodies, in place [m].
+            limits: see above.
+
+        Raises:
+            TypeError, ValueError: for arrays that do not fit together, or a factor outside its range.
+        """
+        times = require_row("t", t, "time [s]")
+        if not (np.diff(times) >= 0).all():
+            raise ValueError(f"t = {shown(t)} decreases; one row of increasing times [s] is needed")
+        free, stays = _outlines("outlines", outlines), _outlines("fixed", fixed)
+        magnify = require_within("magnify", magnify, 0.01, 1e4)
+        case = cast(AnyCase, Loose(free, require_array("rests", rests, (len(free), 2)), stays))
+        moving = Moving(case, times, require_array("poses", poses, (len(times), len(free), 3)), magnify)
+        colours = np.array([TINTS[tint] for tint in told_apart(len(free), ())])
+        return cls(moving, colours, required_limits(limits, "xz"))
+
+    @property
+    def t(self) -> Array:
+        """Times [s], shape (n,)."""
+        return self.moving.t
+
+    @property
+    def outlines(self) -> tuple[Array, ...]:
+        """Corners of each body about its centroid, at rest [m]."""
+        outlines: tuple[Array, ...] = self.moving.case.outlines
+        return outlines
 
     def at(self, times: Array) -> Bodies:
         """The same bodies at other times, their poses interpolated linearly."""
-        shifts = {i: interpolated(times, self.t, shift) for i, shift in self.shifts.items()}
-        return replace(self, t=times, poses=interpolated(times, self.t, self.poses), shifts=shifts)
+        return replace(self, moving=self.moving.between(times))
 
     def placed(self, frame: int, body: int, points: Array) -> Array:
         """Where points of a body are drawn at a frame [m], shape (n, 2).
@@ -158,18 +218,14 @@ class Bodies:
         The points are given about the centroid of the body at rest [m], shape (n, 2). Their displacement is drawn times
         `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
-        return self._drawn(self.poses[frame, body], self.rests[body], points)
-
-    def support(self, frame: int, body: int) -> Array:
-        """Where the corners of a fixed body are drawn at a frame [m], shape (corners, 2)."""
-        return self.fixed[body] + (self.magnify * self.shifts[body][frame] if body in self.shifts else 0.0)
+        return self.moving.placed_at(frame, self._numbers[[body]], points[None])[0]
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all bodies are drawn at a frame [m], shape (bodies, corners, 2).
 
         A body with fewer corners than another repeats its last one.
         """
-        return self._drawn(self.poses[frame], self.rests, self._padded)
+        return self.moving.placed_at(frame, self._numbers, self._padded)
 
     def extent(self) -> tuple[Array, Array]:
         """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2,) each.
@@ -179,19 +235,22 @@ class Bodies:
         """
         if self.limits is not None:
             return self.limits[:, 0], self.limits[:, 1]
+        fixed = [*self.moving.case.fixed.values()]
         if not self.outlines:
-            corners = np.concatenate(self.fixed)
-            return corners.min(axis=0), corners.max(axis=0)
+            return ends_of(np.concatenate(fixed))
         some = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int))
         moving = np.array([ends_of(self.corners(int(frame))) for frame in some])
-        fixed = np.concatenate(self.fixed) if self.fixed else self.rests
-        return window(ends_of(self.rests[:, None] + self._padded), ends_of(moving), ends_of(fixed))
+        rests = self.moving.case.rests
+        stays = np.concatenate(fixed) if fixed else rests
+        return window(ends_of(rests[:, None] + self._padded), ends_of(moving), ends_of(stays))
+
+    @cached_property
+    def _numbers(self) -> Integers:
+        """Numbers of the blocks that are not fixed."""
+        case = self.moving.case
+        return np.array([i for i in range(len(case.centroids)) if case.body_of(i) is not None], dtype=int)
 
     @cached_property
     def _padded(self) -> Array:
         """The outlines as one array, shape (bodies, corners, 2)."""
         return evened(self.outlines) if self.outlines else np.empty((0, 0, 2))
-
-    def _drawn(self, pose: Array, rest: Array, points: Array) -> Array:
-        """Points about centroids [m], shape (..., n, 2), drawn at poses of shape (..., 3)."""
-        return np.asarray(rest[..., None, :] + points + self.magnify * displaced(points, pose))

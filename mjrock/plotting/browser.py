@@ -20,9 +20,8 @@ from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.wall.standing import Solid, in_space
 from ..quantities import Array, Integers, require_path
-from ..result.bodies import Moving, bodies_of, frames_at
+from ..result.bodies import bodies_of, frames_at
 from ..result.response import Response
-from ..scene.tints import BRICKS, told_apart
 from .arguments import kind, picture
 from .forces import LARGE, LONGEST, NOTHING, Acting, edges_of
 
@@ -96,9 +95,9 @@ class Page:
 
     def __init__(self, response: Response, samples: Integers) -> None:
         self.response, self.case, self.samples = response, response.case, samples
-        self.t, pose = response.t[samples], response.pose[samples]
-        self.moving = Moving(self.case, self.t, pose)
-        self.bodies = bodies_of(self.case, self.t, pose, response.velocity[samples])
+        self.t = response.t[samples]
+        self.moving = response.moving.at(samples)
+        self.bodies = bodies_of(self.moving, response.velocity[samples])
         self.solids = self.case.standing.solids
         free = [body for body in self.bodies if not body.fixed]
         self.low, self.high = _ends(np.concatenate([body.rest + body.corners for body in free]))
@@ -117,7 +116,6 @@ class Page:
             **self._bodies(),
             **self._poses(moves),
             "moving": moves,
-            "tints": BRICKS,
             "ties": list(self._ties()),
             "cracks": list(self._cracks()),
             "forces": None if self.response.kept_forces is None else self._forces(),
@@ -136,9 +134,7 @@ class Page:
     def _bodies(self) -> Json:
         """The bodies, and their shapes, those that are alike once."""
         shapes, numbers = list[Json](), dict[str, int]()
-        joined = [(joint.below, joint.above) for joint in self.case.standing.joints]
-        touching = [pair for pair in joined if not any(self.bodies[i].fixed for i in pair)]
-        tints, bodies = told_apart(len(self.bodies), touching), list[Json]()
+        bodies = list[Json]()
         for i, (body, solid) in enumerate(zip(self.bodies, self.solids, strict=True)):
             corners = self._rounded(body.corners)
             number = numbers.setdefault(repr((corners, body.faces)), len(shapes))
@@ -152,7 +148,7 @@ class Page:
                     "mass": self._mass(solid),
                     "shape": number,
                     "rest": self._rounded(body.rest),
-                    "tint": None if body.fixed else tints[i],
+                    "colour": None if body.fixed else body.colour.tolist(),
                     "kind": kind_of,
                 }
             )

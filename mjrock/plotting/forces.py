@@ -100,7 +100,7 @@ class Acting:
 
     def joints(self, frame: int) -> tuple[Array, Array]:
         """Middles [m] and axes of the joints in a frame, shapes (j, d) and (j, d, d)."""
-        middle, axes = self.bodies.at(frame).joints(self.frames)
+        middle, axes = self.bodies.at([frame]).joints(self.frames)
         return middle[0], axes[0]
 
     def placed(self, frame: int) -> tuple[Array, Array]:

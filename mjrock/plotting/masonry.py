@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Polygon as Patch
 from numpy.typing import ArrayLike
 
 from ..geometry.frames import PLANE, SPACE
@@ -16,19 +15,19 @@ from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, require_array, require_flag, require_kind, require_within
+from ..quantities import require_array, require_flag, require_kind, require_within
 from ..result.bodies import Moving
 from ..result.motion import sample_at
 from ..result.response import Response
 from .arguments import anything, picture
-from .bodies import Bodies, ends_of, require_masonry, required_limits, window
+from .bodies import Bodies, require_masonry, required_limits
 from .forces import forces_on, require_shown
 from .perspective import fill, solids
 from .section import FORCE, surroundings, together
 from .section import blocks as outlines
 from .solids import Solids
 
-BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
+MORTAR = "#12406b"
 
 
 @picture(limits=anything, joints=require_flag)
@@ -58,7 +57,7 @@ def blocks(
         forces: "thrust" draws the line of thrust over the blocks, see `thrust`, and "bars" a bar at each joint along
             its force, as long as that is large, through the place where it acts. "cracks" draws joints that
             have lost bond, as wide as they are open. All need a response with forces=True, cracks joints with a bond.
-        magnified: factor on the pose, to show a small motion, 0 to 1e6.
+        magnified: factor on the displacements, to show a small motion, 0 to 1e6.
         joints: whether to draw the joints as lines, in the plane and where no pose is given.
         camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;
             None is (18, 35), from outside.
@@ -83,48 +82,45 @@ def blocks(
         pose, time = run.pose[sample], run.t[sample : sample + 1]
         if forces is not None:
             require_shown("forces", forces, run)
-    masonry, magnified = case.masonry, require_within("magnified", magnified, 0.0, 1e6)
-    freedom = SPACE if case.in_space else PLANE
+    magnified, freedom = require_within("magnified", magnified, 0.0, 1e6), SPACE if case.in_space else PLANE
     still = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
     placed = (still if pose is None else require_array("pose", pose, still.shape))[None]
-    acting = None if run is None or forces is None else (run, Moving(case, time, placed, magnified), forces)
+    moving = Moving(case, time, placed, magnified)
     if case.in_space:
-        bodies = Solids(case, time, placed, magnified, camera, required_limits(limits, "xyz"))
+        bodies = Solids(moving, camera, required_limits(limits, "xyz"))
         solids(ax, bodies, animated=False)(0)
-        if acting is not None:
-            forces_on(ax, *acting, animated=False)(0)
         fill(ax, bodies, ax.bbox)
-        return ax
-    moving = Moving(case, time, magnified * placed)
-    width = min(1.4, 14 / np.sqrt(len(masonry.blocks)))  # lines of many joints would hide the blocks
-    drawn: list[list[Array]] = [[], []]
-    for i, block in enumerate(masonry.blocks):
-        moved = moving.displaced(i, block.corners)[0]
-        corners = block.corners + (magnified * moved if block.fixed else moved)
-        drawn[block.fixed].append(corners)
-        colour = STONE if block.fixed else BRICK
-        ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.4 * width))
-    for joint in masonry.plane_joints if joints and pose is None else ():
-        ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=width, solid_capstyle="butt")
-    _view(ax, masonry, drawn[False], drawn[True], required_limits(limits, "xz"))
-    if acting is not None:
-        forces_on(ax, *acting, animated=False)(0)
+    else:
+        flat = Bodies.at_poses(case, time, placed, magnified, limits)
+        outlines(ax, flat, animated=False)(0)
+        if joints and pose is None:
+            _joints(ax, case.masonry.plane_joints)
+        _view(ax, flat)
+    if run is not None and forces is not None:
+        forces_on(ax, run, moving, forces, animated=False)(0)
     return ax
 
 
-def _view(ax: Axes, masonry: Masonry, moving: list[Array], fixed: list[Array], limits: Array | None) -> None:
-    """Limits and labels, true to scale, and how many blocks lie outside the picture."""
-    rest = np.concatenate([masonry.blocks[i].corners for i in masonry.free] or fixed)
-    placed = [ends_of(np.concatenate(some)) if some else ends_of(rest) for some in (moving, fixed)]
-    low, high = window(ends_of(rest), *placed)
+def _joints(ax: Axes, joints: Sequence[Joint]) -> None:
+    """Joints as lines."""
+    width = min(1.4, 14 / np.sqrt(len(joints) + 1))  # lines of many joints would hide the blocks
+    for joint in joints:
+        ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=width, solid_capstyle="butt")
+
+
+def _view(ax: Axes, bodies: Bodies) -> None:
+    """Limits and labels, and how many blocks lie outside the picture."""
+    low, high = bodies.extent()
     sides = high - low
-    room = 0.05 * sides.max() + np.maximum(0.0, 0.5 * (0.3 * sides.max() - sides))  # labels need some width
-    low, high = (low - room, high + room) if limits is None else limits.T
-    ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    if bodies.limits is None:
+        room = 0.05 * sides.max() + np.maximum(0.0, 0.5 * (0.3 * sides.max() - sides))  # labels need some width
+        low, high = low - room, high + room
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     ax.locator_params(axis="both", nbins="auto" if sides.max() < 2 * sides.min() else 4)
-    outside = sum(bool((corners.max(axis=0) < low).any() or (corners.min(axis=0) > high).any()) for corners in moving)
+    corners = bodies.corners(0)
+    outside = ((corners.max(axis=1) < low) | (corners.min(axis=1) > high)).any(axis=1).sum()
     if outside:
-        said = f"{outside} of {len(moving)} blocks lie outside"
+        said = f"{outside} of {len(corners)} blocks lie outside"
         ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=7, va="top")
 
 
@@ -161,7 +157,7 @@ def thrust(
     sample = sample_at(response.t, at)
     bodies = Bodies.of(response, magnified, limits).at(response.t[sample : sample + 1])
     updates = [outlines(ax, bodies), surroundings(ax, response.of_wall[0], bodies)]
-    updates.append(forces_on(ax, response, bodies.of_case(response.case), "thrust"))
+    updates.append(forces_on(ax, response, bodies.moving, "thrust"))
     together(updates)(0)
     for artist in ax.get_children():
         artist.set_animated(False)

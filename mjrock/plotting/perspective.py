@@ -8,7 +8,6 @@ from typing import Any, cast
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_rgb
 from matplotlib.transforms import BboxBase
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -66,7 +65,7 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     level = _ground(space, bodies)
     _frame(space, bodies)
     _scale_bar(space, bodies)
-    tints = np.array([to_rgb(colour) for colour in bodies.colours])
+    tints = bodies.colours
     moving = Faces([], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated, clip_on=False)
     space.add_collection(moving, autolim=False)
 

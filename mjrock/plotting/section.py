@@ -16,11 +16,12 @@ from ..problem.wall.effects import forces_of
 from ..quantities import Array, Flags
 from ..result.bodies import Moving
 from ..result.ties import elongation_of
+from ..scene.tints import FIXED_COLOUR, TINTS
 from .bodies import Bodies
 from .style import Look
 
-STONE, GROUND_COLOUR, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
-"""Colours of masonry, of what does not move, of ties, and of forces."""
+STONE, GROUND_COLOUR, STEEL, FORCE = TINTS[0], FIXED_COLOUR, "#12406b", "#a8201a"
+"""Colours of a wall, of what does not move, of ties, and of forces."""
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
 
@@ -38,21 +39,25 @@ def together(updates: Sequence[Update]) -> Update:
     return update
 
 
-def blocks(ax: Axes, bodies: Bodies) -> Update:
+def blocks(ax: Axes, bodies: Bodies, *, animated: bool = True) -> Update:
     """Draw the outlines of bodies true to scale."""
-    stays = [Polygon(outline, facecolor=GROUND_COLOUR, edgecolor="0.4", linewidth=0.8) for outline in bodies.fixed]
-    for number, patch in enumerate(stays):
-        patch.set_animated(number in bodies.shifts)
+    moving, supports = bodies.moving, list[tuple[Polygon, Array]]()
+    for number, outline in moving.case.fixed.items():
+        patch = Polygon(outline, facecolor=GROUND_COLOUR, edgecolor="0.4", linewidth=0.8)
+        if moving.case.support_of(number) is not None:
+            supports.append((patch, moving.placed(number, outline)))
+            patch.set_animated(animated)
         ax.add_patch(patch)
-    width = 1.2 if len(bodies.outlines) <= 100 else 0.4
-    moving = PolyCollection([], facecolor=STONE, edgecolor="0.15", linewidth=width, zorder=2, animated=True)
-    ax.add_collection(moving, autolim=False)
+    width = min(1.2, 12 / np.sqrt(max(1, len(bodies.outlines))))  # lines of many blocks would hide them
+    drawn = PolyCollection([], facecolors=bodies.colours, edgecolor="0.15", linewidth=width, zorder=2)
+    drawn.set_animated(animated)
+    ax.add_collection(drawn, autolim=False)
     ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
 
     def update(frame: int) -> None:
-        for number in bodies.shifts:
-            stays[number].set_xy(bodies.support(frame, number))
-        moving.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
+        for patch, places in supports:
+            patch.set_xy(places[frame])
+        drawn.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
 
     return update
 
@@ -70,6 +75,8 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     ties, forces = list(case.links.values()), list(forces_of(case.effects).values())
     low, high = bodies.extent()
     behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
+    corners = np.vstack([np.zeros((1, 2)), *(added.outline for added in case.wall.masses)])
+    behind = max(behind, 0.05 * height - wall.b - float(corners[:, 0].min()))
     reach = (2.6 * ARROW if any(force[0] for _, force in forces) else 0.08) * height
     left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
     ax.set_xlim(left, right)
@@ -85,7 +92,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     toes = (1.0,) if case.one_sided else (1.0, -1.0)
     toe_x = [side * wall.half_base for side in toes]
     ax.plot(toe_x, [0.0] * len(toes), "o", markersize=5, color=FORCE, zorder=5)
-    updates, moving = [_openings(ax, case, bodies)], bodies.of_case(case)
+    updates, moving = [_openings(ax, case, bodies)], bodies.moving
     for tie, text in zip(ties, tie_texts(ties, left, height), strict=True):
         updates.append(_tie(ax, moving, tie, markersize=6))
         at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
@@ -93,14 +100,14 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
         note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
         note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
     updates += [_force(ax, case, effect, force, bodies) for effect, force in forces]
-    updates += [_mass(ax, case, added, bodies) for added in case.wall.masses]
+    updates += [_mass(ax, case, added, bodies) for added in case.wall.masses if added.told is not None]
     return together(updates)
 
 
 def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     """Links of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
     low, high = bodies.extent()
-    ties, updates, moving = case.links, [], bodies.of_case(case)
+    ties, updates, moving = case.links, [], bodies.moving
     edge = float(low[0]) - 0.25 * float(high[1] - low[1])
     for name, tie in ties.items():
         updates.append(_tie(ax, moving, tie, markersize=5, edge=edge))
@@ -208,7 +215,12 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -
 
 
 def _mass(ax: Axes, case: Case, added: Effect, bodies: Bodies) -> Update:
-    """An added mass as a dot with its size."""
+    """An added mass: its outline, or a dot with its size where it is at a point."""
+    if len(corners := added.outline):
+        outline = np.vstack([_local(case, x, z) for x, z in corners])
+        shape = Polygon(outline, facecolor=STONE, edgecolor="0.15", linestyle="--", zorder=1.8, animated=True)
+        ax.add_patch(shape)
+        return lambda frame: shape.set_xy(bodies.placed(frame, 0, outline))
     point = _local(case, added.offset, added.height)
     (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5, animated=True)
     text = ax.text(0, 0, f"  {added.mass_added:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)

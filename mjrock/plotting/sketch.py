@@ -107,8 +107,7 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
 def section(ax: Axes, case: Case, stop: str = "stop") -> None:
     """The wall and all that it meets and carries, its thickness, and the height of the stop, which has a name."""
     wall, height = case.wall, 2 * case.block.h
-    rests = np.array([[wall.centroid_offset, wall.centroid_height]])
-    bodies = Bodies(np.zeros(1), (wall.outline,), rests, np.zeros((1, 1, 3)))
+    bodies = Bodies.at_poses(case, np.zeros(1), np.zeros((1, 1, 3)))
     blocks(ax, bodies)(0)
     surroundings(ax, case, bodies)(0)
     for text in list(ax.texts):
@@ -148,12 +147,17 @@ def _effects(case: Case, *, arguments: bool) -> list[Note]:
     for name, effect in case.named.items():
         if not effect.mass_added:
             said[effect] = f"{said[effect]}, {name}" if effect in said else name
-    for effect, name in [*said.items(), *((mass, mass.label) for mass in case.wall.masses)]:
-        note = f"{type(effect).__name__}({effect.arguments})" if arguments else f"{name}: {effect.said}"
+    for effect, name in [*said.items(), *((mass, "") for mass in case.wall.masses)]:
+        if (told := effect.told) is None:
+            continue
+        note = f"{type(told).__name__}({told.arguments})" if arguments else f"{name or told.label}: {told.said}"
         if name in breaking and not arguments:
             moved = float(case.wall.pose(np.array([breaking[name]]))[0, 0])
             note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"
-        made.append(((face if effect.on_face else effect.offset, effect.height), note))
+        place = (face if effect.on_face else effect.offset, effect.height)
+        if len(corners := effect.outline):
+            place = (float(corners[:, 0].mean()), float(corners[:, 1].mean()))
+        made.append((place, note))
     if arguments and case.stop_top is not None:
         made.append(((face - 0.05, case.stop_top), "SideStop(top)"))
     return made

@@ -5,26 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import null_space
 
-from ..geometry.frames import SPACE
 from ..geometry.hull import unlike_ways
-from ..geometry.poses import displaced
 from ..problem.masonry.blocks.compound import SolidBlock
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.bodies import Moving
 from ..result.response import Response
-from ..scene.tints import told_apart
-from .bodies import evened, interpolated, required_limits
+from ..scene.tints import colours_of
+from .bodies import evened, required_limits
 
-TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
-"""Colours of blocks, paler than those of solids in light, since forces and ties are drawn over them."""
 ASIDE = 1e-9
 """Cosine of the angle between the line of sight and the normal of a plane that is seen as a line [-]."""
 TOUCHING = 1e-4
@@ -86,25 +82,18 @@ def hiding(corners: Array, normals: Array, edges: Array, eye: Array) -> Integers
 
 @dataclass(frozen=True, eq=False)
 class Solids:
-    """Masonry in space and its motion.
+    """Masonry in space, as a picture shows it.
 
     Args:
-        case: of the masonry, for its blocks, the masses that are added to them, and its supports.
-        t: times [s], shape (n,), increasing.
-        poses: displacement of each centroid from rest [m] and unit quaternion, w first, of each block that is not
-            fixed, shape (n, bodies, 7).
-        magnify: factor on the displacement of every point [-], 0 to 1e6; 1 is true to scale.
+        moving: where its blocks are.
         camera: elevation and azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360; None is (18, 35).
         limits: lowest and highest x, y and z of the picture [m], three pairs; None shows the blocks, see `extent`.
 
     Raises:
-        ValueError: for poses of another shape, or a value outside its range.
+        ValueError: for a value outside its range.
     """
 
-    case: MasonryCase
-    t: Array
-    poses: Array
-    magnify: float = 1.0
+    moving: Moving
     camera: Sequence[float] | None = None
     limits: Array | None = None
 
@@ -115,8 +104,6 @@ class Solids:
             self,
             camera=(elevation, require_within("azimuth of the camera", azimuth, -360.0, 360.0, "degrees")),
             limits=required_limits(self.limits, "xyz"),
-            magnify=require_within("magnify", self.magnify, 0.0, 1e6),
-            poses=require_array("poses", self.poses, (len(self.t), len(self.masonry.free), SPACE.nq)),
         )
 
     @classmethod
@@ -128,23 +115,27 @@ class Solids:
         limits: ArrayLike | None = None,
     ) -> Solids:
         """The blocks of a response in space."""
-        return cls(response.of_masonry, response.t, response.pose, magnify, camera, required_limits(limits, "xyz"))
+        magnify = require_within("magnify", magnify, 0.01, 1e4)
+        return cls(replace(response.moving, magnify=magnify), camera, required_limits(limits, "xyz"))
+
+    @property
+    def t(self) -> Array:
+        """Times [s], shape (n,)."""
+        return self.moving.t
+
+    @property
+    def case(self) -> MasonryCase:
+        """What is drawn."""
+        return cast(MasonryCase, self.moving.case)
 
     @property
     def masonry(self) -> Masonry:
         """The blocks."""
         return self.case.masonry
 
-    @property
-    def moving(self) -> Moving:
-        """Where the bodies are drawn."""
-        return Moving(self.case, self.t, self.poses, self.magnify)
-
     def at(self, times: Array) -> Solids:
         """The same blocks at other times, their poses interpolated linearly."""
-        poses = interpolated(times, self.t, self.poses)
-        poses[..., 3:] /= np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
-        return replace(self, t=times, poses=poses)
+        return replace(self, moving=self.moving.between(times))
 
     @cached_property
     def eye(self) -> Array:
@@ -154,9 +145,9 @@ class Solids:
         return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
 
     @cached_property
-    def shown(self) -> tuple[int, ...]:
+    def shown(self) -> Integers:
         """Numbers of the blocks that are drawn as bodies: all but the ground, fixed ones too."""
-        return tuple(i for i, is_ground in enumerate(self._are_ground) if not is_ground)
+        return np.flatnonzero(~np.array(self._are_ground))
 
     @property
     def ground(self) -> list[SolidBlock]:
@@ -172,17 +163,9 @@ class Solids:
         return [low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)]
 
     @property
-    def colours(self) -> list[str]:
-        """Colour of each facet, grey of fixed blocks."""
-        free = [(joint.below, joint.above) for joint in self.masonry.joints if joint.below in self.masonry.free]
-        told = told_apart(len(self.masonry.blocks), free, len(TINTS))
-        tints = ["#bdbdbd" if self.masonry.blocks[i].fixed else TINTS[told[i]] for i in self.shown]
-        return [tints[body] for body in self.facets.body]
-
-    @cached_property
-    def rests(self) -> Array:
-        """Centroid of each block that is shown, with its added masses, at rest [m], shape (shown, 3)."""
-        return self.case.centroids[list(self.shown)]
+    def colours(self) -> Array:
+        """Red, green and blue of each facet, 0 to 1, shape (faces, 3)."""
+        return colours_of(self.case.standing)[self.shown[self.facets.body]]
 
     @cached_property
     def facets(self) -> Facets:
@@ -193,7 +176,7 @@ class Solids:
         first = np.searchsorted(self._parts.body, body)
         part = first + np.array([side.parts[0] for block in blocks for side in block.sides])
         corners = evened([side.corners for block in blocks for side in block.sides])
-        return Facets(corners - self.rests[body, None], body, part, counts)
+        return Facets(corners - self.case.centroids[self.shown[body], None], body, part, counts)
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
@@ -207,7 +190,7 @@ class Solids:
         """
         parts, hidden = self._parts, [set[int]() for _ in self._parts.body]
         corners = self._drawn(frame, parts.body, parts.corners)
-        turned = self._drawn(frame, parts.body, np.eye(3)) - self._drawn(frame, parts.body, np.zeros((1, 3)))
+        turned = self._drawn(frame, parts.body, np.eye(3)[None]) - self._drawn(frame, parts.body, np.zeros((1, 1, 3)))
         areas = np.cross(np.roll(turned, -1, axis=1), np.roll(turned, -2, axis=1))
         normals, edges = parts.normals @ areas, parts.edges @ turned
         for behind, before in hiding(corners, normals, edges, self.eye).tolist():
@@ -230,7 +213,7 @@ class Solids:
         """
         if self.limits is not None:
             return self.limits[:, 0], self.limits[:, 1]
-        rest = self.facets.corners + self.rests[self.facets.body, None]
+        rest = self.facets.corners + self.case.centroids[self.shown[self.facets.body], None]
         rest_low, rest_high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
         room = float((rest_high - rest_low).max())
         low, high = np.maximum(self.reached[0], rest_low - room), np.minimum(self.reached[1], rest_high + room)
@@ -290,15 +273,6 @@ class Solids:
         normals, edges = evened([unlike_ways(part.normals) for part in parts]), evened([part.edges for part in parts])
         return Parts(body, evened([part.corners for part in parts]), normals, edges)
 
-    def _posed(self, frame: int) -> Array:
-        """Pose of each block that is shown at a frame, shape (shown, 7)."""
-        poses = np.tile(np.eye(1, SPACE.nq, 3), (len(self.shown), 1))
-        poses[np.isin(self.shown, self.masonry.free)] = self.poses[frame]
-        for body, support in enumerate(map(self.case.support_of, self.shown)):
-            if support is not None:
-                poses[body, :3] = support.at(self.t[frame : frame + 1])
-        return poses
-
     def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
         """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
-        return self.rests[body, None] + points + self.magnify * displaced(points, self._posed(frame)[body])
+        return self.moving.placed_at(frame, self.shown[body], points)

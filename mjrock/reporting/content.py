@@ -17,13 +17,13 @@ from .._version import __version__
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import AnyCase
-from ..problem.wall.effect import Effect
+from ..problem.wall.effect import Told
 from ..quantities import GRAVITY, declared
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from .markup import Markup, element, table
 from .texts import FOUND, GIVEN, Words, texts
-from .verdicts import REVERSED, effect_name
+from .verdicts import REVERSED, told_name
 
 ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
 """What is said of a run of a solver, its unit and its digits."""
@@ -47,18 +47,21 @@ class Input(NamedTuple):
 
 def of_effects(case: AnyCase, words: Words) -> list[Input]:
     """The effects."""
-    return [Input(name, effect_name(name, words), described(effect, words)) for name, effect in case.named.items()]
+    told = [(name, effect.told, told_name(name, effect, words)) for name, effect in case.named.items()]
+    return [Input(name, said, described(effect, words)) for name, effect, said in told if effect is not None]
 
 
-def described(effect: Effect, words: Words) -> str:
+def described(effect: Told, words: Words) -> str:
     """An effect in words: each of its numbers, and what it is called; as it says itself where these are not known."""
     if not words.or_else(f"effect_{effect.label}", ""):
         return effect.said.replace("\n", " ")
     kind: Any = type(effect)  # mypy takes a class for a thing without a hash
-    units = {name: within.unit for name, (within, _) in declared(kind).items()} | {"strength": "N"}
+    units = {name: "" if within.whole else within.unit for name, (within, _) in declared(kind).items()}
+    units["strength"] = "N"
     said = []
     for field in dataclasses.fields(kind):
-        value, key = getattr(effect, field.name), f"field_{field.name}"
+        value, own = getattr(effect, field.name), f"field_{effect.label}_{field.name}"
+        key = own if own in texts() else f"field_{field.name}"
         if value is None or value == math.inf or key not in texts():
             continue
         if isinstance(value, str):

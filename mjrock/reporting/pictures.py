@@ -20,7 +20,7 @@ from ..quantities import Array
 from ..result.response import Response
 from ..study.loading.mechanism import MechanismCheck
 from .texts import Words
-from .verdicts import Mechanism, effect_name
+from .verdicts import Mechanism, told_name
 
 WIDE = 7.0
 """Width of a picture [inch]."""
@@ -34,6 +34,8 @@ FAR = 2.0
 """A limit that is farther than the motion by this factor would flatten it."""
 NAMED = 5
 """Most runs of one record that are told apart by their lines."""
+LOW = 0.2
+"""Height over that of a diagram below which a label would lie on its axis [-]."""
 OPENED = 0.06
 """Rotation at which the mechanism is drawn [rad]."""
 HOLDS, FAILS = "#0b7a4b", "#b3261e"
@@ -75,14 +77,15 @@ def wall_drawn(case: Case, words: Words) -> Figure:
     loaded = any(force[0] == 0 for _, force in forces_of(case.effects).values())
     left.set_ylim(-0.13 * 2 * case.block.h, left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h)
     elevation(right, case, left.get_ylim())
-    wall = case.wall
-    opened = Bodies(np.zeros(1), (wall.outline,), case.centroids, wall.pose(np.array([OPENED]))[None])
+    opened = Bodies.at_poses(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None])
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
     look: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
     left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **look)
     for name, effect in case.named.items():
+        if effect.told is None:
+            continue
         x, beside = (left.get_xlim()[0], (12, 3)) if effect.on_face else (case.block.b, (26, -10))
-        note = left.annotate(effect_name(name, words), (x, effect.height), beside, **look)
+        note = left.annotate(told_name(name, effect, words), (x, effect.height), beside, **look)
         note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
     for ax, title in ((left, "section"), (right, "elevation")):
         ax.axis("off")
@@ -126,7 +129,8 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
         colour = HOLDS if state.ratio >= 1 else FAILS
         ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
         ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
-        for d, a, beside in ((state.capacity, held, (-4, -11)), (state.demand, stiff * state.demand, (4, 4))):
+        below = (-4, -11) if held > LOW * top else (-16, 4)  # the axis is near the curve
+        for d, a, beside in ((state.capacity, held, below), (state.demand, stiff * state.demand, (4, 4))):
             ax.annotate(words(name), (d, a), beside, textcoords="offset points", fontsize=SMALL, zorder=6)
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
     ax.set(xlim=(0, 1.05 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))

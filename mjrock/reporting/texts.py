@@ -8,7 +8,7 @@ from decimal import Decimal
 from functools import cache
 from pathlib import Path
 
-from ..quantities import require_kind
+from ..quantities import ratio_said, require_kind
 
 FILE = Path(__file__).with_name("texts.toml")
 """The texts of all languages. A further language is a further line of each."""
@@ -89,8 +89,8 @@ class Words:
         return self.marked(said).replace("-", MINUS)
 
     def ratio(self, value: float) -> str:
-        """A ratio with two decimals, cut off and not rounded, so that none below one reads as one."""
-        return "> 99" if value > 99 else self.marked(f"{math.floor(100 * value + 1e-9) / 100:.2f}")
+        """A ratio of capacity over demand, see `ratio_said`."""
+        return self.marked(ratio_said(value))
 
     def quantity(self, value: float, unit: str, digits: int = GIVEN) -> str:
         """A number with its unit and the prefix that suits it."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..problem.wall.effect import Effect
 from ..quantities import require_kind, require_text, shown
 from ..study.loading.dynamic import LEAST, DynamicCheck
 from ..study.loading.mechanism import DAMPING, PERIOD, SHARE, MechanismCheck, Step, Verdict
@@ -195,6 +196,12 @@ def effect_name(name: str, words: Words) -> str:
     kind, _, number = name.rpartition("_")
     known = words.or_else(f"effect_{kind}", "")
     return f"{known} {int(number) + 1}" if known and number.isdigit() else name
+
+
+def told_name(name: str, effect: Effect, words: Words) -> str:
+    """What is told of an effect: its own name, or that of what several effects stand for."""
+    told = effect.told
+    return effect_name(name, words) if told is None or told is effect else words(f"effect_{told.label}")
 
 
 def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:

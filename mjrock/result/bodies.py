@@ -2,31 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.frames import PLANE
+from ..geometry.frames import PLANE, SPACE
 from ..geometry.hull import Faces
 from ..geometry.poses import displaced, rotated, rotations
 from ..problem.masonry.case import AnyCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.standing import JointFrames, in_space
 from ..quantities import Array, Integers, require_within
+from ..scene.tints import colours_of
 
 SHORT_WAY = 1e-6
 """Half the time over which the velocity of a support is taken [s]."""
 
 
 class Body(NamedTuple):
-    """A body at some times.
+    """A body in space at some times.
 
     Args:
         name: of the block, "wall", "base" or "side".
         corners: about its centroid, at rest [m], shape (corners, 3).
         faces: numbers of the corners of each, counterclockwise as seen from outside.
         rest: its centroid at rest [m], shape (3,).
+        colour: red, green and blue, 0 to 1, shape (3,).
         pose: displacement x, y, z of the centroid [m] and unit quaternion, w first, shape (n, 7).
         velocity: of the centroid [m/s], and angular velocity in the axes of the world [rad/s], shape (n, 6).
         fixed: whether it is the ground, or a fixed block.
@@ -37,6 +42,7 @@ class Body(NamedTuple):
     corners: Array
     faces: Faces
     rest: Array
+    colour: Array
     pose: Array
     velocity: Array
     fixed: bool
@@ -60,8 +66,9 @@ class Body(NamedTuple):
         return self.velocity[:, None, :3] + np.cross(self.velocity[:, None, 3:], self.turned(about))
 
 
-class Moving(NamedTuple):
-    """Positions of the bodies of a case, for forces, ties and pictures.
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """Where the bodies of a case are, for forces, ties, pictures and files.
 
     Args:
         case: of a wall or of masonry.
@@ -75,6 +82,22 @@ class Moving(NamedTuple):
     pose: Array
     magnify: float = 1.0
 
+    def pose_of(self, block: int) -> Array:
+        """Pose of a block at the times, of a fixed one as its support has moved it, shape (n, 3) or (n, 7)."""
+        body, support = self.case.body_of(block), self.case.support_of(block)
+        if body is not None:
+            return self.pose[:, body]
+        count, nq = self.pose.shape[0], self.pose.shape[2]
+        pose = np.tile(np.eye(1, nq, 3), (count, 1)) if nq == SPACE.nq else np.zeros((count, nq))
+        if support is not None:
+            pose[:, : self.case.centroids.shape[1]] = support.at(self.t)
+        return pose
+
+    @cached_property
+    def poses(self) -> Array:
+        """Poses of all blocks, shape (n, blocks, 3) or (n, blocks, 7)."""
+        return np.stack([self.pose_of(block) for block in range(len(self.case.centroids))], axis=1)
+
     def displaced(self, block: int | None, points: Array) -> Array:
         """Displacement from rest of points of a block, or of the ground [m], shape (n, m, d).
 
@@ -82,19 +105,38 @@ class Moving(NamedTuple):
             block: its number, None for the ground. A fixed block is where its support has moved it.
             points: at rest [m], shape (m, d).
         """
-        body, support = self.case.body_of(block), self.case.support_of(block)
-        if body is not None:
-            return displaced(points - self.case.rests[body], self.pose[:, body])
-        shift = np.zeros((len(self.t), points.shape[1])) if support is None else support.at(self.t)
-        return np.repeat(shift[:, None], len(points), axis=1)
+        if block is None:
+            return np.zeros((len(self.t), *points.shape))
+        return displaced(points - self.case.centroids[block], self.pose_of(block))
 
-    def at(self, number: int) -> Moving:
-        """The same at one of the times."""
-        return self._replace(t=self.t[number : number + 1], pose=self.pose[number : number + 1])
+    def at(self, numbers: Sequence[int] | Integers) -> Moving:
+        """The same at some of the times."""
+        return replace(self, t=self.t[numbers], pose=self.pose[numbers])
+
+    def between(self, times: Array) -> Moving:
+        """The same at other times [s], with poses that are linear between those of the samples."""
+        columns = self.pose.reshape(len(self.t), -1).T
+        pose = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1)
+        pose = pose.reshape(len(times), *self.pose.shape[1:])
+        if pose.shape[2] == SPACE.nq:
+            pose[..., 3:] /= np.linalg.norm(pose[..., 3:], axis=-1, keepdims=True)
+        return replace(self, t=times, pose=pose)
 
     def placed(self, block: int | None, points: Array) -> Array:
         """Positions of these points, magnified for pictures [m], shape (n, m, d)."""
         return points + self.magnify * self.displaced(block, points)
+
+    def placed_at(self, number: int, blocks: Sequence[int] | Integers, about: Array) -> Array:
+        """Positions at one of the times of points of many blocks, magnified [m], shape (blocks, m, d).
+
+        Args:
+            number: of the time.
+            blocks: their numbers.
+            about: points of each about its centroid at rest [m], shape (blocks, m, d).
+        """
+        blocks = np.asarray(blocks, dtype=int)
+        moved = displaced(about, self.poses[number, blocks])
+        return np.asarray(self.case.centroids[blocks, None] + about + self.magnify * moved)
 
     def joints(self, frames: JointFrames) -> tuple[Array, Array]:
         """Middles [m] and axes of joints, which move with the block below, shapes (n, j, d) and (n, j, d, d)."""
@@ -117,34 +159,43 @@ def frames_at(t: Array, fps: float) -> Integers:
     return np.asarray(kept[np.unique(t[kept].astype(np.float32), return_index=True)[1]])
 
 
-def bodies_of(case: AnyCase, t: Array, pose: Array, velocity: Array) -> list[Body]:
+def bodies_of(moving: Moving, velocity: Array) -> list[Body]:
     """All bodies, in the order of the blocks, or the wall and what it stands against.
 
     Args:
-        case: what was asked.
-        t: times [s], shape (n,).
-        pose, velocity: of a `Response` at these times.
+        moving: where they are at some times.
+        velocity: of a `Response` at these times.
     """
-    if pose.shape[2] == PLANE.nq:
-        turn, zero = 0.5 * pose[..., 2], np.zeros(pose.shape[:2])
-        parts = pose[..., 0], zero, pose[..., 1], np.cos(turn), zero, np.sin(turn), zero
-        pose = np.stack(parts, axis=-1)
+    case, t = moving.case, moving.t
+    if velocity.shape[2] == PLANE.nv:
+        zero = np.zeros(velocity.shape[:2])
         velocity = np.stack([velocity[..., 0], zero, velocity[..., 1], zero, velocity[..., 2], zero], axis=-1)
     else:
-        spin = (rotations(pose) @ velocity[..., 3:, None])[..., 0]
+        spin = (rotations(moving.pose) @ velocity[..., 3:, None])[..., 0]
         velocity = np.concatenate([velocity[..., :3], spin], axis=-1)
     bodies = []
-    for solid in case.standing.solids:
+    for solid, colour in zip(case.standing.solids, colours_of(case.standing), strict=True):
         body, support = case.body_of(solid.block), case.support_of(solid.block)
         where, rate = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
+        if solid.block is not None:
+            where = _in_space(moving.pose_of(solid.block))
         if body is not None:
-            where, rate = pose[:, body], velocity[:, body]
+            rate = velocity[:, body]
         elif support is not None:
             after, before = (in_space(support.at(t + step)) for step in (SHORT_WAY, -SHORT_WAY))
-            where[:, :3], rate[:, :3] = in_space(support.at(t)), (after - before) / (2 * SHORT_WAY)
+            rate[:, :3] = (after - before) / (2 * SHORT_WAY)
         moves = body is not None or support is not None
-        bodies.append(Body(solid.name, solid.corners, solid.faces, solid.rest, where, rate, solid.fixed, moves))
+        shape = solid.name, solid.corners, solid.faces, solid.rest
+        bodies.append(Body(*shape, colour, where, rate, solid.fixed, moves))
     return bodies
+
+
+def _in_space(pose: Array) -> Array:
+    """Poses of shape (n, 7), of those of the plane too."""
+    if pose.shape[1] == SPACE.nq:
+        return pose
+    turn, zero = 0.5 * pose[:, 2], np.zeros(len(pose))
+    return np.column_stack([pose[:, 0], zero, pose[:, 1], np.cos(turn), zero, np.sin(turn), zero])
 
 
 def openings(masonry: Masonry, bodies: list[Body]) -> Array:

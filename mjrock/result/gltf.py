@@ -20,7 +20,6 @@ Json = dict[str, object]
 """An object in the text of the file."""
 GLTF_FLOAT, GLTF_INTEGER = 5126, 5125
 """glTF's codes for numbers of 32 bits: floating point, and whole."""
-COLOURS = {"masonry": (0.77, 0.55, 0.40, 1.0), "fixed": (0.5, 0.5, 0.5, 1.0)}
 
 
 class Numbers:
@@ -58,6 +57,12 @@ def turns(quaternions: Array) -> Array:
     return np.column_stack([upright(smooth[:, 1:]), smooth[:, 0]])
 
 
+def linear(colour: Array) -> list[float]:
+    """A colour as a screen shows it, in the parts of light of which glTF makes it (IEC 61966-2-1), 0 to 1."""
+    parts = np.where(colour > 0.04045, ((colour + 0.055) / 1.055) ** 2.4, colour / 12.92)
+    return [float(f"{part:.4g}") for part in parts]
+
+
 def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
     """Write bodies at their times [s] to a .glb, one node each; those that move are animated.
 
@@ -69,12 +74,14 @@ def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
     if path.suffix.lower() != ".glb":
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .glb")
     numbers, nodes, meshes = Numbers(), list[Json](), list[Json]()
-    samplers, channels = list[Json](), list[Json]()
+    samplers, channels, colours = list[Json](), list[Json](), dict[tuple[float, ...], int]()
     times = numbers.add(t - t[0], "SCALAR")
     for node, body in enumerate(bodies):
         at = numbers.add(upright(body.corners), "VEC3")
         indices = numbers.add(np.ravel(body.triangles), "SCALAR", whole=True)
-        part = {"attributes": {"POSITION": at}, "indices": indices, "material": int(body.fixed)}
+        colour = (*linear(body.colour), 1.0)
+        material = colours.setdefault(colour, len(colours))
+        part = {"attributes": {"POSITION": at}, "indices": indices, "material": material}
         meshes.append({"name": body.name, "primitives": [part]})
         places, turned = upright(body.rest + body.pose[:, :3]), turns(body.pose[:, 3:])
         start = {"translation": places[0].tolist(), "rotation": turned[0].tolist()}
@@ -90,8 +97,8 @@ def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
         "nodes": nodes,
         "meshes": meshes,
         "materials": [
-            {"name": name, "pbrMetallicRoughness": {"baseColorFactor": colour, "metallicFactor": 0.0}}
-            for name, colour in COLOURS.items()
+            {"name": f"tint {i}", "pbrMetallicRoughness": {"baseColorFactor": colour, "metallicFactor": 0.0}}
+            for colour, i in colours.items()
         ],
         "animations": [{"name": "motion", "samplers": samplers, "channels": channels}],
         "buffers": [{"byteLength": len(numbers.data)}],

@@ -261,13 +261,11 @@ class JointPoints(NamedTuple):
     """The contact points of masonry as those of joints.
 
     Args:
-        joint: the joint of each, shape (m,).
         at_rest: its place along its face at rest [m], shape (m, d).
-        sign: 1 if the block above has it, or -1, shape (m,).
+        sign: 1 if the block above has it, or -1, shape (m,), see `Scene.sense`.
         support: number of the support that moves its face, -1 where none does, shape (m,).
     """
 
-    joint: Integers
     at_rest: Array
     sign: Array
     support: Integers
@@ -275,14 +273,13 @@ class JointPoints(NamedTuple):
     @classmethod
     def of(cls, case: MasonryCase, scene: Scene) -> JointPoints:
         """The points of a case."""
-        masonry, places, joint = case.masonry, scene.places, scene.contacts.joint
+        masonry, places, joint = case.masonry, scene.places, scene.places.joint
         frames = frames_of(scene.at_rest.ravel(), places.freedom)
-        above = np.array([each.above for each in masonry.joints])[joint] == np.array(masonry.free)[places.body]
         at_rest = np.array([_along(places, i, meeting(places, i, frames), frames) for i in range(len(joint))])
         number = {masonry.names.index(support.block): i for i, support in enumerate(case.supports)}
         below = np.array([number.get(each.below, -1) for each in masonry.joints])  # a block above is never fixed
         support = np.where(places.face_body < 0, below[joint], -1)
-        return cls(joint, at_rest, np.where(above, 1.0, -1.0), support)
+        return cls(at_rest, scene.sense, support)
 
 
 class Looked(NamedTuple):
@@ -327,8 +324,8 @@ def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames
         take_frames(pose[n], frames, places.axes)
         for j in range(opened.shape[1]):
             opened[n, j], nearest[n, j] = 0.0, np.inf
-        for i in range(len(points.joint)):
-            meets, j = _met(places, i, frames, shift[n], points.support[i]), points.joint[i]
+        for i in range(len(places.joint)):
+            meets, j = _met(places, i, frames, shift[n], points.support[i]), places.joint[i]
             opened[n, j] = max(opened[n, j], meets.gap)
             if meets.gap < nearest[n, j]:
                 nearest[n, j] = meets.gap

@@ -125,6 +125,11 @@ class Response(Drawn):
         return self.motion.energy
 
     @property
+    def moving(self) -> Moving:
+        """Where the bodies are at the samples."""
+        return Moving(self.case, self.t, self.pose)
+
+    @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
         return self.case.in_space
@@ -200,7 +205,7 @@ class Response(Drawn):
     @cached_property
     def ties(self) -> Mapping[str, TieMotion]:
         """Elongation, force and energy of each tie at the samples, by its name, see `TieMotion`."""
-        return motion_of_ties(Moving(self.case, self.t, self.pose), self.plastic)
+        return motion_of_ties(self.moving, self.plastic)
 
     @property
     def of_wall(self) -> tuple[Case, Rocking]:
@@ -247,7 +252,7 @@ class Response(Drawn):
         """Horizontal displacement of the middle of a wall at the height z, from rest, seen from the base [m], (n,)."""
         height = 2 * self.of_wall[0].wall.h * (1 + 1e-12)
         point = np.array([[0.0, require_within("height z", z, 0.0, height, "m")]])
-        return Moving(self.case, self.t, self.pose).displaced(0, point)[:, 0, 0]
+        return self.moving.displaced(0, point)[:, 0, 0]
 
     def at(self, t: float | None = None) -> Array:
         """The pose of all blocks of masonry at a time, also of fixed ones that supports have moved.
@@ -282,7 +287,7 @@ class Response(Drawn):
 
         Of a mortared joint that has cracked it is the width of the crack.
         """
-        return openings(self.of_masonry.masonry, bodies_of(self.case, self.t, self.pose, self.velocity))
+        return openings(self.of_masonry.masonry, bodies_of(self.moving, self.velocity))
 
     @property
     def sliding(self) -> Array:
@@ -412,14 +417,14 @@ class Response(Drawn):
             OSError: if the file cannot be written.
         """
         kept = frames_at(self.t, fps)
-        return write_gltf(path, self.t[kept], bodies_of(self.case, self.t[kept], self.pose[kept], self.velocity[kept]))
+        return write_gltf(path, self.t[kept], bodies_of(self.moving.at(kept), self.velocity[kept]))
 
     def to_vtk(self, folder: str | Path, fps: float = 25.0) -> Path:
         """Write the motion as a series of files, which ParaView opens by `blocks.pvd`.
 
-        Corners have their displacement [m] and velocity [m/s], and faces the number of their block and whether it is
-        fixed. With forces=True there is `joints.pvd` too: a point in the middle of each joint with the force on the
-        block above and its normal part [N], and of masonry the largest gap at that time [m].
+        Corners have their displacement [m] and velocity [m/s], and faces the number of their block, whether it is
+        fixed, and its colour. With forces=True there is `joints.pvd` too: a point in the middle of each joint with the
+        force on the block above and its normal part [N], and of masonry the largest gap at that time [m].
 
         Args:
             folder: where to; it is made where there is none.
@@ -433,11 +438,11 @@ class Response(Drawn):
             OSError: if a file cannot be written.
         """
         kept = frames_at(self.t, fps)
-        t, pose = self.t[kept], self.pose[kept]
-        bodies = bodies_of(self.case, t, pose, self.velocity[kept])
+        moving = self.moving.at(kept)
+        t, bodies = moving.t, bodies_of(moving, self.velocity[kept])
         if self.kept_forces is not None:
             forces, d = self.kept_forces, 3 if self.in_space else 2
-            middle, axes = Moving(self.case, t, pose).joints(forces.frames)
+            middle, axes = moving.joints(forces.frames)
             normal, shear = forces.normal[kept], forces.shear[kept].reshape(*middle.shape[:2], d - 1)
             along = np.concatenate([normal[..., None], shear], axis=-1)
             values = {"force": in_space((along[..., None] * axes).sum(axis=-2)), "normal": normal}
@@ -469,7 +474,7 @@ class Response(Drawn):
         case = self.of_masonry
         case.masonry.convex_in_space("a COMPAS model")
         k = sample_at(self.t, at)
-        bodies = bodies_of(self.case, self.t[[k]], self.pose[[k]], self.velocity[[k]])
+        bodies = bodies_of(self.moving.at([k]), self.velocity[[k]])
         text = results_text(case, bodies, float(self.t[k]), self.kept_forces, k)
         return write_text(require_path("path", path), text)
 

@@ -32,12 +32,13 @@ def write_series(folder: str | Path, name: str, t: Array, texts: Sequence[str]) 
 
 def texts_of_bodies(bodies: Sequence[Body]) -> list[str]:
     """The faces of the bodies at each of their times, with the displacement [m] and the velocity [m/s] of each corner,
-    and with the number of the body and whether it is fixed of each face."""
+    and with the number of the body, whether it is fixed and its colour, of three bytes, of each face."""
     counts = np.cumsum([0, *(len(body.corners) for body in bodies)])
     faces = [tuple(counts[k] + i for i in face) for k, body in enumerate(bodies) for face in body.faces]
     sizes = [len(body.faces) for body in bodies]
     of_face = {"block": np.arange(len(bodies)), "fixed": np.array([int(body.fixed) for body in bodies])}
-    cells = {name: np.repeat(values, sizes) for name, values in of_face.items()}
+    of_face["colour"] = np.rint(255 * np.array([body.colour for body in bodies])).astype(np.uint8)
+    cells = {name: np.repeat(values, sizes, axis=0) for name, values in of_face.items()}
     places = np.concatenate([body.placed(body.corners) for body in bodies], axis=1)
     rest = np.concatenate([body.rest + body.corners for body in bodies])
     rates = np.concatenate([body.rate(body.corners) for body in bodies], axis=1)
@@ -67,6 +68,7 @@ def _grid(
     kinds = np.full(len(cells), kind, dtype=np.uint8)
     ends = np.cumsum([len(cell) for cell in cells])
     tables = {"connectivity": np.concatenate([np.array(cell) for cell in cells]), "offsets": ends, "types": kinds}
+    shown = {"CellData": ' Scalars="colour"'} if "colour" in at_cells else {}
     parts = {
         "Points": {"Points": points},
         "Cells": tables,
@@ -74,7 +76,9 @@ def _grid(
         "CellData": at_cells,
     }
     text = "\n".join(
-        f"<{part}>\n" + "\n".join(_array(name, array) for name, array in arrays.items()) + f"\n</{part}>"
+        f"<{part}{shown.get(part, '')}>\n"
+        + "\n".join(_array(name, array) for name, array in arrays.items())
+        + f"\n</{part}>"
         for part, arrays in parts.items()
     )
     piece = f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n{text}\n</Piece>'

@@ -29,7 +29,6 @@ from ..geometry.kinematics import (
     AppliedForces,
     Places,
     Ties,
-    along,
     meeting,
     opening,
     over_face,
@@ -46,21 +45,14 @@ from .structure import Structure, force_energy, weight_energy
 
 @dataclass(frozen=True, eq=False)
 class Potential:
-    """The energy of a structure at rest at a pose of shape (n nq,), and its derivatives along the velocities.
-
-    `bonds` says which contacts pull as they push; None stands for none of them.
-    """
+    """The energy of a structure at rest at a pose of shape (n nq,), and its derivatives along the velocities."""
 
     structure: Structure
-    bonds: Flags | None = None
 
     @cached_property
     def bonded(self) -> Flags:
-        """Which contacts and ties pull as they push, shape (m + t,)."""
-        none = np.zeros(len(self.springs), dtype=bool)
-        if self.bonds is not None:
-            none[: len(self.bonds)] = self.bonds
-        return none
+        """Which contacts and ties pull as they push, shape (m + t,): those with a bond in tension."""
+        return np.append(self.structure.places.tension > 0, np.zeros(len(self.structure.ties.k), dtype=bool))
 
     def closed(self, openings: Array) -> Flags:
         """Which springs act at their openings [m], shape (m + t,)."""
@@ -73,7 +65,7 @@ class Potential:
     @property
     def springs(self) -> Array:
         """Stiffness of contacts and ties [N/m], shape (m + t,)."""
-        return np.append(self.structure.k, self.structure.ties.k)
+        return np.append(self.structure.places.k, self.structure.ties.k)
 
     def openings(self, pose: Array) -> Array:
         """Gaps of the contacts and slack of the ties [m], shape (m + t,)."""
@@ -108,7 +100,7 @@ class Potential:
         places, masses = self.structure.places._replace(radius=0.0), self.structure.masses
         bodies, freedom = self._bodies[: len(places.body)], places.freedom
         rates = np.zeros((freedom.translations - 1, *bodies.shape, freedom.nv))
-        _slip_rates(places, frames_of(pose, freedom), places.axes, np.zeros_like(masses), rates)
+        _slip_rates(places, frames_of(pose, freedom), np.zeros_like(masses), rates)
         return tuple(entries(values, bodies, len(masses)) for values in rates)
 
     def slips(self, pose: Array) -> Array:
@@ -127,9 +119,9 @@ class Potential:
     @cached_property
     def _bodies(self) -> Integers:
         """The two bodies of each contact and then of each tie, shape (m + t, 2)."""
-        places, ties = self.structure.places, self.structure.ties
-        own = np.concatenate([places.body, ties.body]).astype(np.int64)
-        return np.column_stack([own, np.concatenate([places.face_body, ties.anchor_body]).astype(np.int64)])
+        places, links = self.structure.places, self.structure.ties.links
+        own = np.concatenate([places.body, links.body]).astype(np.int64)
+        return np.column_stack([own, np.concatenate([places.face_body, links.anchor_body]).astype(np.int64)])
 
     def load(self, pose: Array) -> Array:
         """Generalised force of the weight and of the constant forces, shape (n nv,)."""
@@ -147,7 +139,7 @@ class Potential:
         places, forces, masses = self.structure.places, self.structure.forces, self.structure.masses
         elastic = float(resting(self.springs, self.openings(pose), self.bonded)[1].sum())
         weight = weight_energy(masses, pose, places.axes)
-        return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom), places.axes))
+        return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom)))
 
     def gradient(self, pose: Array) -> Array:
         """Derivatives of the energy, shape (n nv,)."""
@@ -177,7 +169,7 @@ class Potential:
         rows, columns = np.broadcast_to(unknown[:, :, None], bent.shape), np.broadcast_to(unknown[:, None], bent.shape)
         shape = (len(masses), len(masses))
         of_springs = csr_array((bent[there], (rows[there], columns[there])), shape=shape)
-        return csr_array(of_springs + _turning_forces(forces, frames, places.axes, len(masses)))
+        return csr_array(of_springs + _turning_forces(forces, frames, len(masses)))
 
     def hessian(self, pose: Array) -> csr_array:
         """Second derivatives of the energy, shape (n nv, n nv)."""
@@ -185,8 +177,9 @@ class Potential:
         return self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
 
 
-def _turning_forces(forces: AppliedForces, frames: Array, axes: tuple[int, ...], unknowns: int) -> csr_array:
+def _turning_forces(forces: AppliedForces, frames: Array, unknowns: int) -> csr_array:
     """Second derivatives of the energy of the constant forces, shape (n nv, n nv)."""
+    axes = forces.axes
     bent, nv = np.zeros((unknowns, unknowns)) if len(axes) == 3 and len(forces.body) else np.zeros(0), velocities(axes)
     turning = np.zeros(unknowns)
     for i, body in enumerate(forces.body):
@@ -204,7 +197,7 @@ def _turning_forces(forces: AppliedForces, frames: Array, axes: tuple[int, ...],
 def _bodies(places: Places, ties: Ties, i: int) -> tuple[int, int]:
     """The two bodies of contact i, or of the tie that follows after the contacts."""
     m = len(places.body)
-    return (places.body[i], places.face_body[i]) if i < m else (ties.body[i - m], ties.anchor_body[i - m])
+    return (places.body[i], places.face_body[i]) if i < m else (ties.links.body[i - m], ties.links.anchor_body[i - m])
 
 
 @compiled
@@ -226,20 +219,17 @@ def _rates(places: Places, ties: Ties, frames: Array, unit: Array, none: Array, 
 
 
 @compiled
-def _slip_rates(places: Places, frames: Array, axes: tuple[int, ...], unit: Array, rates: Array) -> None:
+def _slip_rates(places: Places, frames: Array, unit: Array, rates: Array) -> None:
     nv = len(unit) // len(frames)
     for i in range(len(places.body)):
-        bodies = (places.body[i], places.face_body[i])
+        bodies, ways = (places.body[i], places.face_body[i]), ways_along(places, i, frames)
+        meets = where_friction_acts(places, meeting(places, i, frames))
         for side in range(2):
             for j in range(nv if bodies[side] >= 0 else 0):
                 unit[nv * bodies[side] + j] = 1.0
-                if len(axes) == 2:
-                    rates[0, i, side, j] = along(places, i, frames, unit).bodies
-                else:
-                    meets = where_friction_acts(places, meeting(places, i, frames))
-                    velocity = over_face(places, i, meets, frames, unit)
-                    first, second = ways_along(places, i, frames, axes)
-                    rates[0, i, side, j], rates[1, i, side, j] = dot(first, velocity), dot(second, velocity)
+                velocity = over_face(places, i, meets, frames, unit)
+                for way in range(len(ways)):
+                    rates[way, i, side, j] = dot(ways[way], velocity)
                 unit[nv * bodies[side] + j] = 0.0
 
 
@@ -249,7 +239,7 @@ def _slips(places: Places, frames: Array, slips: Array) -> None:
         axes, body, face = places.axes, places.body[i], places.face_body[i]
         at = vector(places.at, i, axes)
         apart = displaced(place(frames, body, axes), frames, body, at)
-        ways = ways_along(places, i, frames, axes)
+        ways = ways_along(places, i, frames)
         if face >= 0:
             at = plus(vector(places.face_at, i, axes), vector(places.between, i, axes))
             apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
@@ -297,7 +287,7 @@ def highest_frequency(potential: Potential, principal: Principal) -> float:
 def tie_frequency(potential: Potential, principal: Principal) -> float:
     """The highest natural frequency of the bodies on one tie alone [rad/s], zero without ties."""
     k, (columns, masses) = potential.structure.ties.k, principal
-    rates = potential.rates(potential.unmoved)[len(potential.structure.k) :]
+    rates = potential.rates(potential.unmoved)[len(potential.structure.places.k) :]
     if potential.structure.places.freedom == SPACE:
         rates = csr_array(rates @ columns)
     return math.sqrt(max(k * (rates.power(2) @ (1 / masses)), default=0.0))

@@ -15,13 +15,13 @@ import numpy as np
 import scipy
 from scipy.sparse import csc_array, csr_array, diags_array, vstack
 
-from ..geometry.kinematics import AppliedForces, Places, gaps
+from ..geometry.kinematics import Places, gaps
 from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung
 from ..problem.masonry.laws.joint_law import Law, shear_limit
 from ..quantities import GRAVITY, Array, Flags
-from .parts import ContactPoints
 from .potential import Potential
+from .structure import Structure
 
 FORCE_TOLERANCE = 1e-9
 """Force that may be missing at rest, over the weight of the heaviest body [-]."""
@@ -137,13 +137,10 @@ class Grips(NamedTuple):
         return np.sum([rates.T @ drag for rates, drag in zip(self.rates, self.drag.T, strict=True)], axis=0)
 
 
-def settled(potential: Potential, contacts: ContactPoints) -> tuple[Array, Array]:
+def settled(potential: Potential) -> tuple[Array, Array]:
     """The pose in which the springs of contacts and ties carry weight and forces, and the friction there.
 
     Where nothing holds a direction, the bodies stay where they are.
-
-    Args:
-        potential, contacts: of the scene.
 
     Returns:
         The pose, shape (n, nq), and the friction on the bodies of the points along the ways of `Potential.slip_rates`
@@ -157,28 +154,24 @@ def settled(potential: Potential, contacts: ContactPoints) -> tuple[Array, Array
         if search.resumes and start is None:
             continue
         try:
-            pose, grips = searched(potential, contacts, search, start if search.resumes else None)
+            pose, grips = searched(potential, search, start if search.resumes else None)
         except UnsettledError as error:
             unsettled = error
             continue
         if search.limited:
-            pose, grips = left_falling(potential, contacts, search, (pose, grips))
+            pose, grips = left_falling(potential, search, (pose, grips))
             return pose.reshape(-1, potential.structure.places.freedom.nq), grips.drag
         start = pose
     raise unsettled
 
 
-def held(potential: Potential, contacts: ContactPoints) -> Array:
+def held(potential: Potential) -> Array:
     """The pose of rest of bodies that friction holds without a limit, shape (n, nq), see `settled`."""
-    pose, _ = left_falling(
-        potential, contacts, SEARCH_WITHOUT_LIMIT, searched(potential, contacts, SEARCH_WITHOUT_LIMIT, None)
-    )
+    pose, _ = left_falling(potential, SEARCH_WITHOUT_LIMIT, searched(potential, SEARCH_WITHOUT_LIMIT, None))
     return pose.reshape(-1, potential.structure.places.freedom.nq)
 
 
-def left_falling(
-    potential: Potential, contacts: ContactPoints, search: Search, found: tuple[Array, Grips]
-) -> tuple[Array, Grips]:
+def left_falling(potential: Potential, search: Search, found: tuple[Array, Grips]) -> tuple[Array, Grips]:
     """The pose of rest to which bodies fall from one that was found, which is the same where they stand there.
 
     Raises:
@@ -189,11 +182,11 @@ def left_falling(
         way = falling_way(potential, grips, pose)
         if way is None:
             return found
-        found = searched(potential, contacts, search, let_go(potential, grips, pose, way))
+        found = searched(potential, search, let_go(potential, grips, pose, way))
     raise UnsettledError(found[0].reshape(-1, potential.structure.places.freedom.nq))
 
 
-def searched(potential: Potential, contacts: ContactPoints, search: Search, start: Array | None) -> tuple[Array, Grips]:
+def searched(potential: Potential, search: Search, start: Array | None) -> tuple[Array, Grips]:
     """The pose of rest, shape (n nq,), and the friction there, by one of the searches.
 
     It starts from a pose, or with None from the undeformed one.
@@ -204,12 +197,12 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
     k, masses, freedom = potential.springs, potential.structure.masses, potential.structure.places.freedom
     size = np.sqrt(masses / np.repeat(masses[:: freedom.nv], freedom.nv))  # compares moments with forces
     scales, loose, share, least, last = diags_array(1 / size), LOOSE, 1.0, SLIPPING, np.inf
-    m, pose = len(contacts.k), potential.unmoved if start is None else start
+    m, pose = len(potential.structure.places.k), potential.unmoved if start is None else start
     openings, slipped = potential.openings(pose), np.zeros((m, freedom.translations - 1))
     closed = touching(potential, pose) if start is None else potential.closed(openings)
     for tried in range(search.poses):
         rates, push = potential.rates(pose), potential.forces_at(openings)
-        sliders = sliders_at(contacts, search, np.where(closed, push, -1.0)[:m], slipped)
+        sliders = sliders_at(potential.structure.places, search, np.where(closed, push, -1.0)[:m], slipped)
         grips = grips_at(potential, pose, sliders)
         missing = (potential.load(pose) + rates.T @ push + grips.held) / size
         left, slipped = float(np.abs(missing).sum()), grips.slider if search.accumulates else slipped
@@ -233,9 +226,9 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
     raise UnsettledError(pose.reshape(-1, freedom.nq))
 
 
-def sliders_at(contacts: ContactPoints, search: Search, push: Array, slipped: Array) -> Sliders:
+def sliders_at(contacts: Places, search: Search, push: Array, slipped: Array) -> Sliders:
     """Sliders at places [m], shape (m, ways), under forces of the contacts, negative where one is open [N], (m,)."""
-    bonded, m = np.asarray(contacts.tension) > 0, len(push)
+    bonded, m = contacts.tension > 0, len(push)
     rubs = bonded | ((push >= 0) & (contacts.friction > 0))
     most = contacts.cohesion + shear_limit(Law(friction=contacts.friction), np.maximum(push, 0.0))
     limit = np.where(rubs, most if search.limited else np.inf, -np.inf)
@@ -313,7 +306,7 @@ def let_go(potential: Potential, grips: Grips, pose: Array, way: Array) -> Array
 
 def touching(potential: Potential, pose: Array) -> Flags:
     """Springs that are closed at the start of a search, shape (m + t,): all contacts, and the ties that are taut."""
-    contacts = np.arange(len(potential.springs)) < len(potential.structure.k)
+    contacts = np.arange(len(potential.springs)) < len(potential.structure.places.k)
     closed: Flags = contacts | (potential.openings(pose) < 0)
     return closed
 
@@ -330,18 +323,19 @@ def tolerance(potential: Potential) -> float:
     return max(FORCE_TOLERANCE * heaviest(potential), LENGTH_ROUNDING * float((ties.k * ties.reach).max(initial=0)))
 
 
-def lowered(places: Places, springs: Array, forces: AppliedForces, masses: Array, pose: Array) -> Array:
+def lowered(structure: Structure, pose: Array) -> Array:
     """A pose lowered until the springs of level ground carry the weight of all bodies, shape (n, nq).
 
     The bodies keep their rotations and their horizontal positions.
     """
-    freedom, up = places.freedom, places.freedom.translations - 1
+    places, freedom = structure.places, structure.places.freedom
+    up = freedom.translations - 1
     level = (places.face_body < 0) & (places.normal[:, up] > 1 - 1e-12)
-    depth, k = -gaps(places, np.array(pose, dtype=float).reshape(1, -1))[0][level], springs[level]
+    depth, k = -gaps(places, np.array(pose, dtype=float).reshape(1, -1))[0][level], places.k[level]
     order = np.argsort(-depth, kind="stable")  # the deepest points are loaded first
     depth, k = depth[order], k[order]
     # sum k_i max(0, depth_i - z) = m g + what presses down, for the points down to the i-th
-    carries = GRAVITY * masses[up :: freedom.nv].sum() - forces.force[:, up].sum()
+    carries = GRAVITY * structure.masses[up :: freedom.nv].sum() - structure.forces.force[:, up].sum()
     levels = (np.cumsum(k * depth) - carries) / np.cumsum(k)
     z = levels[np.flatnonzero(levels >= np.append(depth[1:], -np.inf))[0]]
     return pose + z * (np.arange(freedom.nq) == up)

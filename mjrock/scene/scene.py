@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.frames import Freedom, frames_of
-from ..geometry.kinematics import AppliedForces, Places, Ties, ends, gaps
+from ..geometry.kinematics import AppliedForces, LinkEnds, Places, Ties, ends, gaps
 from ..problem.wall.standing import Standing
 from ..quantities import Array, Integers, frozen
 from .checks import require_on
@@ -105,14 +105,21 @@ class Scene:
 
     def lowered(self, pose: Array) -> Array:
         """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, nq)."""
-        return lowered(self.places, self.contacts.k, self.potential.structure.forces, self.bodies.masses, pose)
+        return lowered(self.potential.structure, pose)
 
     @cached_property
     def places(self) -> Places:
         """The contacts for the compiled functions."""
         points = self.contacts
         ends_of = points.body, points.at, points.face_body, points.face_at
-        return Places(self.freedom.axes, *ends_of, points.normal, self.bodies.between(*ends_of), self.radius)
+        law = points.joint, points.k, points.c, points.friction, points.tension, points.cohesion
+        return Places(self.freedom.axes, *ends_of, points.normal, self.bodies.between(*ends_of), self.radius, *law)
+
+    @cached_property
+    def sense(self) -> Array:
+        """1 where the body of a contact is above its joint, -1 where it is below, shape (m,)."""
+        above = self.standing.frames.above[self.contacts.joint]
+        return frozen(np.where(above == self.contacts.body, 1.0, -1.0))
 
     @cached_property
     def ties(self) -> Ties:
@@ -120,23 +127,25 @@ class Scene:
         ties = self._ties(self.links.sprung)
         if not (ties.squeeze > 0).any():
             return ties
-        frames, axes = frames_of(self.at_rest.ravel(), self.freedom), self.freedom.axes
-        lengths = [math.hypot(*ends(ties, i, frames, axes).across) for i in range(len(ties.k))]
+        frames = frames_of(self.at_rest.ravel(), self.freedom)
+        lengths = [math.hypot(*ends(ties.links, i, frames).across) for i in range(len(ties.k))]
         return ties._replace(reach=frozen(np.where(ties.squeeze > 0, lengths, ties.reach)))
 
     def _ties(self, links: Links) -> Ties:
         """Links with a spring, as they are drawn."""
-        places = links.body, links.at, links.anchor_body, links.anchor_at
         stretch, squeeze = frozen(links.strength / links.k), frozen(links.push / links.k)
         limit = frozen(links.reach + stretch + links.ultimate)
-        return Ties(*places, self.bodies.between(*places), links.k, links.reach, stretch, limit, squeeze)
+        return Ties(self._ends_of(links), links.k, links.reach, stretch, limit, squeeze)
+
+    def _ends_of(self, links: Links) -> LinkEnds:
+        """The ends of links."""
+        places = links.body, links.at, links.anchor_body, links.anchor_at
+        return LinkEnds(self.freedom.axes, *places, self.bodies.between(*places))
 
     @cached_property
     def dampers(self) -> Dampers:
         """The links with a dashpot, for the compiled functions."""
-        links = self.links.damped
-        places = links.body, links.at, links.anchor_body, links.anchor_at
-        return Dampers(*places, self.bodies.between(*places), links.c)
+        return Dampers(self._ends_of(self.links.damped), self.links.damped.c)
 
     @cached_property
     def structure(self) -> Structure:
@@ -146,10 +155,10 @@ class Scene:
     @cached_property
     def potential(self) -> Potential:
         """The energy of all that may bear something at rest, as a function of the pose."""
-        d = self.bodies.rest.shape[1]
-        forces = AppliedForces(self.forces.body, self.forces.at.reshape(-1, d), self.forces.force.reshape(-1, d))
-        own = self.contacts.k, self._ties(self.links.bearing), forces, self.bodies.masses, self.bodies.products
-        return Potential(Structure(self.places, *own), np.asarray(self.contacts.tension) > 0)
+        axes, given = self.freedom.axes, self.forces
+        vectors = (each.reshape(-1, len(axes)) for each in (given.at, given.force))
+        own = self._ties(self.links.bearing), AppliedForces(axes, given.body, *vectors)
+        return Potential(Structure(self.places, *own, self.bodies.masses, self.bodies.products))
 
     @cached_property
     def at_rest(self) -> Array:
@@ -159,7 +168,7 @@ class Scene:
     @cached_property
     def found(self) -> tuple[Array, Array]:
         """The pose of rest that was searched for, and the friction that holds the bodies there, see `rest.settled`."""
-        return settled(self.potential, self.contacts)
+        return settled(self.potential)
 
     @cached_property
     def bears(self) -> Array:

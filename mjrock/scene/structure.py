@@ -25,14 +25,12 @@ class Structure(NamedTuple):
 
     Args:
         places: the contacts.
-        k: their springs [N/m], shape (m,).
         ties, forces: the ties and the constant forces.
         masses: the generalised ones, the mass in every direction and then the moments of inertia of each body, (n nv,).
         products: products of inertia of bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), or (0, 3).
     """
 
     places: Places
-    k: Array
     ties: Ties
     forces: AppliedForces
     masses: Array
@@ -40,9 +38,9 @@ class Structure(NamedTuple):
 
 
 @inlined
-def spring_energy(places: Places, k: Array, i: int, frames: Array) -> float:
+def spring_energy(places: Places, i: int, frames: Array) -> float:
     """Energy in the spring of contact i [J]."""
-    return stored(Law(k[i], 0.0, 0.0, 0.0), -depth(places, i, frames))
+    return stored(Law(places.k[i], 0.0, 0.0, 0.0), -depth(places, i, frames))
 
 
 @inlined
@@ -59,11 +57,11 @@ def weight_energy(masses: Array, q: Array, axes: tuple[int, ...]) -> float:
 
 
 @inlined
-def force_energy(forces: AppliedForces, frames: Array, axes: tuple[int, ...]) -> float:
+def force_energy(forces: AppliedForces, frames: Array) -> float:
     """Energy of the constant forces above their position at rest [J]."""
     energy = 0.0
     for i in range(len(forces.body)):
-        energy -= dot(vector(forces.force, i, axes), displacement(forces, i, frames, axes))
+        energy -= dot(vector(forces.force, i, forces.axes), displacement(forces, i, frames))
     return energy
 
 
@@ -91,7 +89,7 @@ def energies(structure: Structure, q: Array, v: Array, broken: Integers | None =
 def _energies(
     structure: Structure, q: Array, v: Array, frames: Array, broken: Integers, parts: Array, taken: Array
 ) -> None:
-    places, k, ties, masses = structure.places, structure.k, structure.ties, structure.masses
+    places, ties, masses = structure.places, structure.ties, structure.masses
     for step in range(len(q)):
         take_frames(q[step], frames, places.axes)
         for j in range(len(masses)):
@@ -99,9 +97,9 @@ def _energies(
         if len(structure.products) > 0:
             parts[step, 0] += 0.5 * coupling(structure.products, v[step])
         parts[step, 1] = weight_energy(masses, q[step], places.axes)
-        parts[step, 1] += force_energy(structure.forces, frames, places.axes)
-        for i in range(len(k)):
-            parts[step, 2] += spring_energy(places, k, i, frames)
+        parts[step, 1] += force_energy(structure.forces, frames)
+        for i in range(len(places.k)):
+            parts[step, 2] += spring_energy(places, i, frames)
         for i in range(len(ties.k)):
             if step >= broken[i]:
                 taken[step, i] = taken[step - 1, i] if step else 0.0
@@ -110,27 +108,27 @@ def _energies(
                     taken[step, i] += ties.k[i] * ties.stretch[i] * left
                     ties.reach[i] = math.inf
                 continue
-            stretched, yielded = stretch(ties, i, frames, v[step], places.axes)
+            stretched, yielded = stretch(ties, i, frames, v[step])
             parts[step, 2] += 0.5 * ties.k[i] * stretched * stretched
             taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * abs(stretched) * yielded
 
 
-def breaks(ties: Ties, q: Array, freedom: Freedom) -> Integers:
+def breaks(ties: Ties, q: Array) -> Integers:
     """The first step of a motion at whose pose each tie is longer than its limit, or the number of steps, shape (t,).
 
     No tie has yielded before. Poses have the shape (steps, n nq).
     """
-    broken = np.full(len(ties.k), len(q))
+    broken, freedom = np.full(len(ties.k), len(q)), Freedom(ties.links.axes)
     if np.isfinite(ties.limit).any():
-        _breaks(ties, q, freedom.axes, freedom.frames(q.shape[1] // freedom.nq), broken)
+        _breaks(ties, q, freedom.frames(q.shape[1] // freedom.nq), broken)
     return broken
 
 
 @compiled
-def _breaks(ties: Ties, q: Array, axes: tuple[int, ...], frames: Array, broken: Integers) -> None:
+def _breaks(ties: Ties, q: Array, frames: Array, broken: Integers) -> None:
     for step in range(len(q)):
-        take_frames(q[step], frames, axes)
+        take_frames(q[step], frames, ties.links.axes)
         for i in range(len(broken)):
-            longer = ties.reach[i] - slack(ties, i, frames, q[step], q[step], axes).value > ties.limit[i]
+            longer = ties.reach[i] - slack(ties, i, frames, q[step], q[step]).value > ties.limit[i]
             if longer and broken[i] == len(q):
                 broken[i] = step

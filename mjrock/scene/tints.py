@@ -1,21 +1,30 @@
-"""Colours of the blocks of masonry, wherever they are drawn as bodies."""
+"""Colours of the blocks of masonry, wherever they are drawn."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-BRICKS = (
-    (0.70, 0.33, 0.23),
-    (0.79, 0.47, 0.33),
-    (0.60, 0.27, 0.19),
-    (0.74, 0.40, 0.25),
-    (0.65, 0.36, 0.29),
-    (0.83, 0.53, 0.40),
+import numpy as np
+
+from ..problem.wall.standing import Standing
+from ..quantities import Array
+
+TINTS = (
+    (0.88, 0.69, 0.56),
+    (0.75, 0.50, 0.37),
+    (0.93, 0.79, 0.69),
+    (0.82, 0.61, 0.47),
+    (0.69, 0.44, 0.33),
+    (0.86, 0.64, 0.52),
 )
-"""Red, green and blue, 0 to 1 as a screen shows them."""
+"""Red, green and blue of blocks, 0 to 1 as a screen shows them: fired clay, pale enough for forces to be drawn over."""
+FIXED_COLOUR = (0.75, 0.75, 0.75)
+"""The same of what is fixed."""
+GOLDEN = 0.5 * (5**0.5 - 1)
+"""Steps of this length around a circle leave no two of few places close to each other [-]."""
 
 
-def told_apart(count: int, touching: Iterable[tuple[int, int]], tints: int = len(BRICKS)) -> list[int]:
+def told_apart(count: int, touching: Iterable[tuple[int, int]]) -> list[int]:
     """The number of the tint of each body, another one than those of the bodies that touch it.
 
     Where a body touches bodies of all tints, it has one of theirs.
@@ -23,7 +32,6 @@ def told_apart(count: int, touching: Iterable[tuple[int, int]], tints: int = len
     Args:
         count: of the bodies.
         touching: pairs of numbers of bodies.
-        tints: how many there are.
     """
     near: list[set[int]] = [set() for _ in range(count)]
     for one, other in touching:
@@ -31,7 +39,15 @@ def told_apart(count: int, touching: Iterable[tuple[int, int]], tints: int = len
         near[other].add(one)
     chosen: list[int] = []
     for j, neighbours in enumerate(near):
-        taken = {chosen[i] for i in neighbours if i < j}
-        order = [(j + k) % tints for k in range(tints)]
-        chosen.append(next((tint for tint in order if tint not in taken), order[0]))
+        taken, first = {chosen[i] for i in neighbours if i < j}, int(len(TINTS) * (j * GOLDEN % 1))
+        order = [(first + k) % len(TINTS) for k in range(len(TINTS))]
+        chosen.append(next((tint for tint in order if tint not in taken), first))
     return chosen
+
+
+def colours_of(standing: Standing) -> Array:
+    """Red, green and blue of each solid, 0 to 1, shape (solids, 3)."""
+    body = [solid.body for solid in standing.solids]
+    pairs = ((body[joint.below], body[joint.above]) for joint in standing.joints)
+    told = told_apart(max(body) + 1, (pair for pair in pairs if min(pair) >= 0))
+    return np.array([FIXED_COLOUR if number < 0 else TINTS[told[number]] for number in body])

@@ -143,7 +143,7 @@ def standing_wall(
     if even:
         return scene
     on_base = replace(scene.contacts, friction=np.where(scene.contacts.joint == 0, friction, 0.0))
-    return replace(scene, settled=held(scene.potential, on_base))
+    return replace(scene, settled=held(replace(scene, contacts=on_base).potential))
 
 
 def _springs(interfaces: Sequence[Interface]) -> JointSprings:

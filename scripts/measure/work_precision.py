@@ -29,7 +29,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.engine.model import Engine
-from mjrock.engine.points import inverse_weights
+from mjrock.engine.rows import inverse_weights
 from mjrock.engine.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.stepping import fixed_steps
 from mjrock.result.ledger import StepError

@@ -27,7 +27,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation
-from mjrock.plotting.solids import TINTS, Solids
+from mjrock.plotting.solids import Solids
 from mjrock.quantities import Array, Integers
 from mjrock.result.bodies import Body, bodies_of
 from scripts.shared import cli
@@ -49,7 +49,7 @@ class View:
 
     def __init__(self, answer: mr.Response, camera: tuple[float, float]) -> None:
         self.answer, self.solids = answer, Solids.of(answer, camera=camera)
-        self.bodies = bodies_of(answer.case, answer.t, answer.pose, answer.velocity)
+        self.bodies = bodies_of(answer.moving, answer.velocity)
         eye, azimuth = self.solids.eye, np.radians(camera[1])
         right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
         self.axes = np.column_stack([right, np.cross(eye, right)])
@@ -133,7 +133,7 @@ def rendered(view: View) -> Callable[[int], Array]:
     """What draws a frame with MuJoCo's renderer."""
     meshes, bodies = [], []
     for i, body in enumerate(view.shown):
-        colour = " ".join(str(int(TINTS[i % len(TINTS)][k : k + 2], 16) / 255) for k in (1, 3, 5))
+        colour = " ".join(map(str, body.colour))
         meshes.append(f'<mesh name="{i}" vertex="{" ".join(map(str, body.corners.ravel()))}"/>')
         bodies.append(f'<body mocap="true"><geom type="mesh" mesh="{i}" rgba="{colour} 1"/></body>')
     model = mujoco.MjModel.from_xml_string(
@@ -195,7 +195,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     for row, (name, (answer, camera)) in zip(axes, answers.items(), strict=True):
         view, last = View(answer, camera), len(answer.t) - 1
         frames = np.linspace(0, last, FRAMES).astype(int)
-        colours = [TINTS[i % len(TINTS)] for i in range(len(view.shown))]
+        colours = [body.colour for body in view.shown]
         ways = {"matplotlib": filmed(view), "PyVista": plotter(view, colours)[1]}
         if not args.quick:  # a process chooses how MuJoCo draws before it imports it
             ways["MuJoCo"] = rendered(view)

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import Axes3D
 
 import mjrock as mr
 from mjrock import plotting
@@ -98,7 +97,7 @@ MECHANISMS = {
 def main(argv: Sequence[str] | None = None) -> None:
     """Push and draw them."""
     out = cli.folder(cli.parser(__doc__, "mechanisms").parse_args(argv).out)
-    figure = Figure(figsize=(16, 3.6), layout="constrained")
+    figure = Figure(figsize=(16, 4.0), layout="constrained")
     places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.3, 1.3, 1.3])
     lines = []
     for i, (name, (make, angle)) in enumerate(MECHANISMS.items()):
@@ -109,10 +108,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
         plotting.mechanism(ax, found, share=0.06, forces=False)
         ax.axis("off")
-        if isinstance(ax, Axes3D):
-            x, y, z = (high - low for low, high in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim()))
-            ax.set_box_aspect((x, y, z), zoom=1.35)
-        ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
+        ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10, y=None if angle is None else 0.88)
     plotting.save(figure, out / "mechanisms.png")
     cli.report(out / "mechanisms", "\n".join(lines))
 

@@ -48,8 +48,8 @@ def fallen(duration: float) -> mr.Response:
 
 def corners_of(answer: mr.Response, sample: int) -> dict[str, Array]:
     """Corners of each block at a sample [m], by name."""
-    at = slice(sample, sample + 1)
-    bodies = bodies_of(answer.case, answer.t[at], answer.pose[at], answer.velocity[at])
+    at = [sample]
+    bodies = bodies_of(answer.moving.at(at), answer.velocity[at])
     return {body.name: body.placed(body.corners)[0] for body in bodies}
 
 

@@ -37,6 +37,18 @@ for loop, table in ((rows_beyond, rows(kinds(2).way, 2)), (numbers_beyond, np.ze
 """
 """Rows and arrays, in the loop itself and in a function that takes the place of its call."""
 
+EXPLICIT = """
+import sys
+
+import pytest
+
+import mjrock as mr
+
+mr.simulate = lambda *given, **named: pytest.skip("the loops of steps in MuJoCo are others")
+sys.exit(pytest.main(sys.argv[1:]))
+"""
+"""Tests, less those of steps in MuJoCo, whose loops would take as long to compile."""
+
 
 SMALL = [
     "bonds_of_lines",
@@ -73,8 +85,10 @@ def test_an_index_beyond_an_array_is_refused(tmp_path):
 
 @pytest.mark.slow
 def test_no_loop_of_the_explicit_steps_writes_beyond_its_arrays(tmp_path):
-    """All everyday tests of this folder, which take some two minutes of a core, half of them to compile."""
-    run = checked(tmp_path, "-m", "pytest", "-n", "0", "-q", "-p", "no:cacheprovider", str(Path(__file__).parent))
+    """All everyday tests of this folder but those of a device of one's own, whose steps are plain Python."""
+    folder = Path(__file__).parent
+    options = ["-n", "0", "-q", "-p", "no:cacheprovider", f"--ignore={folder / 'test_own_device.py'}"]
+    run = checked(tmp_path, "-c", EXPLICIT, *options, str(folder))
     assert run.returncode == 0, run.stdout[-4000:] + run.stderr[-2000:]
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct import following
+from mjrock.compiled import Loop
 from mjrock.distinct.kinds import lists
 
 PACKAGE = Path(mr.__file__).parent
@@ -107,7 +107,7 @@ def listed(request, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, spec.name, module)
     spec.loader.exec_module(module)
     monkeypatch.setattr(lists, names, (*getattr(lists, names), getattr(module, kind)))
-    monkeypatch.setattr(following, "advance", following.advance.py_func)
+    monkeypatch.setattr(Loop, "__call__", lambda loop, *given: loop.py_func(*given))
     return getattr(module, effect), check
 
 
@@ -119,25 +119,22 @@ def test_a_kind_of_one_file_has_its_force_and_its_energy(listed, in_space):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("example", EXAMPLES)
-def test_the_same_compiled_in_a_package_that_has_the_file(tmp_path, example):
-    """The list names the kind; nothing else is written."""
-    names, kind, effect, check = EXAMPLES[example]
+def test_the_same_compiled_in_a_package_that_has_the_files(tmp_path):
+    """The lists name the kinds; nothing else is written."""
     copy = tmp_path / "mjrock"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    (copy / "distinct" / "kinds" / f"{example}.py").write_text(TEXTS[example])
     path = copy / "distinct" / "kinds" / "lists.py"
-    text = re.sub(rf"^({names}: .* = \(.*)\)$", rf"\1, {kind})", path.read_text(), count=1, flags=re.MULTILINE)
-    text = text.replace(",, ", ", ").replace("from .ties", f"from .{example} import {kind}\nfrom .ties")
-    assert text.count(kind) == 2
+    text = path.read_text()
+    program = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_own_device as here\n"
+    for example, (names, kind, effect, check) in EXAMPLES.items():
+        path.with_name(f"{example}.py").write_text(TEXTS[example])
+        text = re.sub(rf"^({names}: .* = \(.*)\)$", rf"\1, {kind})", text, count=1, flags=re.MULTILINE)
+        text = text.replace(",, ", ", ").replace("from .ties", f"from .{example} import {kind}\nfrom .ties")
+        assert text.count(kind) == 2
+        program += f"from mjrock.distinct.kinds.{example} import {effect}; here.{check.__name__}({effect}, False)\n"
     path.write_text(text)
-    program = (
-        f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_own_device as here;"
-        f"from mjrock.distinct.kinds.{example} import {effect}; print(here.mr.__file__);"
-        f"here.{check.__name__}({effect}, False)"
-    )
     setting = os.environ | {"PYTHONPATH": str(tmp_path), "MJROCK_INTERPRET": "0"}
     options = {"env": setting, "cwd": tmp_path, "capture_output": True, "text": True, "check": False}
-    done = subprocess.run([sys.executable, "-c", program], **options)
+    done = subprocess.run([sys.executable, "-c", program + "print(here.mr.__file__)"], **options)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(str(copy))

@@ -9,7 +9,7 @@ from scenes import changed, course, two_blocks
 
 import mjrock as mr
 from mjrock.engine.pace import Pace, judged, resolves, short_step, while_loaded, while_taut
-from mjrock.engine.points import points_of
+from mjrock.engine.rows import points_of
 from mjrock.engine.sticking import Joints, Moved, deepest, presses, rolled
 from mjrock.engine.touches import Openings
 from mjrock.geometry.frames import frames_of
@@ -84,17 +84,17 @@ def test_a_step_is_judged_by_the_change_of_acceleration(scene):
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_loaded_point_stays_loaded(scene, sign):
     """h^2/2 |g2| = stays |g|; what has lifted off or bears nothing at rest does not count."""
-    pressed, curve, reach = scene.bears[0], 3.0, points_of(scene).reach
+    pressed, curve, points = scene.bears[0], 3.0, points_of(scene)
     pace = Pace.of(scene, course(scene), 1e-3)._replace(short=1e-5)
     longest = math.sqrt(2 * METHOD.stays * pressed / curve)
     just, hardly = 1.01 * METHOD.loaded, 0.99 * METHOD.loaded
     for point, share, counts in ((0, 1.0, True), (1, just, True), (1, hardly, False), (3, 1, False)):
         moving = openings(4, {point: (-share * pressed, 0.0, 7.0, sign * curve)})
         expected = math.sqrt(share) * longest if counts else 1.0
-        assert while_loaded(pace, reach, moving, 1.0) == pytest.approx(expected)
+        assert while_loaded(pace, points, moving, 1.0) == pytest.approx(expected)
     moving = openings(4, {0: (-pressed, 0.0, 0.0, sign * curve), 3: (-pressed, 0.0, 7.0, sign * curve)})
-    assert while_loaded(pace, reach, moving, 0.99 * longest) == 0.99 * longest
-    assert while_loaded(pace._replace(short=2 * longest), reach, moving, 1.0) == 2 * longest
+    assert while_loaded(pace, points, moving, 0.99 * longest) == 0.99 * longest
+    assert while_loaded(pace._replace(short=2 * longest), points, moving, 1.0) == 2 * longest
 
 
 def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
@@ -160,7 +160,7 @@ def test_which_body_presses_what_bears_nothing_at_rest():
         ((0, 0, 0, -0.002), (True, True)),
     ):
         pose = scene.at_rest.ravel() + np.array([moved[0], moved[1], 0, moved[2], moved[3], 0])
-        found = tuple(presses(scene.places, points_of(scene).reach, body, frames_of(pose)) for body in (0, 1))
+        found = tuple(presses(points_of(scene), body, frames_of(pose)) for body in (0, 1))
         assert found == pressing
 
 

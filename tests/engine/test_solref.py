@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.rows import ContactLaw, ContactRows, RowInertia, Step, set_rows
+from mjrock.engine.rows import ContactRows, Step, points_of, set_rows
 from mjrock.engine.solref import IMPEDANCE_RANGE, pair_values, row
 from mjrock.method import METHOD
 
@@ -91,15 +91,17 @@ def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
     """A friction row has impratio times the inertia of its normal row, here 1 kg and 2 kg. It is 1 without friction."""
     c = np.array([1.0, 2.0]) * 2 / H
     rows, none = ContactRows.of(2), np.zeros(2)
-    law = ContactLaw(np.full(2, 1e-9), c, np.where(np.array(held) > 0, 0.5, 0.0))
-    inertia = RowInertia(
+    wall = mr.Block(b=0.3, h=2.0)
+    contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
+    points = points_of(mr.wall_scene(mr.Case(wall, 0.0, 1.0, side_stop=False), contacts))
+    points = points._replace(
+        places=points.places._replace(k=np.full(2, 1e-9), c=c),
         weight=np.full(2, 0.01),
-        overdamped=np.full(2, METHOD.overdamped),
         resolved=np.full(2, METHOD.borne),
-        friction=np.array(held),
+        held=np.array(held),
         growth=0.0,
     )
-    found = set_rows(law, inertia, Step(H, none, none), rows)
+    found = set_rows(points, Step(H, none, none), rows)
     assert found == pytest.approx(impratio, rel=1e-9)
     impedance = rows.solimp[:, 0]
     assert impedance == pytest.approx([0.01 / 1.01, 0.02 / 1.02])

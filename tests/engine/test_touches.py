@@ -15,7 +15,7 @@ from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding
 from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.sticking import Joints
-from mjrock.engine.touches import Openings, Springs, Touches, hardest, predict
+from mjrock.engine.touches import Openings, Touches, hardest, predict
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
 from mjrock.scene.parts import ConstantForces, Links
@@ -101,22 +101,23 @@ def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
 @pytest.mark.parametrize("curve", [-30.0, 0.0, 4.0])
 def test_when_a_gap_closes(curve):
     """The first root of g + g1 t + g2 t^2/2, and the closing speed there, whichever part of g2 has the curvature."""
-    g, g1, springs = 0.01, -0.3, Springs(np.ones(2), np.zeros(2))
+    g, g1 = 0.01, -0.3
     t = min(root.real for root in np.roots([0.5 * curve, g1, g]) if root.real > 0)
     for parts in ((curve, 0.0), (3.0, curve - 3.0)):
-        openings, touches = Openings.of(springs), Touches.of(springs)
+        openings, touches = Openings.of(2), Touches(np.ones(2), *np.zeros((3, 2)))
         for i, opening in enumerate([(1.0, -0.3, 0.0, 0.0), (g, g1, *parts)]):
             openings.value[i], openings.rate[i], openings.linear[i], openings.swept[i] = opening
-        assert predict(springs, openings, 1.01 * t, 1.0, 0.0, touches) == pytest.approx(t)
+        assert predict(touches, openings, 1.01 * t, 1.0, 0.0) == pytest.approx(t)
         assert (touches.time[1], touches.speed[1]) == pytest.approx((t, -(g1 + curve * t)))
         assert touches.time[0] == np.inf
-        assert predict(springs, openings, 0.99 * t, 1.0, 0.0, touches) == np.inf
+        assert predict(touches, openings, 0.99 * t, 1.0, 0.0) == np.inf
         openings.value[1] = -1e-9  # it is closed already
-        assert predict(springs, openings, 1.0, 1.0, 0.0, touches) == np.inf
+        assert predict(touches, openings, 1.0, 1.0, 0.0) == np.inf
 
 
 def test_the_hardest_of_the_touches_in_a_short_window_is_met():
-    touches = Touches(np.array([0.3, 0.2, 0.25, 0.31, np.inf]), np.array([0.1, 0.5, 0.9, 2.0, 9.0]))
+    times, speeds = np.array([0.3, 0.2, 0.25, 0.31, np.inf]), np.array([0.1, 0.5, 0.9, 2.0, 9.0])
+    touches = Touches(*np.zeros((2, 5)), times, speeds)
     assert [hardest(touches, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]
 
 

@@ -23,6 +23,7 @@ from mjrock.geometry.frames import (
 )
 from mjrock.geometry.kinematics import (
     AppliedForces,
+    LinkEnds,
     Places,
     Ties,
     depth,
@@ -68,13 +69,13 @@ def in_space(scene):
     """The structure of a scene of the plane in space. Moments of inertia are the same about all axes."""
     flat = scene.structure
     places, ties, forces = flat.places, flat.ties, flat.forces
+    ends = {name: lifted(getattr(ties.links, name)) for name in ("at", "anchor_at", "between")}
     return Structure(
         places._replace(
             axes=AXES, **{name: lifted(getattr(places, name)) for name in ("at", "face_at", "normal", "between")}
         ),
-        flat.k,
-        ties._replace(**{name: lifted(getattr(ties, name)) for name in ("at", "anchor_at", "between")}),
-        forces._replace(at=lifted(forces.at), force=lifted(forces.force)),
+        ties._replace(links=ties.links._replace(axes=AXES, **ends)),
+        forces._replace(axes=AXES, at=lifted(forces.at), force=lifted(forces.force)),
         frozen(np.column_stack([scene.bodies.mass] * 3 + [scene.bodies.inertia] * 3).ravel()),
     )
 
@@ -109,17 +110,18 @@ def tumbling():
     def origin(bodies):
         return np.where(bodies[:, None] < 0, 0.0, rest[bodies])
 
-    places = Places(
-        AXES, body, at, face_body, face_at, normal, origin(body) + at - origin(face_body) - face_at, radius=1e-3
-    )
+    between = origin(body) + at - origin(face_body) - face_at
+    law = np.zeros(5, dtype=np.int64), np.array([1e5, 2e5, 3e5, 1e5, 2e5]), *np.zeros((4, 5))
+    places = Places(AXES, body, at, face_body, face_at, normal, between, 1e-3, *law)
     held, anchor_body = np.array([0, 1, 1]), np.array([-1, 0, -1])
     ends, anchors = rng.normal(0, 0.7, (2, 3, 3))
     between = origin(held) + ends - origin(anchor_body) - anchors
     k, reach = np.array([2e4, 3e4, 1e4]), np.array([0.5, 0.9, 9.0])
-    ties = Ties(held, ends, anchor_body, anchors, between, k, reach, *np.full((2, 3), math.inf), np.zeros(3))
-    forces = AppliedForces(np.array([0, 1]), *rng.normal(0, [[[0.5]], [[300.0]]], (2, 2, 3)))
+    links = LinkEnds(AXES, held, ends, anchor_body, anchors, between)
+    ties = Ties(links, k, reach, *np.full((2, 3), math.inf), np.zeros(3))
+    forces = AppliedForces(AXES, np.array([0, 1]), *rng.normal(0, [[[0.5]], [[300.0]]], (2, 2, 3)))
     masses = np.array([40.0, 40.0, 40.0, 2.0, 3.0, 4.0, 25.0, 25.0, 25.0, 1.0, 2.5, 1.5])
-    return rest, Structure(places, np.array([1e5, 2e5, 3e5, 1e5, 2e5]), ties, forces, masses)
+    return rest, Structure(places, ties, forces, masses)
 
 
 def turned_by(quaternion, spin_, acceleration, t):
@@ -314,13 +316,13 @@ class TestThePlaneInSpace:
         for q, v, a in moves(np.random.default_rng(8), scene, 10):
             one, other = frames_of(q), frames_of(pose_in_space(q), SPACE)
             for i in range(len(ties.k)):
-                mine = slack(ties, i, other, velocity_in_space(v), velocity_in_space(a), AXES)
-                np.testing.assert_allclose(mine, slack(flat, i, one, v, a, PLANE.axes), rtol=0, atol=1e-13)
+                mine = slack(ties, i, other, velocity_in_space(v), velocity_in_space(a))
+                np.testing.assert_allclose(mine, slack(flat, i, one, v, a), rtol=0, atol=1e-13)
                 reach = flat.reach.copy()
-                stretched = stretch(flat._replace(reach=reach), i, one, v, PLANE.axes)
+                stretched = stretch(flat._replace(reach=reach), i, one, v)
                 fresh = ties._replace(reach=np.array(ties.reach))
                 np.testing.assert_allclose(
-                    stretch(fresh, i, other, velocity_in_space(v), AXES), stretched, rtol=0, atol=1e-13
+                    stretch(fresh, i, other, velocity_in_space(v)), stretched, rtol=0, atol=1e-13
                 )
                 np.testing.assert_allclose(fresh.reach, reach, rtol=0, atol=1e-13)
 
@@ -388,14 +390,14 @@ class TestTumblingBodies:
             frames = [frames_of(later(q, v, a, s), SPACE) for s in (-t, 0.0, t)]
             for i in range(len(ties.k)):
                 before, now, after = (
-                    slack(ties, i, frame, v + s * a, a, AXES) for frame, s in zip(frames, (-t, 0.0, t), strict=True)
+                    slack(ties, i, frame, v + s * a, a) for frame, s in zip(frames, (-t, 0.0, t), strict=True)
                 )
-                ends = (material(rest, q, ties.body[i], ties.at[i]),)
-                ends += (material(rest, q, ties.anchor_body[i], ties.anchor_at[i]),)
+                ends = (material(rest, q, ties.links.body[i], ties.links.at[i]),)
+                ends += (material(rest, q, ties.links.anchor_body[i], ties.links.anchor_at[i]),)
                 assert now.value == pytest.approx(ties.reach[i] - math.dist(*ends), abs=1e-13)
                 assert (after.value - before.value) / (2 * t) == pytest.approx(now.rate, abs=1e-6)
                 assert (after.rate - before.rate) / (2 * t) == pytest.approx(now.linear + now.swept, abs=1e-5)
-                assert slack(ties, i, frames[1], a, v, AXES).rate == pytest.approx(now.linear)
+                assert slack(ties, i, frames[1], a, v).rate == pytest.approx(now.linear)
 
     def test_the_power_between_two_bodies(self):
         """A force and its reaction, at the point and where friction acts: force times the velocity over the face."""
@@ -448,14 +450,12 @@ class TestTumblingBodies:
             pressed |= set(np.flatnonzero(potential.openings(q) < 0))
             assert (after - before) / (2 * h) == pytest.approx(gradient @ v, abs=1e-6 * np.abs(gradient).max())
             rates = [gap(structure.places, i, frames_of(q, SPACE), v, v).rate for i in range(5)]
-            rates += [slack(structure.ties, i, frames_of(q, SPACE), v, v, AXES).rate for i in range(3)]
+            rates += [slack(structure.ties, i, frames_of(q, SPACE), v, v).rate for i in range(3)]
             np.testing.assert_allclose(potential.rates(q) @ v, rates, atol=1e-12)
             for i, body in enumerate(structure.forces.body):
                 at = structure.forces.at[i]
                 moved = material(rest, q, body, at) - rest[body] - at
-                np.testing.assert_allclose(
-                    displacement(structure.forces, i, frames_of(q, SPACE), AXES), moved, atol=1e-14
-                )
+                np.testing.assert_allclose(displacement(structure.forces, i, frames_of(q, SPACE)), moved, atol=1e-14)
         assert pressed >= set(range(5)) | {5, 6}  # every contact, and the ties that are short
 
 

@@ -8,7 +8,7 @@ import pytest
 from scenes import changed, two_blocks
 
 import mjrock as mr
-from mjrock.geometry.frames import PLANE, frames_of, rotation_change
+from mjrock.geometry.frames import frames_of, rotation_change
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
 from mjrock.problem.wall.restoring_moment import pose_of
 from mjrock.problem.wall.ties_on_wall import pulled
@@ -92,7 +92,6 @@ def tied_blocks():
 def test_ties_between_bodies_that_turn():
     """Slack from the two ends written out; its rate and curvature along q + v t + a t^2/2, by central differences."""
     scene, t = tied_blocks(), 1e-4
-    axes = scene.places.axes
 
     def world(q, body, local):
         if body < 0:
@@ -107,22 +106,22 @@ def test_ties_between_bodies_that_turn():
                 world(q, scene.links.sprung.body[i], scene.links.sprung.at[i]),
                 world(q, scene.links.sprung.anchor_body[i], scene.links.sprung.anchor_at[i]),
             )
-            now = slack(scene.ties, i, frames_of(q), v, a, axes)
+            now = slack(scene.ties, i, frames_of(q), v, a)
             assert now.value == pytest.approx(scene.links.sprung.reach[i] - math.dist(*ends), abs=1e-12)
             before, after = (
-                slack(scene.ties, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a, axes) for s in (-t, t)
+                slack(scene.ties, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t)
             )
             assert (after.value - before.value) / (2 * t) == pytest.approx(now.rate, abs=1e-6)
             assert (after.rate - before.rate) / (2 * t) == pytest.approx(now.linear + now.swept, abs=1e-5)
-            assert slack(scene.ties, i, frames_of(q), a, v, axes).rate == pytest.approx(now.linear)
+            assert slack(scene.ties, i, frames_of(q), a, v).rate == pytest.approx(now.linear)
 
 
 def test_a_tie_yields_beyond_its_strength_and_stays_longer():
     """k (length - reach) up to the strength; what is beyond lengthens the reach, and less than that gives no force."""
     scene = tied_blocks()
-    ties, axes = scene.ties._replace(reach=np.array(scene.ties.reach)), scene.places.axes
+    ties = scene.ties._replace(reach=np.array(scene.ties.reach))
     q = np.zeros(6)
-    length = 2.0 - slack(ties, 0, frames_of(q), q, q, axes).value
+    length = 2.0 - slack(ties, 0, frames_of(q), q, q).value
     limit = 1e5 / 2e6
     for reach, elastic, yielded in (
         (length + 0.1, 0.0, 0.0),
@@ -130,7 +129,7 @@ def test_a_tie_yields_beyond_its_strength_and_stays_longer():
         (length - limit - 0.3, limit, 0.3),
     ):
         ties.reach[0] = reach
-        assert stretch(ties, 0, frames_of(q), q, axes) == pytest.approx((elastic, yielded), abs=1e-12)
+        assert stretch(ties, 0, frames_of(q), q) == pytest.approx((elastic, yielded), abs=1e-12)
         assert ties.reach[0] == pytest.approx(reach + yielded)
 
 
@@ -242,7 +241,7 @@ def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
 
 def test_a_scene_settles_under_its_weight(wall, contacts):
     scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
-    np.testing.assert_allclose(settled(scene.potential, scene.contacts)[0], scene.at_rest, atol=1e-15)
+    np.testing.assert_allclose(settled(scene.potential)[0], scene.at_rest, atol=1e-15)
     np.testing.assert_allclose(scene.bears, wall.weight / scene.contacts.k[:2].sum() * np.array([1, 1, 0, 0]))
     blocks = two_blocks()
     force = -blocks.contacts.k * np.minimum(gaps(blocks.places, blocks.at_rest.reshape(1, -1))[0], 0)
@@ -263,5 +262,5 @@ def test_formulas_of_walls_alone_are_those_of_any_body():
         turned = rotation_change(frames, 0, (toe - rest[0], -rest[1]))  # the toe stays where it is
         assert pose == pytest.approx([-turned[0], -turned[1], theta], rel=1e-12, abs=1e-15)
         velocity = wall.turning(theta, math.copysign(1.0, theta))
-        now = slack(scene.ties, 0, frames_of(pose), velocity, velocity, PLANE.axes)
+        now = slack(scene.ties, 0, frames_of(pose), velocity, velocity)
         assert pulled(case.pulls[0], theta, math.copysign(1.0, theta)) == pytest.approx((-now.value, -now.rate))

@@ -197,7 +197,9 @@ CALLS = OF_NUMBERS | {
         },
     ),
     "Bodies": (
-        lambda magnify: bodies.Bodies(TIMES, (np.eye(3, 2),), np.zeros((1, 2)), np.ones((3, 1, 3)), magnify).extent(),
+        lambda magnify: bodies.Bodies.loose(
+            TIMES, (np.eye(3, 2),), np.zeros((1, 2)), np.ones((3, 1, 3)), magnify
+        ).extent(),
         {"magnify": 100},
     ),
 }  # fmt: skip

@@ -1,4 +1,4 @@
-"""Random scenes, checked and run under invariances: see docs/invariances.md and `python -m tests.invariance`."""
+"""Random scenes, checked and run under invariances: see docs/validation.md and `python -m tests.invariance`."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ under."""
 EVERY_DAY = (2, 5, 7, 12, 22)
 STACK = 5
 """A plane stack on springs with a record."""
-PAGE = Path(__file__).parents[2] / "docs" / "invariances.md"
+PAGE = Path(__file__).parents[2] / "docs" / "validation.md"
 
 
 def broken(seed, names=None):

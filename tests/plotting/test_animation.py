@@ -10,6 +10,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation, histories, section
 from mjrock.plotting.bodies import Bodies
+from mjrock.result.bodies import Moving
 from mjrock.result.motion import SampledMotion
 
 WALL = mr.Block.from_size(thickness=0.6, height=4.2)
@@ -136,8 +137,8 @@ def test_a_tie_that_has_yielded_is_slack_before_it_is_back():
     tie = mr.Tie(4.0, 1e6, strength=1e3)
     case = mr.Case(WALL, 0.0, 1.0, effects=(tie,))
     theta = np.array([0.0, 2e-4, 5e-3, 4e-3, 4.9e-3, 6e-3])
-    bodies = Bodies(np.arange(6.0), (WALL.outline,), np.array([[0.0, 2.1]]), WALL.pose(theta)[:, None])
-    assert section.pulling(bodies.of_case(case), tie)[0].tolist() == [False, True, True, False, True, True]
+    moving = Moving(case, np.arange(6.0), WALL.pose(theta)[:, None])
+    assert section.pulling(moving, tie)[0].tolist() == [False, True, True, False, True, True]
 
 
 def test_any_bodies_can_be_drawn(tmp_path):
@@ -157,7 +158,7 @@ def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
     triangle, square = [[-1.0, 0.0], [1.0, 0.0], [0.0, 2.0]], [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
     poses = 0.1 * np.random.default_rng(0).normal(size=(4, 2, 3))
     ground = np.array([[-2.0, -0.5], [1.0, -0.5], [1.0, -0.2]])
-    bodies = Bodies(np.arange(4.0), (triangle, square), [[0.0, 0.5], [3.0, 1.5]], poses, 2.0, (ground,))
+    bodies = Bodies.loose(np.arange(4.0), (triangle, square), [[0.0, 0.5], [3.0, 1.5]], poses, 2.0, (ground,))
     each = [[bodies.placed(i, j, one) for j, one in enumerate(bodies.outlines)] for i in range(4)]
     for i, (three, four) in enumerate(each):
         np.testing.assert_allclose(bodies.corners(i), [[*three, three[-1]], four])
@@ -176,7 +177,7 @@ def test_what_has_fallen_far_and_wide_ground_do_not_shrink_the_picture():
     poses = np.zeros((2, 2, 3))
     poses[1, 1, :2] = 100.0, -100.0
     ground = np.array([[-50.0, -9.0], [50.0, -9.0], [50.0, 0.0], [-50.0, 0.0]])
-    bodies = Bodies(np.arange(2.0), (square, square), [[0.5, 0.5], [1.5, 0.5]], poses, 1.0, (ground,))
+    bodies = Bodies.loose(np.arange(2.0), (square, square), [[0.5, 0.5], [1.5, 0.5]], poses, 1.0, (ground,))
     np.testing.assert_allclose(bodies.extent(), [[-0.5, -1.0], [4.5, 1.0]], atol=1e-12)
 
 
@@ -216,7 +217,7 @@ def test_blocks_of_masonry_are_drawn_where_they_are(mass):
     poses[-1, 1] = [0.1, 0.0, np.pi / 2]
     motion = SampledMotion(poses, np.zeros_like(poses), np.zeros(5))
     bodies = Bodies.of(dataclasses.replace(theory(), t=np.linspace(0, 1, 5), case=case, motion=motion))
-    np.testing.assert_array_equal(bodies.fixed[0], corners - [0, 2])
+    np.testing.assert_array_equal(bodies.moving.case.fixed[0], corners - [0, 2])
     np.testing.assert_allclose(bodies.placed(-1, 0, bodies.outlines[0]), corners, atol=1e-12)
     centroid = np.array([0.5, 3.0 + mass / (mass + blocks[2].mass)])
     from_it = corners + np.array([0, 2]) - centroid

@@ -147,7 +147,7 @@ def test_blocks_that_touch_have_other_tints_and_those_that_are_alike_one_shape(t
     masonry = mr.Masonry.running_bond(3.2, 2.0, (0.4, 0.2), k_n=1e9, friction=0.6)
     answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.01))
     run = run_of(plotting.view(answer, tmp_path / "page.html"))
-    tints = [body["tint"] for body in run["bodies"]]
+    tints = [body["colour"] for body in run["bodies"]]
     free = [(joint.below, joint.above) for joint in masonry.joints if joint.below in masonry.free]
     assert len(free) > 200
     assert all(tints[a] != tints[b] for a, b in free)
@@ -156,7 +156,7 @@ def test_blocks_that_touch_have_other_tints_and_those_that_are_alike_one_shape(t
 
 def test_the_ground_ends_beyond_the_rubble_unless_blocks_fall_past_its_edge(slid, tmp_path):
     run = run_of(plotting.view(slid, tmp_path / "page.html"))
-    bodies = bodies_of(slid.case, slid.t, slid.pose, slid.velocity)
+    bodies = bodies_of(slid.moving, slid.velocity)
     reached = np.concatenate([body.placed(body.corners).reshape(-1, 3) for body in bodies])
     off = np.linalg.norm(reached[:, :2] - run["ground"]["middle"], axis=1)
     assert off.max() < run["ground"]["radius"]

@@ -13,7 +13,7 @@ BLOCK = mr.Masonry.stack([mr.Block.from_size(0.4, 1.6)], k_n=1e9, friction=0.9)
 def test_a_block_that_turns_and_the_force_at_its_toe():
     collapse = mr.collapse_multiplier(BLOCK)
     ax = plotting.mechanism(Figure().subplots(), collapse)
-    corners = ax.patches[1].get_xy()
+    corners = ax.collections[0].get_paths()[0].vertices
     rest = BLOCK.blocks[1].corners
     assert np.hypot(*(corners[:4].mean(axis=0) - rest.mean(axis=0))) == pytest.approx(0.1 * 1.6, rel=1e-6)
     assert corners[:4, 0].mean() > rest[:, 0].mean()  # along the force

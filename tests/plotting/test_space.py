@@ -13,6 +13,7 @@ from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation
 from mjrock.plotting.perspective import Faces
 from mjrock.plotting.solids import Solids
+from mjrock.result.bodies import Moving
 
 GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")
 PAIR = (mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5), name="front"), mr.Polyhedron.box((1, 1, 1), (-0.5, 0, 0.5)))
@@ -22,6 +23,11 @@ REST = np.tile([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (2, 1))
 
 def axes():
     return Figure().add_subplot(projection="3d")
+
+
+def posed(masonry, pose, magnify=1.0, camera=None):
+    """Masonry at a pose, as a picture has it."""
+    return Solids(Moving(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose[None], magnify), camera)
 
 
 def faces_of(ax):
@@ -40,7 +46,7 @@ def test_blocks_are_drawn_where_a_pose_has_brought_them():
     """A quarter turn about x brings the corner (1/2, 1/2, 1/2) of the front block to (1/2, -1/2, 1/2)."""
     pose = REST.copy()
     pose[0] = [3.0, 1.0, 0.5, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0]
-    solids = Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), pose[None], 2.0)
+    solids = posed(MASONRY, pose, 2.0)
     at_rest, moving = np.array([1.0, 0.5, 1.0]), solids.moving
     drawn = moving.placed(1, at_rest[None])[0, 0]
     np.testing.assert_allclose(
@@ -67,16 +73,15 @@ def test_a_picture_has_the_faces_that_are_seen_and_the_same_scale_along_every_ax
 
 @pytest.mark.parametrize(("azimuth", "last"), [(35.0, 0), (-145.0, 1)])
 def test_the_nearer_of_two_blocks_hides_the_other(azimuth, last):
-    assert Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0)[-1] == last
+    assert posed(MASONRY, REST, camera=(20.0, azimuth)).order(0)[-1] == last
 
 
 def test_a_low_block_before_a_high_one_is_drawn_later_though_its_centroid_is_farther():
     high = mr.Polyhedron.box((1, 1, 9), (-0.5, 0, 4.5))
     low = mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5))
-    solids = Solids(
-        mr.MasonryCase(mr.Masonry((GROUND, low, high), xi=0), 1.0), np.zeros(1), REST[None], camera=(60.0, 0.0)
-    )
-    assert (solids.rests @ solids.eye)[0] < (solids.rests @ solids.eye)[1]
+    solids = posed(mr.Masonry((GROUND, low, high), xi=0), REST, camera=(60.0, 0.0))
+    depth = solids.case.centroids[solids.shown] @ solids.eye
+    assert depth[0] < depth[1]
     assert solids.order(0).tolist() == [1, 0]
 
 
@@ -87,17 +92,17 @@ def test_a_block_within_a_frame_hides_its_far_leg_and_is_hidden_by_the_near_one(
     within = mr.Polyhedron.box((1, 0.8, 1), (0, 0, 0.5))
     masonry = mr.Masonry((GROUND, frame, within), xi=0)
     for azimuth, order in ((0.0, [0, 3, 1]), (180.0, [1, 3, 0])):
-        drawn = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0).tolist()
+        drawn = posed(masonry, REST, camera=(20.0, azimuth)).order(0).tolist()
         assert [part for part in drawn if part != 2] == order
-    top = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), REST[None], camera=(20.0, 0.0)).order(0)[-1]
+    top = posed(masonry, REST, camera=(20.0, 0.0)).order(0)[-1]
     assert top == 2
 
 
 def nearest(solids, point):
     """The convex parts that a line of sight through a point meets, the nearest first."""
     met, part = [], 0
-    poses = dict(zip(solids.masonry.free, solids.poses[0], strict=True))
-    for number, rest in zip(solids.shown, solids.rests, strict=True):
+    poses = dict(zip(solids.masonry.free, solids.moving.pose[0], strict=True))
+    for number, rest in zip(solids.shown.tolist(), solids.case.centroids[solids.shown], strict=True):
         turn = rotations(poses[number][None])[0]
         start, way = turn.T @ (point - rest - poses[number][:3]) + rest, turn.T @ solids.eye
         for body in solids.masonry.polyhedra[number].parts:
@@ -128,7 +133,7 @@ def test_what_a_line_of_sight_meets_first_is_drawn_last(seed):
     pose[:, :3] = rng.permutation(cells) - [body.centroid for body in masonry.polyhedra[1:]]
     pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
     camera = (rng.uniform(-90, 90), rng.uniform(-180, 180)) if seed else (0.0, 0.0)
-    solids = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose[None], camera=camera)
+    solids = posed(masonry, pose, camera=camera)
     place, lines = np.argsort(solids.order(0)), 0
     for point in rng.uniform(-0.5, 4.2, (300, 3)):
         met = nearest(solids, point)
@@ -164,7 +169,7 @@ def test_a_response_is_drawn_as_it_ended_and_moves(tmp_path):
     np.testing.assert_allclose(np.transpose(line.get_data_3d())[1], (-1.05, 0, 1.8))
     assert plotting.animate(response, tmp_path / "rock.gif", dpi=20, fps=20, camera=(30.0, 60.0)).exists()
     halfway = solids.at(np.array([0.005]))
-    assert np.linalg.norm(halfway.poses[0, 0, 3:]) == pytest.approx(1.0)
+    assert np.linalg.norm(halfway.moving.pose[0, 0, 3:]) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
@@ -195,7 +200,7 @@ def test_what_takes_the_plane_alone_says_so(one_sided, e, tmp_path):
 
 
 def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
-    solids = Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), moved(place=(500.0, 0.0, 2.0))[None])
+    solids = posed(MASONRY, moved(place=(500.0, 0.0, 2.0)))
     low, high = solids.extent()
     np.testing.assert_allclose(low, [-1.0, -0.5, 0.0], atol=1e-12)
     np.testing.assert_allclose(high, [3.0, 0.5, 3.0], atol=1e-12)
@@ -203,7 +208,7 @@ def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
 
 def test_a_moving_picture_fills_its_figure_but_for_its_margin():
     case = mr.MasonryCase(MASONRY, 1.0)
-    figure, _ = animation.scene(Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), REST[None]), [], case)
+    figure, _ = animation.scene(posed(MASONRY, REST), [], case)
     ax = figure.axes[0]
     seen = np.concatenate([path.vertices for path in faces_of(ax).get_paths()])
     low, high = ax.transData.transform([seen.min(axis=0), seen.max(axis=0)]) / figure.bbox.size
@@ -213,7 +218,7 @@ def test_a_moving_picture_fills_its_figure_but_for_its_margin():
 
 
 def test_a_scale_bar_is_as_long_as_it_says_and_lies_across_the_line_of_sight():
-    solids = Solids(mr.MasonryCase(MASONRY, 1.0), np.zeros(1), REST[None])
+    solids = posed(MASONRY, REST)
     figure, _ = animation.scene(solids, [], None)
     ax = figure.axes[0]
     ends = np.transpose(ax.lines[0].get_data_3d())
@@ -225,9 +230,8 @@ def test_a_scale_bar_is_as_long_as_it_says_and_lies_across_the_line_of_sight():
 
 
 def test_the_ground_is_drawn_beyond_blocks_that_have_fallen_far():
-    case = mr.MasonryCase(MASONRY, 1.0)
     for far, corner in ((1.5, 2.5), (500.0, 3.0 + 3 * 4.0)):  # the front block reaches 1 m at rest
-        solids = Solids(case, np.zeros(1), moved(angle=0.0, place=(far, 0.0, 0.0))[None])
+        solids = posed(MASONRY, moved(angle=0.0, place=(far, 0.0, 0.0)))
         low, high = solids.floor
         size = max(np.ptp(solids.extent(), axis=0))
         np.testing.assert_allclose(low, [-1.0 - 0.15 * size, -0.5 - 0.15 * size])
@@ -237,5 +241,5 @@ def test_the_ground_is_drawn_beyond_blocks_that_have_fallen_far():
 def test_a_block_that_is_gone_leaves_the_place_where_it_stood():
     masonry = mr.Masonry([GROUND, PAIR[0]], k_n=1e8)
     pose = np.array([[[30.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]])
-    low, high = Solids(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose).extent()
+    low, high = posed(masonry, pose[0]).extent()
     np.testing.assert_allclose([low, high], [[0.0, -0.5, 0.0], [1.0, 0.5, 1.0]], atol=1e-12)

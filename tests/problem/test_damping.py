@@ -22,6 +22,22 @@ def test_a_warning_that_names_what_is_outside(wall, e):
         mr.PUBLISHED(slender, e, 5e8)
 
 
+def test_a_warning_points_to_the_line_that_led_to_it(wall, e):
+    """Whether a law is called, contacts are made of it, or masonry asks for the damping of its joints."""
+    calls = {
+        "law": lambda: mr.PUBLISHED(wall, e, 1e10),
+        "contacts": lambda: mr.Contacts.from_law(wall, e, 1e10, 1e10, law=mr.PUBLISHED),
+        "stop": lambda: mr.Contacts.from_law(wall, mr.Restitution.from_geometry(wall), 5e8, 5e8).side_up_to(1.0),
+        "masonry": lambda: mr.Masonry.stack([wall], k_n=4e6, friction=0.7, law="CALIBRATED"),
+    }
+    for name, call in calls.items():
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            call()
+        assert caught, name
+        assert {warning.filename for warning in caught} == {__file__}, name
+
+
 def test_a_perfect_rebound_asks_for_no_damping(wall):
     assert mr.PUBLISHED(wall, mr.Restitution(1.0, -1.0), 5e8) == (0.0, 0.0)
 

@@ -98,6 +98,14 @@ def test_misuse_is_doubted_once(misuse):
         make()
 
 
+def test_a_force_by_an_actuator_on_a_soft_spring_is_not_doubted():
+    """A force of the weight at a displacement of 10 m, of masonry that is 0.6 m long."""
+    force = sum(block.mass for block in columns(1).blocks if not block.fixed) * mr.GRAVITY
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        case(effects=mr.Actuator(3, (-0.3, 4.0), 1, ([0.0, 1.0], [0.0, 10.0]), force / 10))
+
+
 def test_a_thousandth_of_the_step_that_is_needed_is_doubted():
     with pytest.warns(mr.Implausible, match=r"timestep = 9\.9e-07 s, and 0\.001 s is short enough"):
         warn_if_tiny(9.9e-7, 1e-3)

@@ -5,6 +5,7 @@ import html
 import re
 import string
 import sys
+from dataclasses import replace
 from functools import cache
 from io import BytesIO
 from pathlib import Path
@@ -15,9 +16,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import mjrock as mr
+from mjrock.quantities import ratio_said, share_said
 from mjrock.reporting.markup import formula
 from mjrock.reporting.texts import FOUND, Words, languages, texts
 from mjrock.study.loading.dynamic import RunMaximum
+from mjrock.study.loading.mechanism import LimitState, Verdict, verdict_rows
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)])
 E = mr.Restitution.from_geometry(WALL)
@@ -251,6 +254,26 @@ def test_numbers_have_digits_that_count_and_prefixes(value, unit, given, found):
 
 def test_a_ratio_below_one_never_reads_as_one():
     assert [Words("en").ratio(x) for x in (0.999, 1.0, 1.234, 1.239, 0.57)] == ["0.99", "1.00", "1.23", "1.23", "0.57"]
+
+
+@pytest.mark.parametrize("share", [0.994, 1 - 1e-6, 1 - 1e-12, 1.0, 1 + 1e-12, 1.004, 3.345])
+def test_what_fails_never_reads_as_if_it_held(share):
+    """A capacity of so many demands, and the same demand over the capacity: in every text, cut or rounded up."""
+    verdict = Verdict("nonlinear kinematic", "SLV", 1.0, share, "m", "C8.7.1.2.1.8")
+    (cells,) = verdict_rows([verdict])[1:]
+    assert cells[5] == ratio_said(share) == Words("en").ratio(share)
+    assert f"ratio {cells[5]} {verdict.said}" in repr(verdict)
+    assert (float(cells[5]) >= 1) == verdict.holds
+    assert (float(share_said(1 / share)) <= 1) == (1 / share <= 1)
+
+
+def test_a_check_and_its_report_write_one_ratio(tmp_path):
+    """0.6666 is 0.66 in the table of the check and on the page."""
+    states = {name: LimitState(0.2, 1.0, 0.3) for name in ("SLV", "SLC")}
+    check = replace(CHECK, states=states, peak=None, breaking={})
+    assert [line.split()[-2] for line in check.table().splitlines() if line.startswith("capacity over")] == ["0.66"] * 2
+    assert "SLV 0.66 FAILS" in repr(check)
+    assert ">0.66<" in mr.report(CASE, answer(), tmp_path / "cut.html", checks=check).read_text(encoding="utf-8")
 
 
 def test_alpha_0_by_hand_is_that_of_the_push_over(tmp_path):

@@ -10,7 +10,7 @@ from scenes import changed, course, fixed_steps, stock_takes, two_blocks
 import mjrock as mr
 from mjrock.engine.mjcf import scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
-from mjrock.engine.points import inverse_weights
+from mjrock.engine.rows import inverse_weights
 from mjrock.engine.stepping import fitted_steps
 from mjrock.scene.ground import Shaking, ground_velocity, mean_acceleration
 from mjrock.scene.parts import Links

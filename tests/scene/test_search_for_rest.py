@@ -16,7 +16,7 @@ LIMITED, HELD = rest.Search(1e3, 20), rest.Search(1e3, 20, limited=False)
 
 def sliders(scene, push, search=LIMITED, slipped=None):
     slipped = np.zeros((len(scene.contacts.k), 1)) if slipped is None else slipped
-    return rest.sliders_at(scene.contacts, search, np.array(push, dtype=float), slipped)
+    return rest.sliders_at(scene.places, search, np.array(push, dtype=float), slipped)
 
 
 def test_a_slider_holds_friction_times_push_and_only_where_faces_touch():
@@ -113,11 +113,9 @@ def test_what_may_be_missing_is_a_billionth_of_the_heaviest_body_or_the_rounding
 def test_bodies_are_lowered_until_level_ground_carries_them(pull, theta):
     """Rotations stay. The springs of the ground carry both weights less what pulls upwards."""
     scene = two_blocks()
-    places, masses = scene.potential.structure.places, scene.potential.structure.masses
-    forces = changed(scene, forces=ConstantForces(("pull",), [1], [(0.1, 0.9)], [(3e4, pull)])).forces
-    applied = rest.AppliedForces(*(np.asarray(getattr(forces, name)) for name in rest.AppliedForces._fields))
+    pulled = changed(scene, forces=ConstantForces(("pull",), [1], [(0.1, 0.9)], [(3e4, pull)]))
     pose = np.array([[0.0, 0.01, theta], [0.002, 0.0, -theta]])
-    found = rest.lowered(places, scene.contacts.k, applied, masses, pose)
+    found = pulled.lowered(pose)
     moved = found - pose
     np.testing.assert_allclose(moved, moved[0, 1] * np.array([[0, 1, 0], [0, 1, 0]]), atol=1e-15)
     openings = scene.potential.openings(found.ravel())[:2]

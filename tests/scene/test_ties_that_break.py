@@ -61,7 +61,7 @@ def test_a_mass_that_breaks_its_tie(sliding, accuracy):
     entering = math.sqrt(SPEED**2 - 2 * elastic / mass)
     sprung = math.asin(stretch * omega / SPEED) / omega
     yields = (entering - math.sqrt(entering**2 - 2 * slows * ULTIMATE)) / slows
-    broken = steps.windows.t[breaks(scene.ties, steps.pose, scene.places.freedom)[0]]
+    broken = steps.windows.t[breaks(scene.ties, steps.pose)[0]]
     assert broken == pytest.approx(SLACK / SPEED + sprung + yields, abs=accuracy * 0.05)
 
 

@@ -230,7 +230,8 @@ def test_kill_and_resume(tmp_path):
     expected = table(whole)
     path = tmp_path / "c.sqlite"
     for least in (5, 25):
-        run = subprocess.Popen([sys.executable, str(script), str(marks), str(path)], env=ENVIRONMENT)
+        with (tmp_path / "stderr").open("w") as said:
+            run = subprocess.Popen([sys.executable, str(script), str(marks), str(path)], env=ENVIRONMENT, stderr=said)
         while len(list(marks.glob("done-*"))) < least and run.poll() is None:
             time.sleep(0.02)
         workers = children(run.pid)
@@ -239,6 +240,7 @@ def test_kill_and_resume(tmp_path):
         run.wait()
         assert workers
         assert gone(workers)  # no orphans
+        assert "resource_tracker" not in (tmp_path / "stderr").read_text()
         kept = table(path).splitlines()
         assert 1 < len(kept) < 61
     subprocess.run([sys.executable, str(script), str(marks), str(path)], env=ENVIRONMENT, check=True)

@@ -1,9 +1,11 @@
 """Composite overturning: a facade with wedges of its side walls, by hand, by limit analysis and by every solver."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.patches import Polygon
 
 import mjrock as mr
 
@@ -142,3 +144,22 @@ def test_a_gable_alone_overturns_as_a_triangle():
     gable = mr.Block.from_size(0.4, 3.0, 6.0, gable=mr.Gable(3.0))
     found = mr.mechanism_check(mr.Case(gable, 0.0, 1.0), lambda T, xi: 0.1)
     assert found.alpha_0 == pytest.approx(1.5 * 0.4 / 3.0)
+
+
+def test_sketch_film_and_report_show_the_wedges_once_and_not_the_masses_that_stand_for_them(tmp_path):
+    """The drawing reaches as far back as the wedges do."""
+    wedge = mr.Wedge(math.radians(35), 0.5, 7.0)
+    case = mr.Case(FACADE, 0.0, 3.0, effects=(*wedge.behind(FACADE), mr.AddedMass(1500.0, 9.0)))
+    section = mr.plotting.sketch(case).axes[0]
+    texts = [text.get_text() for text in section.texts]
+    assert sorted(text.partition(":")[0] for text in texts if ": " in text) == ["mass", "wedges"]
+    assert any("2 of 0.5 m, 7 m high,\ncrack at 35°" in text for text in texts)
+    back = -0.4 - 7.0 * math.tan(math.radians(35))
+    drawn = [patch.get_xy() for patch in section.patches if isinstance(patch, Polygon)]
+    assert [True for corners in drawn if corners.min(axis=0) == pytest.approx([back, 0.0])] == [True]
+    assert section.get_xlim()[0] < back
+    answer = mr.solve_analytical(replace(case, theta0=0.01), mr.Restitution(0.95, -0.5))
+    for language, said in (("en", "wedges of side walls"), ("it", "cunei delle pareti laterali")):
+        text = mr.report(case, answer, tmp_path / "a.html", language=language).read_text(encoding="utf-8")
+        assert text.count(said) == 1
+        assert "wedge" not in text.replace("wedges of side walls", "")

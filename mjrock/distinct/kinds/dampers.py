@@ -19,7 +19,7 @@ class Dampers(Kind, Table):
     @classmethod
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
-        return cls.linking(scene.links.damped, scene.dampers.between)
+        return cls.linking(scene.links.damped, scene.dampers.links.between)
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:

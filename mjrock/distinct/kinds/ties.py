@@ -28,7 +28,7 @@ class Ties(Kind, Table):
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene, where they bear nothing at rest if they push too."""
         ties = scene.ties
-        return cls.linking(scene.links.sprung, ties.between, reach=ties.reach, drawn=0.0, broken=math.inf)
+        return cls.linking(scene.links.sprung, ties.links.between, reach=ties.reach, drawn=0.0, broken=math.inf)
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:

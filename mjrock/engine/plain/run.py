@@ -136,7 +136,7 @@ class PlainRun:
     def stored(self) -> tuple[Array, Array]:
         """Kinetic, potential and elastic energy [J], shape (n, 3), and what ties have taken, shape (n, ties)."""
         scene, flat = self.of.scene, (len(self.t), -1)
-        without = scene.structure._replace(k=np.zeros_like(scene.contacts.k))
+        without = scene.structure._replace(places=scene.places._replace(k=np.zeros_like(scene.contacts.k)))
         parts, taken = energies(without, self.pose.reshape(flat), self.velocity.reshape(flat))
         parts[:, 2] += self.elastic.sum(axis=1)
         return parts, taken

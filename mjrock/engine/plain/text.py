@@ -49,8 +49,8 @@ VISUAL = (
     '<headlight ambient="0.25 0.25 0.27" diffuse="0.25 0.25 0.25" specular="0 0 0"/></visual>'
 )
 """Half the width of what casts shadows and the depth of what is seen, over half the extent."""
-BRICK, PLASTER = (0.7, 0.33, 0.23, 1), (0.85, 0.82, 0.76, 1)
-"""Colours of what moves and of what stands fixed."""
+PLASTER = (0.85, 0.82, 0.76, 1)
+"""Colour of what stands fixed."""
 SUPPORT_MASS = 1e12
 """Mass of a fixed block that is moved: nothing on it moves it [kg]."""
 ROUNDING = 1e-15
@@ -226,9 +226,8 @@ def _world(scene: Scene, pieces: list[Piece], moved: tuple[str, ...]) -> Iterato
         yield "  " + "".join(element("joint", name=f"{name}_{axis}", type="slide", axis=way) for axis, _, way in BALL)
         yield from (f"  {_geom(piece, rgba=PLASTER)}" for piece in pieces if piece.block == name)
         yield "</body>"
-    shades = tints(scene)
-    for j, name in enumerate(scene.bodies.names):
-        yield from _body(scene, j, name, [piece for piece in pieces if piece.body == j], shades[j])
+    for j, (name, tint) in enumerate(zip(scene.bodies.names, tints(scene), strict=True)):
+        yield from _body(scene, j, name, [piece for piece in pieces if piece.body == j], tint)
 
 
 def _geom(piece: Piece, **attributes: object) -> str:
@@ -263,7 +262,7 @@ def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, obj
         yield "  " + element("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **inertia_of_body(scene, j))
         weight = {}
     for piece in own:
-        yield "  " + _geom(piece, **weight, **(tint or {"rgba": BRICK}))
+        yield "  " + _geom(piece, **weight, **tint)
     yield from (f"  {site}" for site in sites(scene, j))
     yield "</body>"
 

@@ -120,10 +120,10 @@ function meshOfBodies(fixed, uniforms) {
   const [a, b, c] = [0, 1, 2].map(() => new THREE.Vector3()),
     colour = new THREE.Color();
   run.bodies.forEach((body, number) => {
-    if ((body.tint === null) !== fixed) return;
+    if ((body.colour === null) !== fixed) return;
     const {corners, faces} = run.shapes[body.shape];
     if (fixed) colour.set(run.ground && body.kind === 'ground' ? FLOOR : GREY);
-    else colour.setRGB(...run.tints[body.tint], THREE.SRGBColorSpace);
+    else colour.setRGB(...body.colour, THREE.SRGBColorSpace);
     for (const face of faces) {
       for (let i = 1; i + 1 < face.length; i++) {
         const triangle = [face[0], face[i], face[i + 1]].map(corner => corners[corner]);
@@ -383,7 +383,7 @@ function rowsOf(number, poses, forces, time) {
   const pose = poses.subarray(8 * number, 8 * number + 8);
   const rows = [];
   if (body.mass !== null) rows.push(['mass', shown(body.mass, 'kg', 4)]);
-  if (body.tint === null) rows.push(['fixed', run.moving.includes(number) ? 'moved as a support' : 'yes']);
+  if (body.colour === null) rows.push(['fixed', run.moving.includes(number) ? 'moved as a support' : 'yes']);
   if (run.moving.includes(number)) {
     const off = [0, 1, 2].map(i => pose[i] - body.rest[i]);
     const far = Math.hypot(...off);

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, NamedTuple
@@ -18,6 +17,7 @@ from ...quantities import (
     require_real,
     require_text,
     shown,
+    warn_of,
     within_ranges,
 )
 from ..wall.block import Block
@@ -196,17 +196,16 @@ class Contacts:
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
             for doubt in _doubts(law, points, k_side, friction, side_friction):
-                warnings.warn(doubt, stacklevel=3)
+                warn_of(doubt)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
         if unlikely := e.doubt(wall, None):
-            warnings.warn(unlikely, Implausible, stacklevel=3)
+            warn_of(unlikely, Implausible)
         if k_side is not None and (lifts := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
-            warnings.warn(
+            warn_of(
                 f"no rebound can lift an edge as e asks for it from {amplitude:g} alpha: it would turn the wall "
                 f"{lifts:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then "
-                f"elastic or larger than asked for. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3",
-                stacklevel=3,
+                f"elastic or larger than asked for. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3"
             )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
@@ -236,12 +235,11 @@ class Contacts:
             Implausible: if the damping was chosen for a stop of another height.
         """
         if self.stop_top is not None and not math.isclose(top, self.stop_top, rel_tol=UNLIKE):
-            warnings.warn(
+            warn_of(
                 f"the damping was chosen for a side stop up to {self.stop_top:.4g} m, and that of the case reaches "
                 f"{top:.4g} m; take Restitution.from_geometry(wall, stop_top={top:.4g}) and "
                 f"matched_contacts(..., side_stop=SideStop({top:.4g}))",
                 Implausible,
-                stacklevel=3,
             )
         return self._stopping if top == self._stopping.face else replace(self._stopping, face=top)
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import math
 import tomllib
-import warnings
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Self
 
 from ...files import require_file, write_text
-from ...quantities import keep, require_array, require_kind, require_path, require_stiffness, require_within
+from ...quantities import keep, require_array, require_kind, require_path, require_stiffness, require_within, warn_of
 from ..wall.block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
 from .restitution import Restitution
@@ -112,15 +111,14 @@ class DampingLaw:
         groups = Groups.of(wall, e, k_n, k_side, amplitude)
         outside = self._outside(wall, e, k_n, k_side)
         if outside:
-            warnings.warn(f"{self.name}: outside the range of the fit: {'; '.join(outside)}", stacklevel=2)
+            warn_of(f"{self.name}: outside the range of the fit: {'; '.join(outside)}")
         xi_base = float(self.base.xi(groups, groups.base_loss))
         if self.scalable:
             lowest, highest = self.reach(wall, k_n, amplitude)
             if not lowest <= e.base <= highest:
-                warnings.warn(
+                warn_of(
                     f"{self.name}: no damping of this base makes e_2s = {e.base:.4g}; it reaches {lowest:.4g} to "
-                    f"{highest:.4g}, and gets the damping that comes closest",
-                    stacklevel=2,
+                    f"{highest:.4g}, and gets the damping that comes closest"
                 )
             xi_base = min(max(xi_base, LEAST), HIGHEST)
         return xi_base, float(self.side.xi(groups, groups.side_loss))

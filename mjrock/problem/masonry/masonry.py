@@ -130,6 +130,9 @@ class Masonry(Drawn):
     m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
     meet others.
 
+    Two are equal if their blocks and keywords are. A function of the joint is equal to itself alone: two lambdas of the
+    same text make two that are not equal.
+
     Args:
         blocks: the blocks, all in the plane, `Polygon` or `Compound` of these, or all in space, `Polyhedron` or
             `Compound` of these; at least one fixed and one that is not, at most 5000.

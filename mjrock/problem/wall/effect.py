@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import fields
 from itertools import accumulate
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -129,6 +129,22 @@ class LinkLaw(NamedTuple):
         return np.array(list(slid)[1:])
 
 
+class Told(Protocol):
+    """What sketch and report speak of: an effect, or what several effects stand for.
+
+    Attributes:
+        label: its name.
+        arguments: names of its arguments as they stand in a sketch.
+    """
+
+    label: ClassVar[str]
+    arguments: ClassVar[str]
+
+    @property
+    def said(self) -> str:
+        """Where it is and what it does."""
+
+
 class Effect:
     """An effect: where it acts, and what it brings.
 
@@ -167,6 +183,17 @@ class Effect:
     def said(self) -> str:
         """Where it is and what it does, for sketch and report."""
         raise NotImplementedError
+
+    @property
+    def told(self) -> Told | None:
+        """What sketch and report speak of in its place: itself, or None where they have already spoken of it."""
+        return self
+
+    @property
+    def outline(self) -> Array:
+        """Corners of what it is in the section, x from the middle of the base and z [m], shape (n, 2); (0, 2) of what
+        is at a point."""
+        return np.empty((0, 2))
 
 
 class Anchored(Effect):

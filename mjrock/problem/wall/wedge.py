@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Annotated
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
 
-from ...quantities import Within, keep_declared, require_kind, require_within, short_repr
+import numpy as np
+
+from ...quantities import Array, Within, keep_declared, require_kind, require_within, short_repr
 from .block import Block
 from .effects import AddedMass
 
@@ -38,6 +40,8 @@ class Wedge:
         (0.162, 0.089)
     """
 
+    label: ClassVar[str] = "wedges"
+    arguments: ClassVar[str] = "angle, thickness, height"
     angle: Annotated[float, Within(0.01, 1.2, "rad", "angle of the wedge")]
     thickness: Annotated[float, Within(0.01, 10, "m", "thickness of the side wall")]
     height: Annotated[float, Within(0.01, 200, "m", "height of the wedge")]
@@ -54,6 +58,15 @@ class Wedge:
         """Length of a wedge at its top [m]."""
         return self.height * math.tan(self.angle)
 
+    @property
+    def said(self) -> str:
+        """For sketches, and for reports that have no words for it."""
+        of = "" if self.density is None else f", {self.density:g} kg/m3"
+        return (
+            f"{self.number} of {self.thickness:g} m, {self.height:g} m high{of},\n"
+            f"crack at {math.degrees(self.angle):.3g}° from the vertical"
+        )
+
     def behind(self, facade: Block) -> tuple[AddedMass, AddedMass]:
         """All wedges behind a facade, as two masses that move with it.
 
@@ -69,4 +82,34 @@ class Wedge:
         mass = self.number * density * self.thickness * self.depth * self.height / 2
         radius = math.hypot(self.depth, self.height) / math.sqrt(18)
         middle, level = -facade.b - self.depth / 3, 2 * self.height / 3
-        return AddedMass(mass / 2, level, middle - radius), AddedMass(mass / 2, level, middle + radius)
+        inner, outer = (
+            WedgeMass(mass / 2, level, middle + way * radius, wedge=self, face=-facade.b, first=way < 0)
+            for way in (-1, 1)
+        )
+        return inner, outer
+
+
+@dataclass(frozen=True, repr=False)
+class WedgeMass(AddedMass):
+    """One of the two masses that stand for wedges, see `Wedge.behind`.
+
+    Args:
+        wedge: the wedges.
+        face: where the inner face of the facade is, from the middle of its base [m].
+        first: whether it is the one that sketch and report speak of.
+    """
+
+    wedge: Wedge = field(kw_only=True)
+    face: float = field(kw_only=True, repr=False)
+    first: bool = field(kw_only=True, repr=False)
+
+    @property
+    def told(self) -> Wedge | None:
+        """The wedges, once."""
+        return self.wedge if self.first else None
+
+    @property
+    def outline(self) -> Array:
+        """The triangle between the inner face, the crack and the top of the side wall."""
+        back, top = self.face - self.wedge.depth, self.wedge.height
+        return np.array([[self.face, 0.0], [self.face, top], [back, top]])

@@ -41,6 +41,7 @@ class Workers:
 
     def __init__(self, count: int, limit: float | None) -> None:
         self.limit = limit
+        _start_tracker()
         self.pool = ProcessPool(count, initializer=start_worker, context=_Context())
 
     def submit(self, tasks: Sequence[tuple[Task, Path | None]]) -> Future[list[Row]]:
@@ -84,13 +85,23 @@ class _Context(SpawnContext):
     Process = _Worker
 
 
+def _start_tracker() -> None:
+    """Start the process of Python that removes the semaphores of a campaign that is killed. It does so in silence."""
+    silence = "ignore:resource_tracker:UserWarning"
+    sys.warnoptions.append(silence)
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        sys.warnoptions.remove(silence)
+
+
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
     """Start processes to which Ctrl-C does not go, not even while they start."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    resource_tracker.ensure_running()  # it would unblock the signal as it starts
+    _start_tracker()  # it would unblock the signal as it starts
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

@@ -6,8 +6,9 @@ import dataclasses
 import hashlib
 import time
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
@@ -61,39 +62,47 @@ def fingerprint(*contents: object) -> str:
         TypeError: for a value whose content is not known, such as a function.
     """
     digest = hashlib.sha256()
-    for piece in _pieces(contents):
-        digest.update(b"%d:" % len(piece) + piece)
+    _add(digest, contents)
     return digest.hexdigest()[:32]
 
 
-def _pieces(value: object) -> Iterator[bytes]:
-    """The content of a value as bytes that tell it from any other."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        yield type(value).__name__.encode()
-        for field in dataclasses.fields(value):
-            if field.compare:
-                yield field.name.encode()
-                yield from _pieces(getattr(value, field.name))
-    elif isinstance(value, np.ndarray):
-        yield f"{value.dtype.str}{value.shape}".encode()
-        yield np.ascontiguousarray(value).tobytes()
-    elif isinstance(value, Mapping):
-        yield b"{%d" % len(value)
-        for name in sorted(value):
-            yield from _pieces(name)
-            yield from _pieces(value[name])
-    elif isinstance(value, tuple | list):
-        yield b"[%d" % len(value)
-        for item in value:
-            yield from _pieces(item)
-    elif isinstance(value, np.generic):
-        yield from _pieces(value.item())
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        yield repr(float(value)).encode()  # 1 and 1.0 are the same thickness
+def _add(digest: Any, value: object) -> None:
+    """Add the content of a value to a hash, as pieces of bytes that tell it from any other."""
+    if isinstance(value, np.generic):
+        _add(digest, value.item())
     elif value is None or isinstance(value, bool | str):
-        yield repr(value).encode()
+        _add_piece(digest, repr(value).encode())
+    elif isinstance(value, int | float):
+        _add_piece(digest, repr(float(value)).encode())  # 1 and 1.0 are the same thickness
+    elif isinstance(value, tuple | list):
+        _add_piece(digest, b"[%d" % len(value))
+        for item in value:
+            _add(digest, item)
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        _add_piece(digest, type(value).__name__.encode())
+        for name in _compared(type(value)):
+            _add_piece(digest, name.encode())
+            _add(digest, getattr(value, name))
+    elif isinstance(value, np.ndarray):
+        _add_piece(digest, f"{value.dtype.str}{value.shape}".encode())
+        _add_piece(digest, np.ascontiguousarray(value).tobytes())
+    elif isinstance(value, Mapping):
+        _add_piece(digest, b"{%d" % len(value))
+        for name in sorted(value):
+            _add(digest, name)
+            _add(digest, value[name])
     else:
         raise TypeError(f"{spelt(value)} is of no type whose content can be hashed")
+
+
+def _add_piece(digest: Any, piece: bytes) -> None:
+    digest.update(b"%d:" % len(piece) + piece)
+
+
+@cache
+def _compared(kind: type) -> tuple[str, ...]:
+    """The fields of a dataclass that take part in comparison."""
+    return tuple(field.name for field in dataclasses.fields(kind) if field.compare)
 
 
 VERSION = f"mjrock {__version__}, MuJoCo {mujoco.__version__}"

@@ -16,7 +16,7 @@ from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
 from ...problem.masonry.effects import laden
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
-from ...quantities import Array, Implausible, is_iterable, require_kind, shown, spelt
+from ...quantities import Array, Implausible, is_iterable, require_kind, share_said, shown, spelt
 from ...result.response import Response
 from ..analysis import Analysis
 from ..campaign.campaign import results
@@ -130,7 +130,7 @@ class DynamicCheck:
             kinematic: a check of the same wall, whose verdicts then stand above.
         """
         require_kind("kinematic", kinematic, MechanismCheck, type(None))
-        lines = [f"{run.solver}, {run.name}: {run.d:.4f} m, {run.d / self.d_0:.2f} d_0" for run in self.runs]
+        lines = [f"{run.solver}, {run.name}: {run.d:.4f} m, {share_said(run.d / self.d_0)} d_0" for run in self.runs]
         if self.restitution:
             low, middle, high = np.percentile(self.restitution, [5, 50, 95])
             said = f"{middle:.3f} in the median, {low:.3f} to {high:.3f} in nine of ten"
@@ -140,7 +140,7 @@ class DynamicCheck:
         return "\n".join([*lines, verdicts_of((*before, *self.verdicts))])
 
     def _repr_html_(self) -> str:
-        runs = [(one.name, f"{one.d:.4f}", f"{one.d / self.d_0:.2f}") for one in self.runs]
+        runs = [(one.name, f"{one.d:.4f}", share_said(one.d / self.d_0)) for one in self.runs]
         head = ("run", "displacement [m]", "of d_0")
         return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
 

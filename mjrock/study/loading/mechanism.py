@@ -26,7 +26,17 @@ from ...problem.wall.bending import VerticalBending
 from ...problem.wall.case import Case
 from ...problem.wall.horizontal_bending import HorizontalBending
 from ...problem.wall.ties_on_wall import moment_at_strength
-from ...quantities import GRAVITY, Array, Implausible, require_real, require_within, short_repr, shown, takes
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Implausible,
+    ratio_said,
+    require_real,
+    require_within,
+    short_repr,
+    shown,
+    takes,
+)
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
@@ -109,7 +119,7 @@ class Verdict(NamedTuple):
     def __repr__(self) -> str:
         return (
             f"<{self.what}, {self.limit_state}: {self.capacity:.4g} for {self.demand:.4g} {self.unit}, "
-            f"ratio {self.ratio:.2f} {self.said}, {self.clause}>"
+            f"ratio {ratio_said(self.ratio)} {self.said}, {self.clause}>"
         )
 
     @property
@@ -133,7 +143,7 @@ def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
     rows += [
         (
-            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, f"{one.ratio:.2f}"),
+            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_said(one.ratio)),
             *(one.said, one.clause),
         )
         for one in verdicts
@@ -307,11 +317,12 @@ class MechanismCheck:
             note = said.get(f"{step.key} {step.of}".strip(), step.clause)
             if step.key == "ratio" and (gone := self.broken_before(step.of)):
                 note += f", without {', '.join(gone)}, broken"
-            rows.append((what + (f" [{step.unit}]" if step.unit else ""), f"{step.value:.{digits}f}", note))
+            value = ratio_said(step.value) if step.key.endswith("ratio") else f"{step.value:.{digits}f}"
+            rows.append((what + (f" [{step.unit}]" if step.unit else ""), value, note))
         return rows
 
     def __repr__(self) -> str:
-        ratios = ", ".join(f"{one.limit_state} {one.ratio:.2f} {one.said}" for one in self.verdicts[-2:])
+        ratios = ", ".join(f"{one.limit_state} {ratio_said(one.ratio)} {one.said}" for one in self.verdicts[-2:])
         return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 

@@ -75,8 +75,8 @@ def tilted(scene: Scene, rotations: Array) -> Tilted:
             lever = _lever(scene, int(base[-1]), pose)
         total = potential.load(pose) + springs
         for i in range(len(ties.k)):
-            snaps(ties, i, frames_of(pose), pose, scene.places.axes)
-            stretch(ties, i, frames_of(pose), pose, scene.places.axes)
+            snaps(ties, i, frames_of(pose), pose)
+            stretch(ties, i, frames_of(pose), pose)
         # with F the friction and H the force at the centroid: total_x + F + H = 0 and total_theta + F lever = 0
         rows[n] = *pose, total[2] / lever - total[0], -lever
     return _tilted(scene, base, rows)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ....quantities import Array, Integers
+from ....quantities import Array, Integers, warn_of
 from ...damping.contacts import AnyLaw, Contacts
 from ...damping.restitution import Restitution
 from ...wall.block import Block
@@ -104,7 +104,7 @@ def damping_by_law(
                 wall, e, k_base=float(k_n[base]), k_side=k_side, law=law, points=int(points[base])
             )
         for warning in caught:
-            warnings.warn(f"the joint {joint.name}: {warning.message}", warning.category, stacklevel=4)
+            warn_of(f"the joint {joint.name}: {warning.message}", warning.category)
         interface = contacts.side or contacts.base
         damping[:, i] = interface.xi, interface.frequency
     return damping[0], damping[1]
