@@ -269,7 +269,7 @@ class Response(Drawn):
             AttributeError: for a wall.
         """
         case, k = self.of_masonry, sample_at(self.t, t)
-        moving = Moving(case, self.t, self.pose).at(k)
+        moving = Moving(case, self.t, self.pose).at([k])
         places = [moving.displaced(i, centroid[None])[0, 0] for i, centroid in enumerate(case.masonry.centroids)]
         turns = np.eye(1, self.pose.shape[2] - len(places[0])) if self.in_space else np.zeros((1, 1))
         turns = np.repeat(turns, len(places), axis=0)
