@@ -266,6 +266,12 @@ CALLS = OF_NUMBERS | {
         mr.collapse_multiplier,
         {"masonry": COLUMN, "direction": 1, "angle": None, "associated": True, "loads": {"block_0": (1.0, 0.0)}},
     ),
+    "collapse_multiplier, in a pose": (
+        mr.collapse_multiplier, {"masonry": COLUMN, "pose": [3 * [0.0]] * len(COLUMN.free)},
+    ),
+    "limit_curve": (
+        mr.limit_curve, {"masonry": COLUMN, "direction": 1, "to": 1e-3, "angle": None, "effects": (), "poses": 2},
+    ),
     "collapse_multiplier, space": (
         mr.collapse_multiplier,
         {"masonry": BOX, "direction": (1.0, 0.3), "angle": None, "associated": True, "loads": {"block": (1.0, 0, 0)}},
@@ -501,8 +507,8 @@ def test_every_public_entry_is_tried():
         "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
-        "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push", "records_in",
-        "RecordSet", "components_in",
+        "MeasuredContact", "SpaceJoint", "Collapse", "LimitCurve", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",
+        "records_in", "RecordSet", "components_in",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried
