@@ -97,8 +97,8 @@ MECHANISMS = {
 def main(argv: Sequence[str] | None = None) -> None:
     """Push and draw them."""
     out = cli.folder(cli.parser(__doc__, "mechanisms").parse_args(argv).out)
-    figure = Figure(figsize=(16, 4.0), layout="constrained")
-    places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.3, 1.3, 1.3])
+    figure = Figure(figsize=(7.4, 4.4), layout="constrained")
+    places = figure.add_gridspec(2, 3)
     lines = []
     for i, (name, (make, angle)) in enumerate(MECHANISMS.items()):
         masonry, alpha_0 = make()
@@ -108,7 +108,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
         plotting.mechanism(ax, found, share=0.06, forces=False)
         ax.axis("off")
-        ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10, y=None if angle is None else 0.88)
+        ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
     plotting.save(figure, out / "mechanisms.png")
     cli.report(out / "mechanisms", "\n".join(lines))
 

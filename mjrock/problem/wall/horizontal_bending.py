@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from ...quantities import Within, keep, keep_declared, require_kind, require_within, short_repr
-from .bending import FINE, BendingCurve, require_plain
+from .bending import CURVE_POINTS, BendingCurve, require_plain
 from .block import Block
 from .tie import Tie
 
@@ -86,7 +86,7 @@ class HorizontalBending:
         The multiplier is the rate of the work on the thrust over that of the weight's displacement.
         """
         t, parts = 2 * self.wall.b, np.array(self.parts)[:, None]
-        rise = t * np.cos(np.linspace(0.0, 0.5 * math.pi, FINE))  # of the arch
+        rise = t * np.cos(np.linspace(0.0, 0.5 * math.pi, CURVE_POINTS))  # of the arch
         along = np.sqrt(t**2 + parts**2 - rise**2)  # of each body, from edge to edge
         theta = np.arctan2(t, parts) - np.arctan2(rise, along)
         share = parts / self.wall.length
