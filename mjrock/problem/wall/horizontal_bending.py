@@ -14,7 +14,7 @@ from .bending import CURVE_POINTS, BendingCurve, require_plain
 from .block import Block
 from .tie import Tie
 
-STIFF = 1e3
+TIE_STIFFNESS = 1e3
 """Stiffness of the tie that stands for the side walls, their thrust per thickness of the wall [-]."""
 
 
@@ -102,5 +102,5 @@ class HorizontalBending:
         t, half, z = 2 * self.wall.b, 0.5 * self.wall.length, self.wall.h
         ends = [(0.5 * t, sign * (half + 0.5 * t), z) for sign in (-1, 1)]
         blocks = {"block": "side_0", "anchor_block": "side_1"}
-        stiffness = STIFF * self.thrust / t
+        stiffness = TIE_STIFFNESS * self.thrust / t
         return Tie(stiffness=stiffness, strength=self.thrust, at=ends[0], anchor=ends[1], **blocks)  # type: ignore[arg-type]
