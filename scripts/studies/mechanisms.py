@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import Axes3D
 
 import mjrock as mr
 from mjrock import plotting
@@ -59,6 +58,11 @@ def bending() -> tuple[mr.Masonry, float]:
     return mr.Masonry.between_floors(wall, LOAD), mr.VerticalBending(wall, LOAD).multiplier
 
 
+def sideways() -> tuple[mr.Masonry, float]:
+    """A strip that bends between side walls."""
+    return mr.Masonry.between_sides(STRIP), STRIP.multiplier
+
+
 def corner() -> tuple[mr.Masonry, float]:
     """A corner that overturns along the diagonal."""
     t, h = THICKNESS, 0.75 * HEIGHT
@@ -75,10 +79,15 @@ def gable() -> tuple[mr.Masonry, float]:
     return mr.Masonry([ground, mr.Polyhedron(corners, name="gable")], friction=0.7), 1.5 * THICKNESS / h
 
 
+STRIP = mr.HorizontalBending(mr.Block.from_size(THICKNESS, 1.5, 5.0), thrust=40e3)
+"""A strip between side walls, and what these bear."""
+
+
 MECHANISMS = {
     "simple overturning": (simple, None),
     "composite overturning": (composite, None),
     "vertical bending": (bending, None),
+    "horizontal bending": (sideways, 0.0),
     "corner": (corner, -math.pi / 4),
     "gable": (gable, 0.0),
 }
@@ -89,19 +98,16 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Push and draw them."""
     out = cli.folder(cli.parser(__doc__, "mechanisms").parse_args(argv).out)
     figure = Figure(figsize=(7.4, 4.4), layout="constrained")
-    rows = figure.add_gridspec(2, 1)
-    places = [rows[0].subgridspec(1, 3)[i] for i in range(3)] + [rows[1].subgridspec(1, 2)[i] for i in range(2)]
+    places = figure.add_gridspec(2, 3)
     lines = []
     for i, (name, (make, angle)) in enumerate(MECHANISMS.items()):
         masonry, alpha_0 = make()
-        found = mr.collapse_multiplier(masonry) if angle is None else mr.collapse_multiplier(masonry, angle=angle)
+        effects = STRIP.tie if make is sideways else ()
+        found = mr.collapse_multiplier(masonry, None if angle is not None else 1, angle=angle, effects=effects)
         lines.append(f"{name}: {found.multiplier:.4f} by limit analysis, {alpha_0:.4f} by the closed form")
         ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
         plotting.mechanism(ax, found, share=0.06, forces=False)
         ax.axis("off")
-        if isinstance(ax, Axes3D):
-            x, y, z = (high - low for low, high in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim()))
-            ax.set_box_aspect((x, y, z), zoom=1.15)
         ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
     plotting.save(figure, out / "mechanisms.png")
     cli.report(out / "mechanisms", "\n".join(lines))

@@ -61,6 +61,7 @@ CALLS = OF_NUMBERS | {
     ),
     "Wedge": (mr.Wedge, {"angle": 0.4, "thickness": 0.5, "height": 4.0, "number": 2, "density": None}),
     "Corner": (mr.Corner, {"thickness": 0.5, "height": 4.0, "angle": 0.4, "density": 2000.0}),
+    "HorizontalBending": (mr.HorizontalBending, {"wall": WALL, "thrust": 1e4, "crack": None}),
     "VerticalBending": (mr.VerticalBending, {"wall": WALL, "load": 2e4, "bearing": None, "crack": None}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
     "ScatteredRestitution": (mr.ScatteredRestitution, {"mean": E, "sd": 0.01, "seed": 1}),
@@ -264,6 +265,12 @@ CALLS = OF_NUMBERS | {
     "collapse_multiplier": (
         mr.collapse_multiplier,
         {"masonry": COLUMN, "direction": 1, "angle": None, "associated": True, "loads": {"block_0": (1.0, 0.0)}},
+    ),
+    "collapse_multiplier, in a pose": (
+        mr.collapse_multiplier, {"masonry": COLUMN, "pose": [3 * [0.0]] * len(COLUMN.free)},
+    ),
+    "limit_curve": (
+        mr.limit_curve, {"masonry": COLUMN, "direction": 1, "to": 1e-3, "angle": None, "effects": (), "poses": 2},
     ),
     "collapse_multiplier, space": (
         mr.collapse_multiplier,
@@ -500,8 +507,8 @@ def test_every_public_entry_is_tried():
         "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
-        "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push", "records_in",
-        "RecordSet", "components_in",
+        "MeasuredContact", "SpaceJoint", "Collapse", "LimitCurve", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",
+        "records_in", "RecordSet", "components_in",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -36,6 +36,7 @@ from ..damping.contacts import AnyLaw, required_law
 from ..wall.bending import VerticalBending
 from ..wall.block import Block
 from ..wall.effects import SideStop
+from ..wall.horizontal_bending import HorizontalBending
 from ..wall.section import Opening
 from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .blocks.joints import Joint, OverlapError, joints_in_plane, names_of
@@ -55,6 +56,7 @@ from .builders.in_plane import (
     stacked,
 )
 from .builders.in_space import (
+    bending_between_sides,
     box_on_ground,
     column_of,
     dome_of,
@@ -681,6 +683,31 @@ class Masonry(Drawn):
         """
         blocks = bending_between_floors(VerticalBending(wall, load, bearing, crack))
         return cls(blocks, **_by_word((("guide", 0.0), ("floor", 10.0)), options))
+
+    @classmethod
+    def between_sides(cls, bending: HorizontalBending, **options: Unpack[JointOptions]) -> Self:
+        """A wall that cracks upright between two side walls, on a smooth bed.
+
+        The inner face is x = 0, and the middle of the wall y = 0. A block at either end stands for a side wall: smooth
+        guides hold it across the wall, and `effects=bending.tie` along it, up to the thrust.
+
+        Args:
+            bending: the wall, its crack and its thrust.
+            options: further arguments of `Masonry`; `friction` is that of the ends and of the crack, see
+                `HorizontalBending.friction`. The blocks are "ground", "left", "right", "side_0", "side_1" and four
+                fixed guides.
+
+        Raises:
+            TypeError, ValueError: as `Masonry` does.
+
+        Examples:
+            >>> strip = mr.HorizontalBending(mr.Block.from_size(0.5, 2.0, 6.0), thrust=12e3)
+            >>> blocks = mr.Masonry.between_sides(strip)
+            >>> round(float(mr.collapse_multiplier(blocks, effects=strip.tie).multiplier), 4)
+            0.068
+        """
+        require_kind("bending", bending, HorizontalBending)
+        return cls(bending_between_sides(bending), **_by_word((("guide", 0.0), ("ground", 0.0)), options))
 
     @classmethod
     def wallette(

@@ -20,10 +20,10 @@ thicknesses, and those that a block may have [kg/m3]."""
 
 
 class BendingCurve(NamedTuple):
-    """The static curve of a wall that bends between floors.
+    """The static curve of a wall that bends between floors, or between side walls.
 
     Args:
-        rotation: of the lower body [rad], shape (n,).
+        rotation: of the lower or first body [rad], shape (n,).
         displacement: horizontal, of the centroid of both bodies [m], shape (n,).
         multiplier: horizontal acceleration over g that holds the wall at each [-], shape (n,), zero at the last.
     """
@@ -31,6 +31,12 @@ class BendingCurve(NamedTuple):
     rotation: Array
     displacement: Array
     multiplier: Array
+
+
+def require_plain(wall: Block) -> None:
+    """Raise a ValueError unless a wall is a plain rectangle."""
+    if not wall.is_plain or wall.inset:
+        raise ValueError(f"wall = {wall!r} is not a plain rectangle; cut it to the strip between its openings")
 
 
 @dataclass(frozen=True)
@@ -73,8 +79,7 @@ class VerticalBending:
     def __post_init__(self) -> None:
         require_kind("wall", self.wall, Block)
         keep_declared(self)
-        if not self.wall.is_plain or self.wall.inset:
-            raise ValueError(f"wall = {self.wall!r} is not a plain rectangle; cut it to the strip between its openings")
+        require_plain(self.wall)
         thickness, height = 2 * self.wall.b, 2 * self.wall.h
         if self.bearing is not None:
             keep(self, bearing=require_within("bearing", self.bearing, 1e-3 * thickness, thickness, "m"))

@@ -1,7 +1,8 @@
 """The check of a local mechanism on its push-over curve, after the Italian commentary C8.7.1.2.1, clause by clause.
 
 The clauses are those of Circolare 21 gennaio 2019 n. 7. The mechanism is the single rigid block of a case, which stands
-on the ground or on a floor whose spectrum or motion is the demand, or a wall that bends between two floors.
+on the ground or on a floor whose spectrum or motion is the demand, or a wall that bends between two floors or side
+walls.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from ...problem.ground.spectrum import response_spectrum
 from ...problem.masonry.case import require_wall
 from ...problem.wall.bending import VerticalBending
 from ...problem.wall.case import Case
+from ...problem.wall.horizontal_bending import HorizontalBending
 from ...problem.wall.ties_on_wall import moment_at_strength
 from ...quantities import (
     GRAVITY,
@@ -325,7 +327,7 @@ class MechanismCheck:
 
 
 def mechanism_check(
-    case: Case | VerticalBending,
+    case: Case | VerticalBending | HorizontalBending,
     demand: Demand | Mapping[str, Demand],
     *,
     confidence_factor: float = 1.35,
@@ -345,7 +347,8 @@ def mechanism_check(
     its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known.
 
     Args:
-        case: the wall and its effects, whose release and motion play no part, or a wall that bends between floors.
+        case: the wall and its effects, whose release and motion play no part, or a wall that bends between
+            floors or side walls.
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
             [m] of a spectrum. It is that of both limit states, or a mapping has one for each, "SLV" and "SLC"; the
             linear check then takes that of the SLV.
@@ -372,7 +375,7 @@ def mechanism_check(
     peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None
     factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
     T_0 = None if elastic_period is None else require_within("elastic_period", elastic_period, 1e-3, 5.0, "s")
-    found = _of_bending(case) if isinstance(case, VerticalBending) else _of_wall(case)
+    found = _of_bending(case) if isinstance(case, VerticalBending | HorizontalBending) else _of_wall(case)
     d, a = found.d, found.multiplier * GRAVITY / (found.participation * factor)
     if T_0 is not None:
         fine = np.union1d(d, np.linspace(0.0, float(d[-1]), 4001))
@@ -406,8 +409,9 @@ class _Mechanism(NamedTuple):
     breaking: Mapping[str, float]
 
 
-def _of_bending(bending: VerticalBending) -> _Mechanism:
-    """A wall between floors. The centroids of both bodies begin to move alike, so that all of the mass takes part."""
+def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
+    """A wall between floors or side walls. The centroids of both bodies begin to move alike, so that all of the mass
+    takes part."""
     curve = bending.curve
     return _Mechanism(curve.multiplier, curve.displacement, 1.0, None, {}, {})
 

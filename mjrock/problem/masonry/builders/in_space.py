@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
+from ...wall.horizontal_bending import HorizontalBending
 from ...wall.section import Opening
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon
@@ -286,6 +287,27 @@ def wall_corner(thickness: float, height: float, angle: float, density: float) -
     rest = along([(0.0, 0.0), (long, height), (end, height), (end, 0.0)], "rest")
     ground = ground_below((-t - end, 0.0, 0.0), (0.0, t + end, height))
     return [ground, Compound(turning, name="corner") if long > 0 else post, *rest]
+
+
+def bending_between_sides(bending: HorizontalBending) -> list[Polyhedron]:
+    """The two bodies of a wall on the ground between two blocks that guides hold across it, see
+    `Masonry.between_sides`."""
+    t, high, half = 2 * bending.wall.b, 2 * bending.wall.h, 0.5 * bending.wall.length
+    crack = bending.parts[0] - half
+
+    def part(name: str, x: tuple[float, float], y: tuple[float, float]) -> Polyhedron:
+        (back, front), (left, right) = x, y
+        middle = 0.5 * (back + front), 0.5 * (left + right), 0.5 * high
+        size = front - back, right - left, high
+        return Polyhedron.box(size, middle, bending.wall.density, name.startswith("guide"), name)
+
+    whole, guides = (0.0, t), ((-t, 0.0), (t, 2 * t))
+    blocks = [part("left", whole, (-half, crack)), part("right", whole, (crack, half))]
+    blocks += [part("side_0", whole, (-half - t, -half)), part("side_1", whole, (half, half + t))]
+    beyond = half + 0.5 * t, half + 2.5 * t
+    ways = [(x, (-beyond[1], -beyond[0])) for x in guides] + [(x, beyond) for x in guides]
+    blocks += [part(f"guide_{i}", x, y) for i, (x, y) in enumerate(ways)]
+    return [ground_below((-t, -beyond[1], 0.0), (2 * t, beyond[1], high)), *blocks]
 
 
 def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: int) -> list[Polyhedron]:

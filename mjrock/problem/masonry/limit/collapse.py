@@ -62,6 +62,10 @@ BALANCED = 1e-9
 """Resultant of forces that grow below which they have no direction, over the sum of their components [-]."""
 
 
+class UnbalancedError(ValueError):
+    """A pose in which no multiplier brings equilibrium."""
+
+
 @dataclass(frozen=True)
 class Collapse(Drawn):
     """How rigid masonry fails under forces that grow.
@@ -187,7 +191,7 @@ def _associated(
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
         return None  # unbounded
     if answer.status == 2 and least < 0:
-        raise ValueError("pose: no multiplier of the forces that grow holds the masonry there, either way")
+        raise UnbalancedError("pose: no multiplier of the forces that grow holds the masonry there, either way")
     if answer.status != 0:
         raise ValueError(f"masonry: the programme for its multiplier has no answer: {answer.message}")
     shares, limits = (

@@ -126,7 +126,7 @@ def _carried(masonry: Masonry, effect: Effect, moves: Moves) -> Effect:
     return replace(effect, **changes)  # type: ignore[type-var]
 
 
-def _gaps(lines: Lines, moves: Moves) -> tuple[Array, Array, Array]:
+def gaps_of(lines: Lines, moves: Moves) -> tuple[Array, Array, Array]:
     """Where lines are [m], the normals of the faces, and the gaps [m]."""
     at, normal = moves.at(lines.body, lines.at), moves.turned(lines.face, lines.normal)
     return at, normal, ((at - moves.at(lines.face, lines.at)) * normal).sum(axis=1)
@@ -135,7 +135,7 @@ def _gaps(lines: Lines, moves: Moves) -> tuple[Array, Array, Array]:
 def _in_the_plane(masonry: Masonry, moves: Moves) -> Lines:
     """The lines that press. Where one has slid past the end of its face, the corner there meets the other face."""
     lines, slack = masonry.lines, masonry.tolerance
-    at, normal, gap = _gaps(lines, moves)
+    at, normal, gap = gaps_of(lines, moves)
     faces, own = (_edges(masonry, moves, of, lines.joint) for of in (lines.face, lines.body))
     along, long = _along(faces, at)
     past = (along < -slack) | (along > long + slack)
@@ -168,7 +168,7 @@ def _along(edges: Array, at: Array) -> tuple[Array, Array]:
 
 def _in_space(masonry: Masonry, moves: Moves) -> Lines:
     """The points that press."""
-    at, normal, gap = _gaps(masonry.lines, moves)
+    at, normal, gap = gaps_of(masonry.lines, moves)
     back = (
         moves.rest[masonry.lines.face]
         + (np.swapaxes(moves.turn[masonry.lines.face], 1, 2) @ (at - moves.place[masonry.lines.face])[..., None])[
