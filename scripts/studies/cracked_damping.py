@@ -63,7 +63,7 @@ LEVELS = (5, 35)
 """First courses of the two groups that hold joists."""
 JOIST = (1.355, 2 * 0.0808, 5510 * 1.034)
 """Far end from the back of the wall [m], length of two along the wall [m], and density [kg/m3]."""
-POINTS, STARTS = 5, 10
+POINTS, STARTS = 5, 3
 """Lines of a joint, and starts."""
 THROWN = 0.35
 """Rate with which the strip of two bodies is thrown out of rest [rad/s]."""
