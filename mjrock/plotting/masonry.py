@@ -88,7 +88,7 @@ def blocks(
     moving = Moving(case, time, placed, magnified)
     if case.in_space:
         bodies = Solids(moving, camera, required_limits(limits, "xyz"))
-        solids(ax, bodies, animated=False)(0)
+        solids(ax, bodies, ax.bbox, animated=False)(0)
         fill(ax, bodies, ax.bbox)
     else:
         flat = Bodies.at_poses(case, time, placed, magnified, limits)
@@ -121,7 +121,7 @@ def _view(ax: Axes, bodies: Bodies) -> None:
     outside = ((corners.max(axis=1) < low) | (corners.min(axis=1) > high)).any(axis=1).sum()
     if outside:
         said = f"{outside} of {len(corners)} blocks lie outside"
-        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=7, va="top")
+        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=8, va="top")
 
 
 @picture(limits=anything)

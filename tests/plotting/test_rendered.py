@@ -79,7 +79,7 @@ def test_spectra_their_mean_and_their_target():
     np.testing.assert_allclose(asked, target(T) / mr.GRAVITY)
     assert np.exp(np.log(mean / asked).mean()) == pytest.approx(1.0, abs=0.1)
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["records", "mean of 3", "target"]
-    assert heights_of(ax.figure, ax, "#f0a35e")[1] == pytest.approx(asked.max(), rel=0.05)
+    assert heights_of(ax.figure, ax, plotting.PALETTE[1])[1] == pytest.approx(asked.max(), rel=0.05)
     records = mr.RecordSet(a=tuple(motions), b=(motions[1],))
     of_set = plotting.spectra(Figure().subplots(), records, T, target).lines  # without the vertical component of a
     np.testing.assert_allclose(of_set[-2].get_ydata(), np.mean([single[0], single[1], single[1]], axis=0))
@@ -122,7 +122,7 @@ def test_a_support_that_moves_is_drawn_where_it_is():
 def test_a_support_that_moves_in_space_is_drawn_where_it_is():
     run = on_a_jack(in_space=True)
     solids = Solids.of(run).at(run.t[[0, -1]])
-    slab = solids.shown[solids.facets.body] == 0
+    slab = solids.facets.block == 0
     for frame, raised in ((0, 0.0), (1, 0.3)):
         heights = solids.corners(frame)[slab][..., 2]
         assert (heights.min(), heights.max()) == pytest.approx((raised, 0.2 + raised), abs=1e-9)

@@ -12,7 +12,7 @@ import numpy as np
 from ...quantities import GRAVITY, Array, Density, Within, keep, keep_declared, require_kind, require_within, short_repr
 from .block import Block
 
-FINE = 20_001
+CURVE_POINTS = 20_001
 """Rotations at which the curve is looked at."""
 DEEPEST, TYPICAL, DENSITIES = 5.0, 2500.0, get_args(Density)[1]
 """Largest depth of a floor, over the thickness of the wall [-], its density where it has one of between one and as many
@@ -110,7 +110,7 @@ class VerticalBending:
         """
         t, a, z = 2 * self.wall.b, self.lever, self.crack_height
         above, reach = 2 * self.wall.h - z, math.hypot(self.lever, 2 * self.wall.h - z)
-        theta = np.linspace(0.0, 0.5 * math.pi, FINE)
+        theta = np.linspace(0.0, 0.5 * math.pi, CURVE_POINTS)
         x = t * (1 - np.cos(theta)) + z * np.sin(theta)  # of the inner edge of the crack
         theta, x = theta[x - a < reach], x[x - a < reach]
         psi = math.atan2(a, above) + np.arcsin((x - a) / reach)  # where the floor bears stays in place sideways

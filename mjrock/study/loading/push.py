@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ...bars import Bar
 from ...distinct.explicit import solve_explicit
 from ...notebook import Drawn
-from ...problem.masonry.actuator import LARGEST, Actuator
+from ...problem.masonry.actuator import LARGEST_STROKE, Actuator
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import laden
 from ...problem.masonry.masonry import Masonry
@@ -178,9 +178,9 @@ def push(
     allowed = require_within("inertia", inertia, 1e-4, 0.5)
     falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
     turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
-    require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST, LARGEST, "m")
+    require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST_STROKE, LARGEST_STROKE, "m")
     if turns.any():
-        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST, "m")
+        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST_STROKE, "m")
     given = _required(masonry, effects, start)
     options = {"mass_damping": mass_damping, "local_damping": local_damping}
     if isinstance(driver, Actuator) and angle is None:
