@@ -32,6 +32,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK
 from mjrock.quantities import Array
 from mjrock.result.response import End
 from scripts.shared import cli
@@ -59,7 +60,7 @@ SENSOR = HEIGHTS[-1]
 """The highest of them [m]."""
 PERIOD, QUIET = 0.092, 0.5
 """Period to which a damping of all motion refers, as in the deck, and what follows on each run [s]."""
-SHARED, STARTS, STRONGER = 12, 3, 1e-6
+SHARED, STARTS, STRONGER = 12, 2, 1e-6
 """Runs that all starts share, in which the wall is nearly whole, starts, and by how much the motions of two differ
 after them [-]."""
 POINTS, STEP = 4, 2e-3
@@ -345,7 +346,7 @@ def drawn(found: dict[str, list[list[Shaken]]], runs: Sequence[int]) -> Figure:
             low, middle, high = np.percentile(values, [16, 50, 84], axis=0)
             ax.fill_between(runs, low, high, color=look["color"], alpha=0.2, linewidth=0)
             ax.plot(runs, middle, **look, label=name)
-    test = {"color": "0.15", "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "test US-1"}
+    test = {"color": BLACK, "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "test US-1"}
     twin = {"color": "0.6", "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "its twin US-2"}
     model = {"color": "0.45", "linestyle": ":", "label": "3DEC of the authors, undamped"}
     given = [RUNS[run] for run in runs]

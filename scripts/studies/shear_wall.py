@@ -111,7 +111,7 @@ SETTINGS = {
     "J7D, 2.12 MPa": Setting(points=5, pressure=2.12e6, mortar=STRONGLY_PRESSED, k_n=60.3e9, k_s=26.9e9),
 }
 DRAWN = "5 lines"
-WALLS, STIFFER, READING = 10, 1e-6, 8.0
+WALLS, STIFFER, READING = 8, 1e-6, 8.0
 """Walls of `DRAWN`, by how much the stiffness of each differs from the last [-], and the error of the reading [kN]."""
 
 
