@@ -19,14 +19,14 @@ from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
-from ..effects import placed
+from ..effects import place_in_world
 from ..lines import Lines
 from ..masonry import Masonry
 
 SUNK, BEYOND = 0.05, 0.01
 """How deep a contact line may lie behind its face, and in space how far a point may lie beside it, over the width of
 the joint [-]."""
-UNIT = 1e-6
+OFF_UNIT = 1e-6
 """Difference of the length of a quaternion from 1 that is put down to rounding [-]."""
 
 
@@ -59,7 +59,7 @@ class Moves(NamedTuple):
         moved[some] = require_array("pose", pose, moved[some].shape)
         if masonry.in_space:
             length = np.linalg.norm(moved[:, 3:], axis=1)
-            if (off := np.abs(length - 1)).max() > UNIT:
+            if (off := np.abs(length - 1)).max() > OFF_UNIT:
                 raise ValueError(f"pose has a quaternion of the length {length[off.argmax()]:g}; the valid one is 1")
         d = freedom.translations
         return cls(rotations(moved), masonry.centroids, masonry.centroids + moved[:, :d])
@@ -116,7 +116,7 @@ def _joint(joint: Joint | SpaceJoint, moves: Moves) -> Joint | SpaceJoint:
 
 def _carried(masonry: Masonry, effect: Effect, moves: Moves) -> Effect:
     """An effect where its block, and that of its anchor, have moved."""
-    held = np.array(placed(masonry, effect))
+    held = np.array(place_in_world(masonry, effect))
     changes: dict[str, object] = {"at": moves.at(effect.block, held), "height": None}
     if isinstance(effect, Anchored):
         anchor, block = effect.anchor_of(held), effect.anchor_block
