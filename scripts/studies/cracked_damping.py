@@ -64,7 +64,7 @@ LEVELS = (5, 35)
 """First courses of the two groups that hold joists."""
 JOIST = (1.355, 2 * 0.0808, 5510 * 1.034)
 """Far end from the back of the wall [m], length of two along the wall [m], and density [kg/m3]."""
-POINTS, STARTS = 5, 10
+POINTS, STARTS = 5, 3
 """Lines of a joint, and starts."""
 THROWN = 0.35
 """Rate with which the strip of two bodies is thrown out of rest [rad/s]."""
@@ -250,7 +250,7 @@ def drawn(found: dict[str, Array], runs: Sequence[int], *, tested: bool) -> Figu
     ax = figure.subplots()
     if tested:
         ax.plot(runs, [RUNS[run].test for run in runs], "o", color=BLACK, label="test US-1", markersize=5, zorder=4)
-    for (name, quantiles), colour in zip(found.items(), (*plotting.PALETTE[:4], "0.5"), strict=False):
+    for (name, quantiles), colour in zip(found.items(), (*plotting.PALETTE[:4], "0.5", "0.75"), strict=False):
         low, middle, high = 1e3 * quantiles
         ax.fill_between(runs, low, high, color=colour, alpha=0.2, linewidth=0)
         ax.plot(runs, middle, color=colour, marker=".", label=name)

@@ -2,10 +2,10 @@
 
 The wall of Moshfeghi, Smyrou, Arslan and Bal (Structures 66, 106815, 2024) spans 2.58 m between a base and a beam that
 move together. It is built by the numbers of the 3DEC deck of its authors (repository yopi1838/Hanze_SAFEGO): 44 courses
-of 1.292 x 0.21 m, which are one body each since the wall spans one way, four joists in pockets, mortar of f_t 0.2 MPa
+of 1.292 x 0.21 m, which are rigid since the wall spans one way, four joists in pockets, mortar of f_t 0.2 MPa
 in every joint, and 10.35 kN on the beam. All 24 runs follow each other, and each starts from the damage that the ones
 before it have left. Nothing is fitted. The wall is run undamped but for cracks and friction, as the deck has it, and
-with the damping of a law in joints that have cracked; then pairs of courses are one body, on joints as stiff as theirs
+with the damping of a law in joints that have cracked. Pairs of courses are one body, on joints as stiff as theirs
 together. After `SHARED` runs each sequence has several starts, whose motions differ by a millionth.
 
 The motions of the table are not part of this repository, as theirs names no licence. `--records` is a folder with files
@@ -32,6 +32,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK
 from mjrock.quantities import Array
 from mjrock.result.response import End
 from scripts.shared import cli
@@ -43,7 +44,7 @@ POCKETS, DEEP, FAR = ((0.323, 0.4038), (0.8883, 0.969)), 0.105, 1.355
 LEVELS = ((5, 8), (35, 38))
 """First course of a level of joists, and the first one above it."""
 PAIRS = (0, 1, 3, 5, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 34, 35, 38, 40, 42, 44)
-"""Courses at which the wall is divided under a law, whose dashpots make the steps of single courses too short."""
+"""Courses at which the wall is divided, since the dashpots of a law make the steps of single courses too short."""
 MORTAR = mr.Bond(0.2e6, 0.4e6, 32.0, 320.0, damped=False)
 """Every joint of the wall and of its pockets, as the deck has it but for its crushing at 20 MPa. That of 9.2 kJ/m2 is
 less than joints of 2.5e9 N/m3 hold there, 160 kJ/m2. A law damps what has cracked, and nothing before."""
@@ -59,9 +60,9 @@ SENSOR = HEIGHTS[-1]
 """The highest of them [m]."""
 PERIOD, QUIET = 0.092, 0.5
 """Period to which a damping of all motion refers, as in the deck, and what follows on each run [s]."""
-SHARED, STRONGER = 12, 1e-6
-"""Runs that all starts share, in which the wall is nearly whole, and by how much the motions of two starts differ after
-them [-]."""
+SHARED, STARTS, STRONGER = 12, 2, 1e-6
+"""Runs that all starts share, in which the wall is nearly whole, starts, and by how much the motions of two differ
+after them [-]."""
 POINTS, STEP = 4, 2e-3
 """Points of a joint each way, and time between two samples [s]."""
 CUT = 25.0
@@ -172,22 +173,9 @@ def of_law(law: str, restitution: float | None = None, points: int = 2) -> Way:
     return Way(base.xi, base.frequency)
 
 
-class Model(NamedTuple):
-    """A way to damp the wall, courses at which it is divided, and starts."""
-
-    way: Way
-    cuts: Sequence[int]
-    starts: int
-
-
-def models() -> dict[str, Model]:
-    """Every model of this study."""
-    return {
-        "undamped": Model(Way(), range(COURSES + 1), 10),
-        "undamped, pairs of courses": Model(Way(), PAIRS, 10),
-        "published law, pairs": Model(of_law("PUBLISHED"), PAIRS, 3),
-        "calibrated law, pairs": Model(of_law("CALIBRATED"), PAIRS, 3),
-    }
+def ways() -> dict[str, Way]:
+    """Every way of this study."""
+    return {"undamped": Way(), "published law": of_law("PUBLISHED"), "calibrated law": of_law("CALIBRATED")}
 
 
 def stiffness_of(joint: str, cuts: Sequence[int]) -> float:
@@ -293,14 +281,14 @@ def shaken(
     return found, carried
 
 
-def sequences(model: Model, motions: Sequence[mr.GroundMotion], points: int = POINTS) -> list[list[Shaken]]:
+def sequences(way: Way, motions: Sequence[mr.GroundMotion], starts: int, points: int = POINTS) -> list[list[Shaken]]:
     """Every run of every start."""
-    masonry = wall_of(points, model.way, model.cuts)
+    masonry = wall_of(points, way, PAIRS)
     with warnings.catch_warnings():  # what lies on the ground after a fall is not looked at
         warnings.filterwarnings("ignore", ".*(lie inside each other|came to lie)", UserWarning)
-        shared, carried = shaken(masonry, motions[:SHARED], model.way)
-        later = [[motion.scaled(1 + i * STRONGER) for motion in motions[SHARED:]] for i in range(model.starts)]
-        return [shared + shaken(masonry, each, model.way, carried)[0] for each in later]
+        shared, carried = shaken(masonry, motions[:SHARED], way)
+        later = [[motion.scaled(1 + i * STRONGER) for motion in motions[SHARED:]] for i in range(starts)]
+        return [shared + shaken(masonry, each, way, carried)[0] for each in later]
 
 
 def judged(peaks: Array, runs: Sequence[int]) -> list[str]:
@@ -358,7 +346,7 @@ def drawn(found: dict[str, list[list[Shaken]]], runs: Sequence[int]) -> Figure:
             low, middle, high = np.percentile(values, [16, 50, 84], axis=0)
             ax.fill_between(runs, low, high, color=look["color"], alpha=0.2, linewidth=0)
             ax.plot(runs, middle, **look, label=name)
-    test = {"color": "0.15", "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "test US-1"}
+    test = {"color": BLACK, "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "test US-1"}
     twin = {"color": "0.6", "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "its twin US-2"}
     model = {"color": "0.45", "linestyle": ":", "label": "3DEC of the authors, undamped"}
     given = [RUNS[run] for run in runs]
@@ -370,15 +358,15 @@ def drawn(found: dict[str, list[list[Shaken]]], runs: Sequence[int]) -> Figure:
         peaks.plot(runs, high, **look)
         tilts.plot(runs, tilt, **look)
     periods.plot(runs, [one.period for one in given], **test)
-    peaks.set(ylabel="largest displacement at 2.06 m [mm]", yscale="log", xlabel="run")
-    tilts.set(ylabel="tilt at the end [0.001 degrees]", xlabel="run", yscale="symlog")
-    periods.set(ylabel="period at the end [s]", xlabel="run", yscale="log")
+    peaks.set(ylabel="peak at 2.06 m [mm]", yscale="log", xlabel="run")
+    tilts.set(ylabel="tilt [0.001 degrees]", xlabel="run", yscale="symlog")
+    periods.set(ylabel="period [s]", xlabel="run", ylim=(0, 0.3))
     last = max(run for run in runs if RUNS[run].record == "HU12")
     for look, (name, starts) in zip(looks, found.items(), strict=False):
         medians = np.median([1e3 * each[runs.index(last)].peaks for each in starts], axis=0)
         profile.plot(medians, HEIGHTS, **look | {"marker": "D", "markersize": 3}, label=name)
     profile.plot(RUNS[last].peaks, HEIGHTS, **test)
-    profile.set(xlabel=f"largest displacement in run {last} [mm]", ylabel="height [m]")
+    profile.set(xlabel=f"peak in run {last} [mm]", ylabel="height [m]")
     profile.set(xlim=(0, None), ylim=(0, HEIGHT))
     plotting.style.below_figure(figure, peaks)
     return figure
@@ -415,9 +403,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     motions = [
         mr.GroundMotion(RUNS[run].scale * pulse, 0.005) if args.quick else motion_of(args.records, run) for run in runs
     ]
-    made = {"undamped": Model(Way(), range(COURSES + 1), 1)} if args.quick else models()
-    points = 3 if args.quick else POINTS
-    found = {name: sequences(one, motions, points) for name, one in tqdm(made.items(), disable=None, leave=False)}
+    made = {"undamped": Way()} if args.quick else ways()
+    starts, points = (1, 3) if args.quick else (STARTS, POINTS)
+    found = {
+        name: sequences(way, motions, starts, points) for name, way in tqdm(made.items(), disable=None, leave=False)
+    }
     reported(out, found, runs)
 
 
