@@ -24,8 +24,6 @@ MARGIN = np.array([0.2, 0.8])
 """Width and height that stay free around a view, for the scale bar and a title [inch]."""
 BELOW = 0.05
 """How far a scale bar stands below what is seen, over its height [-]."""
-
-
 FINE, DENSE = 2, 150
 """Pixels that are drawn along each side of one of the picture, where it has fewer than so many to an inch."""
 EDGE, RIM = 0.55, 0.1
