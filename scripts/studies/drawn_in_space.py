@@ -3,9 +3,9 @@
 All three compare depths pixel by pixel. This package also draws edges where a picture shows another plane piece of a
 block than beside it, and the shadow of each block on the others and on the ground, on a ground that ends beyond the
 rubble. PyVista draws the edges of faces; VTK's shadows are blurred where the ground is wide, and it draws none beside
-lines. Prints the time of the processor of a frame, how many pixels inside the blocks show another block than in PyVista,
-and how large PyVista is. MuJoCo draws through EGL. Writes drawn_in_space.png and .txt. Needs PyVista, `pip install
-pyvista`.
+lines. Prints the time of the processor of a frame, how many pixels inside the blocks show another block than in
+PyVista, and how large PyVista is. MuJoCo draws through EGL. Writes drawn_in_space.png and .txt.
+Needs PyVista, `pip install pyvista`.
 """
 
 from __future__ import annotations
