@@ -7,6 +7,7 @@ that imports matplotlib.
 from .animation import animate, animate_bodies
 from .browser import view
 from .earthquakes import fragility, incremental, record, spectra
+from .figures import PALETTE
 from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
 from .masonry import blocks, mechanism, thrust
 from .pushing import moment_rotation, push, pushover
@@ -15,7 +16,7 @@ from .style import STYLES, Drawing, panels, save, single
 from .tornado import tornado
 
 __all__ = [
-    "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "displacement",
+    "PALETTE", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "displacement",
     "energy", "fragility", "grid", "history", "incremental", "mechanism", "moment_rotation", "panels", "push",
     "pushover", "record", "rotation", "save", "single", "sketch", "spectra", "thrust", "ties", "tornado", "view",
 ]  # fmt: skip

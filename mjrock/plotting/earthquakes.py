@@ -18,10 +18,9 @@ from ..problem.ground.spectrum import response_spectrum
 from ..quantities import GRAVITY, require_kind
 from ..study.intensity.fragility import Fragility
 from .arguments import equal_rows, finite_row, kind, listed, picture
+from .figures import BLUE, ORANGE, PALETTE
 from .style import STYLES, folded
 
-OVERLAID = ("#12406b", "#f0a35e", "#4f8f5b", "#a83232", "0.5")
-"""Colours of motions that are drawn over each other."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
@@ -52,13 +51,13 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
         for ax, history, unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
             said = f"{motion.name[:90]}: " if ax is axes[0] else f"ends at {history[-1]:.2g}, "
             peak = float(np.abs(history).max())
-            ax.plot(t, history, color=OVERLAID[i % len(OVERLAID)], linewidth=0.8, label=f"{said}peak {peak:.3g} {unit}")
+            ax.plot(t, history, color=PALETTE[i % len(PALETTE)], linewidth=0.8, label=f"{said}peak {peak:.3g} {unit}")
     for ax, label in zip(axes, ("acceleration [m/s²]", "velocity [m/s]", "displacement [m]"), strict=True):
         ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
         ax.set_ylabel(label)
         ax.yaxis.set_label_coords(-0.1, 0.5)
         columns = {"ncols": 1 if ax is axes[0] else 3, "columnspacing": 1.0, "handlelength": 1.0}
-        ax.legend(frameon=False, fontsize=7, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.0, **columns)
+        ax.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.0, **columns)
     axes[2].set(xlabel="time $t$ [s]", xlim=(0, max(motion.duration for motion in given)))
     return figure
 
@@ -80,9 +79,9 @@ def spectra(
     found = np.array([response_spectrum(motion, T, damping).Sa for motion in motions]) / GRAVITY
     for i, line in enumerate(found):
         ax.plot(T, line, color="0.7", linewidth=0.7, label="records" if i == 0 else None)
-    ax.plot(T, found.mean(axis=0), color="#12406b", linewidth=2.0, label=f"mean of {len(found)}")
+    ax.plot(T, found.mean(axis=0), color=BLUE, linewidth=2.0, label=f"mean of {len(found)}")
     if target is not None:
-        ax.plot(T, target(T, damping) / GRAVITY, color="#f0a35e", linewidth=2.0, linestyle="--", label="target")
+        ax.plot(T, target(T, damping) / GRAVITY, color=ORANGE, linewidth=2.0, linestyle="--", label="target")
     ax.set(xlim=(T.min(), T.max()), ylim=(0, None), xlabel="period $T$ [s]")
     ax.set_ylabel(f"pseudo-acceleration $S_a$, {damping:.0%} damping [g]")
     ax.legend(frameon=False, fontsize=8)
@@ -108,12 +107,12 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     ax.plot(levels, shown.T, color="0.75", linewidth=0.6, marker=mark)
     fractiles = np.minimum(np.percentile(values, [16, 50, 84], axis=0, method="nearest"), top)
     for line, style, label in zip(fractiles, (":", "-", "--"), ("16 %", "median", "84 %"), strict=True):
-        ax.plot(levels, line, color="#12406b", linewidth=1.8, linestyle=style, marker=mark, label=label)
+        ax.plot(levels, line, color=BLUE, linewidth=1.8, linestyle=style, marker=mark, label=label)
     ax.axhline(1, color="0.3", linewidth=0.6)
     ax.axhline(top, color="0.3", linewidth=0.6, linestyle=":")
-    ax.text(0.01 * levels.max(), top, "overturned", fontsize=7, va="top", color="0.3")
+    ax.text(0.01 * levels.max(), top, "overturned", fontsize=8, va="top", color="0.3")
     ax.set(xlim=(0, levels.max()), ylim=(0, 1.03 * top))
-    ax.legend(frameon=False, fontsize=7, loc="center left")
+    ax.legend(frameon=False, fontsize=8, loc="center left")
     ax.set_title(STYLES.get(solver, {}).get("label", solver), fontsize=10)
     ax.set(xlabel="peak ground acceleration [g]", ylabel=PEAK)
     return ax
@@ -148,7 +147,7 @@ def fragility(
     if (levels is None) != (shares is None):
         raise ValueError("levels and shares go together: give both, or neither")
     style = STYLES.get(solver or "", {})
-    colour = style.get("color", f"C{len(ax.collections)}")  # a band for each curve before
+    colour = style.get("color", PALETTE[len(ax.collections) % len(PALETTE)])  # a band each
     name = f"{folded(style.get('label', solver))}: " if solver else ""
     label = f"{name}{fit.median:.2f} {unit}, {fit.dispersion:.2f}"
     top = max(2 * fit.median, fit.tried[1] if math.isfinite(fit.tried[1]) else 0.0)

@@ -14,7 +14,7 @@ from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
 from .arguments import kind, listed, picture
-from .figures import Picture
+from .figures import BLACK, GREEN, ORANGE, Picture
 from .style import below_figure, figure_of, several, short, styles_of, wrapped
 
 TIME = "time $t$ [s]"
@@ -42,7 +42,7 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     for limit in {case.overturning_rotation / case.wall.alpha for case, _ in (each.of_wall for each in responses)}:
         if abs(limit - 1) > 0.01 and limit < far:
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
-            ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="top")
+            ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=8, ha="right", va="top")
             reached.append(limit)
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
@@ -86,9 +86,9 @@ def displacement(ax: Axes, responses: Sequence[Response], labels: Sequence[str] 
 
 
 GROUNDS = {
-    "motion": ("horizontal", "0.25"),
-    "transverse": ("transverse", "#4f8f5b"),
-    "vertical": ("vertical", "#f0a35e"),
+    "motion": ("horizontal", BLACK),
+    "transverse": ("transverse", GREEN),
+    "vertical": ("vertical", ORANGE),
 }
 """The motions of the ground of a case, what they are called and their colours."""
 
@@ -104,7 +104,7 @@ def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
             t = np.append(motion.dt * np.arange(len(motion.accel)), [motion.duration, max(until, motion.duration)])
             ax.plot(t, np.append(motion.accel, [0.0, 0.0]), color=color, linewidth=0.8, label=label)
     if len(case.grounds) > 1 or case.vertical is not None:
-        ax.legend(frameon=False, fontsize=7, loc="upper right", ncols=2)
+        ax.legend(frameon=False, fontsize=8, loc="upper right", ncols=2)
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set(xlabel=TIME, ylabel="base [m/s²]")
     return ax
@@ -147,12 +147,12 @@ def _legend_above(ax: Axes) -> None:
     labels = ax.get_legend_handles_labels()[1]
     figure = figure_of(ax)
     width = ax.bbox.width / figure.dpi  # [inch]
-    columns = 2 if len(labels) > 2 and 2 * (0.05 * max(map(len, labels)) + 0.35) < width else 1
+    columns = 2 if len(labels) > 2 and 2 * (0.06 * max(map(len, labels)) + 0.35) < width else 1
     rows = -(-len(labels) // columns)
     top = max(float(np.max(line.get_ydata(), initial=0.0)) for line in ax.get_lines()) or 1.0
-    share = min(0.7, (0.1 + 0.125 * rows) * figure.dpi / ax.bbox.height)
+    share = min(0.7, (0.1 + 0.15 * rows) * figure.dpi / ax.bbox.height)
     ax.set_ylim(0.0, 1.08 * top / (1 - share))
-    ax.legend(frameon=False, fontsize=6.5, loc="upper right", ncols=columns, labelspacing=0.3, columnspacing=1.0)
+    ax.legend(frameon=False, fontsize=8, loc="upper right", ncols=columns, labelspacing=0.3, columnspacing=1.0)
 
 
 def history(
@@ -274,7 +274,7 @@ def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top
     """
     figure, axes = several(len(panels), columns, (3.4, 2.2))
     for ax, (title, responses) in zip(axes.flat, panels, strict=False):
-        rotation(ax, responses).set_title(wrapped(title, 2.7, 9), fontsize=9)
+        rotation(ax, responses).set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.7, 9), fontsize=9)
         if top is not None:
             ax.set_ylim(-0.1 * top, float(top))
     for ax in axes[:-1].flat:

@@ -121,7 +121,7 @@ def _view(ax: Axes, bodies: Bodies) -> None:
     outside = ((corners.max(axis=1) < low) | (corners.min(axis=1) > high)).any(axis=1).sum()
     if outside:
         said = f"{outside} of {len(corners)} blocks lie outside"
-        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=7, va="top")
+        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=8, va="top")
 
 
 @picture(limits=anything)

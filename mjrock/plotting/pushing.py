@@ -13,16 +13,8 @@ from ..quantities import named
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from .arguments import equal_rows, kind, mapping, picture
-from .style import Look, folded
+from .style import OWN, folded
 
-LINES: tuple[Look, ...] = (
-    {"color": "0.15", "linestyle": "-", "linewidth": 1.2},
-    {"color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
-    {"color": "#12406b", "linestyle": "--", "linewidth": 1.6},
-    {"color": "#4f8f5b", "linestyle": "-.", "linewidth": 1.6},
-    {"color": "#8a3a68", "linestyle": ":", "linewidth": 1.8},
-)
-"""Lines in the order of the curves, that a black-and-white print still tells apart."""
 Closed = Mapping[str, tuple[ArrayLike, ArrayLike]]
 """Rotations [rad] and the values of a closed form at them, by the name of its curve."""
 
@@ -86,15 +78,15 @@ def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
                 ax.plot(*at, marker, color=line.get_color(), markersize=6, zorder=5)
                 ax.set_ylim(top=max(ax.get_ylim()[1], 1.08 * at[1]))  # room for the text
                 said = f"{named(names)} {what}{'' if len(names) > 1 else 's'}"
-                ax.annotate(said, at, beside, textcoords="offset points", fontsize=7, color=line.get_color(), zorder=6)
+                ax.annotate(said, at, beside, textcoords="offset points", fontsize=8, color=line.get_color(), zorder=6)
 
 
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
-    for (name, (x, y)), style in zip(lines.items(), cycle(LINES), strict=False):
+    for (name, (x, y)), style in zip(lines.items(), cycle(OWN), strict=False):
         ax.plot(x, y, label=folded(name), **style)
     for i, (name, at) in enumerate(points.items()):
         x, y = equal_rows(rotation=at[0], values=at[1])
-        colour = LINES[list(lines).index(name) % len(LINES)]["color"] if name in lines else "0.4"
+        colour = OWN[list(lines).index(name) % len(OWN)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
     if ax.get_legend_handles_labels()[1]:

@@ -12,7 +12,7 @@ from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored, Effect, Point
-from ..problem.wall.effects import forces_of
+from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array, Flags
 from ..result.bodies import Moving
 from ..result.ties import elongation_of
@@ -72,7 +72,7 @@ def frame_view(ax: Axes, bodies: Bodies) -> None:
 def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     """Draw what a wall meets and carries. The limits of the axes are set for all frames."""
     wall, height = case.block, 2 * case.block.h
-    ties, forces = list(case.links.values()), list(forces_of(case.effects).values())
+    ties, forces = list(case.links.values()), list(constant_forces_of(case.effects).values())
     low, high = bodies.extent()
     behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
     corners = np.vstack([np.zeros((1, 2)), *(added.outline for added in case.wall.masses)])
@@ -96,7 +96,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     for tie, text in zip(ties, tie_texts(ties, left, height), strict=True):
         updates.append(_tie(ax, moving, tie, markersize=6))
         at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
-        look = {"fontsize": 6, "color": tie.colour, "va": "bottom", "zorder": 6}
+        look = {"fontsize": 8, "color": tie.colour, "va": "bottom", "zorder": 6}
         note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
         note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
     updates += [_force(ax, case, effect, force, bodies) for effect, force in forces]
@@ -112,7 +112,7 @@ def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     for name, tie in ties.items():
         updates.append(_tie(ax, moving, tie, markersize=5, edge=edge))
         place = edge, case.held_by(tie)[1] + tie.rise
-        ax.annotate(name, place, (4, 4), textcoords="offset points", fontsize=7, color=tie.colour)
+        ax.annotate(name, place, (4, 4), textcoords="offset points", fontsize=8, color=tie.colour)
     if ties:
         ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
     return together(updates)
@@ -200,7 +200,7 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -
     arrow.set_animated(True)
     ax.add_patch(arrow)
     outwards = along[0] >= 0
-    look: Look = {"fontsize": 7, "color": FORCE, "zorder": 6, "animated": True}
+    look: Look = {"fontsize": 8, "color": FORCE, "zorder": 6, "animated": True}
     look |= {"ha": "center", "va": "bottom"} if loads else {"ha": "left" if outwards else "right", "va": "center"}
     shift = (0, 2) if loads else (2 if outwards else -2, 0)
     text = ax.annotate(f"{(force[0] - force[2]) / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)
@@ -223,7 +223,7 @@ def _mass(ax: Axes, case: Case, added: Effect, bodies: Bodies) -> Update:
         return lambda frame: shape.set_xy(bodies.placed(frame, 0, outline))
     point = _local(case, added.offset, added.height)
     (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5, animated=True)
-    text = ax.text(0, 0, f"  {added.mass_added:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)
+    text = ax.text(0, 0, f"  {added.mass_added:g} kg", fontsize=8, color="0.25", va="center", zorder=6, animated=True)
 
     def update(frame: int) -> None:
         at = bodies.placed(frame, 0, point)[0]

@@ -19,18 +19,18 @@ from .arguments import anything, picture
 from .bodies import Bodies
 from .figures import Picture
 from .section import GROUND_COLOUR, STONE, blocks, surroundings
-from .style import Look, figure_of, titled
+from .style import WIDEST, Look, figure_of, titled
 
 Note = tuple[tuple[float, float], str]
 """A place in the section, x and z [m], and what is there."""
 DIMENSION: Look = {"arrowstyle": "|-|,widthA=0.2,widthB=0.2", "color": "0.3", "shrinkA": 0, "shrinkB": 0}
 LEADER: Look = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (0.0, 0.5)}
-TALLEST, WIDEST, LONGEST = 3.4, 2.6, 5.4
-"""Largest height of a drawing, and largest width of the section and of the elevation [inch]."""
+TALLEST, LARGEST = 3.4, 2.0
+"""Largest height of a drawing, and largest width of the section [inch]."""
 POINTS = 4001
 """Rotations at which ties are looked at, up to the overturning."""
-NOTES, APART, EDGE, LINE = 2.5, 0.4, 0.15, 0.125
-"""Width of the column of notes, room between the drawings and at the edges, and height of a line of text [inch]."""
+LEADING, LETTER, APART, EDGE, LINE = 0.2, 0.06, 0.4, 0.15, 0.15
+"""Room for leaders, width of a letter, room between the drawings and at the edges, and height of a line [inch]."""
 
 
 @picture(case=anything)
@@ -72,10 +72,12 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
     """
     left, right = figure.axes
     wide, tall, long = (float(np.ptp(limits)) for limits in (left.get_xlim(), left.get_ylim(), right.get_xlim()))
-    scale = min(TALLEST / tall, WIDEST / wide)  # [inch/m]
-    smaller = min(scale, LONGEST / long)
+    scale = min(TALLEST / tall, LARGEST / wide)  # [inch/m]
     column = EDGE + scale * wide + EDGE
-    width = max(5.0, column + (NOTES if notes else 0.0) + APART + smaller * long + EDGE)
+    letters = max((len(line) for _, text in notes for line in text.splitlines()), default=0)
+    beside = column + (LEADING + LETTER * letters if notes else 0.0) + APART + EDGE
+    smaller = min(scale, max(1.0, WIDEST - beside) / long)
+    width = min(WIDEST, max(5.0, beside + smaller * long))
     below, room = EDGE + LINE * len(openings), LINE * sum(2 + text.count("\n") for _, text in notes)
     room = max(scale * tall, room)
     figure.set_size_inches(width, 1.0)
@@ -88,7 +90,7 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
         ax.axis("off")
     said, place = "\n".join(openings), (0.0, 72 * below - 3)
     coordinates = ("data", "figure points")
-    right.annotate(said, place, xycoords=coordinates, fontsize=6.5, ha="center", va="top", annotation_clip=False)
+    right.annotate(said, place, xycoords=coordinates, fontsize=8, ha="center", va="top", annotation_clip=False)
     _notes(left, notes, column, (below, below + room))
 
 
@@ -98,7 +100,7 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
     middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
     level = start[1] == end[1]
     offset, turn = ((0, -3), 0) if level else ((-3, 0), 90)
-    note = ax.annotate(text, middle, offset, textcoords="offset points", fontsize=7, rotation=turn, zorder=9)
+    note = ax.annotate(text, middle, offset, textcoords="offset points", fontsize=8, rotation=turn, zorder=9)
     note.set(ha="center" if level else "right", va="top" if level else "center")
     if not level:
         note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
@@ -137,7 +139,7 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
         level = min(level, high - half)
         high = level - half
         at = (72 * column, 72 * level)
-        ax.annotate(text, place, at, textcoords="figure points", fontsize=6.5, va="center", arrowprops=LEADER, zorder=8)
+        ax.annotate(text, place, at, textcoords="figure points", fontsize=8, va="center", arrowprops=LEADER, zorder=8)
 
 
 def _effects(case: Case, *, arguments: bool) -> list[Note]:

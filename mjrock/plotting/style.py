@@ -7,37 +7,49 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import Collection
+from matplotlib.colors import TABLEAU_COLORS, to_hex, to_rgba_array
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 from ..files import replacing
 from ..quantities import require_kind, require_path
 from ..result.response import Response
 from .arguments import picture
-from .figures import Picture
+from .figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, Picture
 
 Look = dict[str, Any]
 """Options of what matplotlib draws, such as its colour."""
 STYLES: dict[str, Look] = {
-    "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
-    "plain MuJoCo": {"label": "plain MuJoCo", "color": "#b5402a", "linestyle": "-.", "linewidth": 1.4, "zorder": 2.5},
-    "MuJoCo": {"label": "MuJoCo", "color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
-    "compliant": {"label": "contact law, SciPy", "color": "#12406b", "linestyle": ":", "linewidth": 1.5, "zorder": 3},
-    "explicit": {"label": "explicit steps", "color": "#3f8f5b", "linestyle": "--", "linewidth": 1.6, "zorder": 2.5},
+    "analytical": {"label": "rocking theory", "color": BLACK, "linestyle": "-", "linewidth": 1.1},
+    "plain MuJoCo": {"label": "plain MuJoCo", "color": GREEN, "linestyle": "-.", "linewidth": 1.4, "zorder": 2.5},
+    "MuJoCo": {"label": "MuJoCo", "color": ORANGE, "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
+    "compliant": {"label": "contact law, SciPy", "color": PURPLE, "linestyle": ":", "linewidth": 1.5, "zorder": 3},
+    "explicit": {"label": "explicit steps", "color": BLUE, "linestyle": "--", "linewidth": 1.6, "zorder": 2.5},
 }
-"""Lines that a black-and-white print still tells apart."""
+"""The line of each solver, the same in every figure. A black-and-white print still tells them apart."""
+WIDEST, SMALLEST = 7.4, 8.0
+"""Largest width of a figure that is saved [inch], and smallest size of its text [pt]: pages show it as wide as that."""
+FINE = 200
+"""Dots of a figure that is saved [1/inch]."""
+EDGE = 3.0
+"""How far a word may go beyond the edge of a figure [pixel]."""
 
 Drawing = Callable[[Axes], Axes]
 """A function that draws a panel."""
 
 
 OWN: tuple[Look, ...] = (
-    {"color": "#12406b", "linestyle": "-", "linewidth": 1.5, "zorder": 2.4},
-    {"color": "#e07b2a", "linestyle": "-", "linewidth": 2.4, "zorder": 2.2},
-    {"color": "#3f8f5b", "linestyle": "--", "linewidth": 1.6, "zorder": 2.3},
-    {"color": "#8c4a8f", "linestyle": ":", "linewidth": 2.0, "zorder": 2.5},
-    {"color": "0.25", "linestyle": "-.", "linewidth": 1.4, "zorder": 2.1},
+    {"color": BLUE, "linestyle": "-", "linewidth": 1.5, "zorder": 2.4},
+    {"color": ORANGE, "linestyle": "-", "linewidth": 2.4, "zorder": 2.2},
+    {"color": GREEN, "linestyle": "--", "linewidth": 1.6, "zorder": 2.3},
+    {"color": PURPLE, "linestyle": ":", "linewidth": 2.0, "zorder": 2.5},
+    {"color": BLACK, "linestyle": "-.", "linewidth": 1.4, "zorder": 2.1},
 )
 """Lines of responses that have labels of their own."""
 
@@ -86,6 +98,15 @@ def wrapped(text: str, wide: float, size: float) -> str:
     return "\n".join(line for row in text.splitlines() for line in textwrap.wrap(row, most))
 
 
+def power_of_ten(value: float) -> str:
+    """A number as a figure has it: 5e8 as 5 times ten to the eighth, and in full from 0.001 to 9999."""
+    if value == 0 or 1e-3 <= abs(value) < 1e4:
+        return f"{value:.4g}"
+    first, exponent = f"{value:.3e}".split("e")
+    factor = "" if float(first) == 1 else rf"{float(first):.4g} \cdot "
+    return rf"${factor}10^{{{int(exponent)}}}$"
+
+
 def titled(figure: Figure, text: str, size: float = 11.0) -> float:
     """Write a title [pt] above a figure on as many lines as its width needs; the height that it takes [inch]."""
     title = wrapped(text, figure.get_figwidth(), size)
@@ -94,9 +115,12 @@ def titled(figure: Figure, text: str, size: float = 11.0) -> float:
 
 
 def several(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, Any]:
-    """A figure with so many panels in rows of some columns, each of a size [inch], and its Axes, (rows, columns)."""
+    """A figure with so many panels in rows of some columns, each of a size [inch], and its Axes, (rows, columns).
+
+    Panels are narrower where the figure would be wider than `WIDEST`.
+    """
     rows = -(-count // columns)
-    figure = Picture(figsize=(size[0] * columns, size[1] * rows), layout="constrained")
+    figure = Picture(figsize=(min(size[0] * columns, WIDEST), size[1] * rows), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
     for ax in axes.flat[count:]:
         ax.set_visible(False)
@@ -115,11 +139,14 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
 
     It has no traces of when and by what it was made (reproducible bytes).
 
-    A path without a suffix is that of a PNG. Returns the path that was written.
+    A path without a suffix is that of a PNG. Returns the path that was written. What a page cannot show well is not
+    written; `figure.savefig` of Matplotlib writes everything.
 
     Raises:
         TypeError: for what is not a figure or an Axes.
-        ValueError: for a suffix that Matplotlib does not write.
+        ValueError: for a suffix that Matplotlib does not write, for a figure wider than 7.4 in, text smaller than 8 pt,
+            words that the edge cuts off, one of Matplotlib's own colours, and a line with the name of a solver and
+            another colour than that of `STYLES`.
     """
     require_kind("figure", figure, Figure, Axes)
     drawn = figure_of(figure) if isinstance(figure, Axes) else figure
@@ -129,9 +156,65 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
     formats = drawn.canvas.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .{', .'.join(sorted(formats))}")
-    with replacing(path) as partial:
-        drawn.savefig(partial, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
+    dpi = drawn.dpi
+    drawn.set_dpi(FINE)
+    try:
+        with replacing(path) as partial:
+            drawn.savefig(partial, dpi=FINE, metadata={"Software": None} if path.suffix == ".png" else None)
+            require_readable(drawn)
+    finally:
+        drawn.set_dpi(dpi)
     return path
+
+
+def require_readable(figure: Figure) -> None:
+    """Refuse a figure that a page cannot show well, once it is drawn and has all its texts.
+
+    Raises:
+        ValueError: as `save` says.
+    """
+    if (width := figure.get_figwidth()) > WIDEST + 1e-6:
+        raise ValueError(f"the figure is {width:.3g} in wide; at most {WIDEST:g} in are shown in full size")
+    for text in figure.findobj(Text):
+        assert isinstance(text, Text)
+        if text.get_visible() and text.get_text().strip() and (size := text.get_fontsize()) < SMALLEST - 1e-6:
+            raise ValueError(f"text {text.get_text()!r} has {size:g} pt; at least {SMALLEST:g} pt can be read")
+    for text in _words(figure):
+        box = text.get_window_extent()
+        if text.get_text().strip() and not (figure.bbox.padded(EDGE).count_contains(box.corners()) == 4):
+            raise ValueError(f"text {text.get_text()!r} is cut off by the edge of the figure")
+    for artist in figure.findobj(lambda one: isinstance(one, Line2D | Patch | Collection)):
+        _require_colours(artist)
+
+
+def _words(figure: Figure) -> list[Text]:
+    """Titles, labels of axes and texts that are drawn, but for those of ticks."""
+    found = list(figure.texts)
+    for ax in figure.axes:
+        if ax.get_visible() and ax.name != "3d":  # places in space are no places in the figure
+            found += [ax.title, *(text for text in ax.texts if not text.get_clip_on())]
+            found += [axis.label for axis in (ax.xaxis, ax.yaxis) if ax.axison]
+    return [text for text in found if text.get_visible()]
+
+
+def _require_colours(artist: Artist) -> None:
+    """Refuse what has one of Matplotlib's own colours, or the name of a solver and not its colour."""
+    label, of = str(artist.get_label()), {str(style["label"]): style["color"] for style in STYLES.values()}
+    solver = next((name for name in of if label == name or label.startswith((f"{name},", f"{name}:"))), None)
+    for colour in _colours(artist):
+        if colour in TABLEAU_COLORS.values():
+            raise ValueError(f"{label!r} has the colour {colour} of Matplotlib; take those of plotting.PALETTE")
+        if solver is not None and colour != of[solver]:
+            raise ValueError(f"{label!r} has the colour {colour}; that of its solver is {of[solver]}")
+
+
+def _colours(artist: Artist) -> set[str]:
+    """The colours of what is drawn, but for what is white or clear, and for values on a scale of colours."""
+    names = ("color",) if isinstance(artist, Line2D) else ("facecolor", "edgecolor")
+    if isinstance(artist, Collection) and artist.get_array() is not None:
+        return set()
+    found = np.concatenate([to_rgba_array(getattr(artist, f"get_{name}")()) for name in names])
+    return {to_hex(colour) for colour in found if colour[3] > 0} - {"#ffffff"}
 
 
 @picture()
@@ -147,5 +230,5 @@ def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
     """Several drawings, each on an Axes of its own under its title."""
     figure, axes = several(len(drawings), columns, (4.4, 3.4))
     for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
-        draw(ax).set_title(wrapped(title, 4.0, 10), fontsize=10)
+        draw(ax).set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
     return figure

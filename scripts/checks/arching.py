@@ -76,10 +76,10 @@ def drawn(push: mr.Push) -> Figure:
     figure = Figure(figsize=(5.6, 3.4), layout="constrained")
     ax = figure.subplots()
     u = np.linspace(0.0, push.displacement.max(), 200)
-    ax.plot(1e3 * push.displacement, 1e-3 * push.force, color="#12406b", label="explicit steps")
-    ax.plot(1e3 * u, 1e-3 * closed(u), color="0.4", linestyle="--", label="rigid halves, rectangular pressure")
+    ax.plot(1e3 * push.displacement, 1e-3 * push.force, **plotting.STYLES["explicit"] | {"linestyle": "-"})
+    ax.plot(1e3 * u, 1e-3 * closed(u), color="0.2", linestyle="--", label="closed form: rigid halves, even pressure")
     ax.set(xlabel="displacement at half height [mm]", ylabel="force [kN]", xlim=(0, None), ylim=(0, None))
-    ax.legend(frameon=False)
+    ax.legend(frameon=False, fontsize=9)
     return figure
 
 

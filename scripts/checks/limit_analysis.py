@@ -16,7 +16,9 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import several
 from scripts.shared import cli
+from scripts.shared.labels import width_bar
 
 LENGTH, HEIGHT, FRICTION = 0.4, 0.175, 0.65
 """Of a whole block [m], and of the joints [-]."""
@@ -51,6 +53,8 @@ WALLS: dict[int, tuple[str, dict[str, list[float]]]] = {
     ),
 }
 """Courses of each wall from the lowest upwards, and the lengths of their blocks over a whole one; negative: a gap."""
+GROUND = 0.15
+"""Height of the ground that is drawn [m]."""
 PUBLISHED = {
     1: (0.643, 0.640),
     2: (0.580, 0.563),
@@ -93,12 +97,15 @@ def wall(number: int) -> mr.Masonry:
 
 def drawn(found: dict[int, mr.Collapse]) -> Figure:
     """How each wall fails without dilatancy."""
-    rows = 1 if len(found) < 3 else 2
-    figure = Figure(figsize=(9.6, 3.6 * rows), layout="constrained")
-    axes = figure.subplots(rows, -(-len(found) // rows), squeeze=False).ravel()
-    for ax, (number, collapse) in zip(axes, found.items(), strict=True):
+    figure, axes = several(len(found), min(3, len(found)), (2.46, 3.0))
+    for ax, (number, collapse) in zip(axes.flat, found.items(), strict=False):
         plotting.mechanism(ax, collapse)
-        ax.set_title(rf"wall {number}, $\lambda$ = {collapse.multiplier:.3f}", fontsize=10)
+        ax.set_title(
+            rf"wall {number}: $\lambda$ = {collapse.multiplier:.3f}," f"\npublished {PUBLISHED[number][1]:.3f}",
+            fontsize=9,
+        )
+        ax.set_ylim(bottom=-GROUND)
+        width_bar(ax)
     return figure
 
 

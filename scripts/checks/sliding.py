@@ -17,21 +17,23 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
 from mjrock.method import METHOD
+from mjrock.plotting.figures import BLACK, ORANGE
+from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.labels import beside
 
 SPEED, MU = 4.0, 0.5
 """Speed of the cube [m/s] and its coefficient of friction [-]."""
 WALL = mr.Block.from_size(0.6, 4.2)
 ACCURACIES = (1e-3, 1e-4, 1e-5)
 LINES: dict[bool, dict[str, Any]] = {
-    True: {"color": "#12406b", "marker": "o"},
-    False: {"color": "#c0392b", "marker": "s"},
+    True: {"color": ORANGE, "linestyle": "-", "linewidth": 1.8},
+    False: {"color": BLACK, "linestyle": "--", "linewidth": 1.2},
 }
 """Of runs by Coulomb's law, and of runs on the rows."""
 
@@ -119,13 +121,28 @@ def directions(repeats: int, h: float = 1e-4) -> str:
 
 def draw_cube(ax: Axes) -> Axes:
     """The path of the cube in the first half second."""
-    for coulomb, label in ((True, "Coulomb"), (False, "rows alone")):
+    for coulomb, label, at in ((True, "Coulomb's law", (0.02, 0.35)), (False, "MuJoCo's own friction", (0.02, 4.0))):
         run = thrown(0.5, coulomb=coulomb)
         x, z = run.pose[:, 0, 0], 1e3 * (run.pose[:, 0, 1] - run.pose[0, 0, 1])
-        ax.plot(x, z, color=LINES[coulomb]["color"], label=label, linestyle="-" if coulomb else "--")
+        ax.plot(x, z, **LINES[coulomb])
+        ax.text(*at, label, color=LINES[coulomb]["color"], fontsize=8)
     ax.set_xlabel("way of the cube [m]")
     ax.set_ylabel("rise [mm]")
-    ax.legend()
+    return ax
+
+
+def draw_wall(ax: Axes, frictions: Array, found: dict[tuple[bool, float], list[float]]) -> Axes:
+    """|e| over the friction of the side; by Coulomb's law all accuracies are alike, and one is drawn."""
+    finest = min(accuracy for _, accuracy in found)
+    for (coulomb, accuracy), values in found.items():
+        if not coulomb or accuracy == finest:
+            ax.plot(frictions, values, marker="o" if coulomb else "s", markersize=3.5, **LINES[coulomb])
+            said = "Coulomb's law,\nall accuracies" if coulomb else f"accuracy {accuracy:g}"
+            beside(ax, (frictions[-1], values[-1]), said, LINES[coulomb]["color"])
+    ax.text(0.0, 0.25, "MuJoCo's own friction", color=LINES[False]["color"], fontsize=8)
+    ax.set_xlabel("coefficient of friction of the side [-]")
+    ax.set_ylabel(r"$|e|$ of the first rebound [-]")
+    ax.set_ylim(0.2, 0.39)
     return ax
 
 
@@ -142,21 +159,11 @@ def main(argv: Sequence[str] | None = None) -> None:
         for coulomb in (True, False)
         for accuracy in tqdm(accuracies, desc="walls", disable=None, leave=False)
     }
-
-    def draw_wall(ax: Axes) -> Axes:
-        for (coulomb, accuracy), values in found.items():
-            style = ("-", "--", ":")[accuracies.index(accuracy)]
-            name = f"{'Coulomb' if coulomb else 'rows alone'}, accuracy {accuracy:g}"
-            ax.plot(frictions, values, linestyle=style, markersize=3.5, label=name, **LINES[coulomb])
-        ax.set_xlabel("coefficient of friction of the side [-]")
-        ax.set_ylabel(r"$|e|$ of the first rebound [-]")
-        ax.set_ylim(0.2, 0.39)
-        ax.legend(fontsize=8, loc="lower left")
-        return ax
-
-    figure: Figure = plotting.panels(
-        [("A cube thrown along the ground, 4 m/s, mu 0.5", draw_cube), ("A wall that rubs against its side", draw_wall)]
-    )
+    drawings = [
+        ("a cube thrown along the ground, 4 m/s", draw_cube),
+        ("a wall that rubs against its side", lambda ax: draw_wall(ax, frictions, found)),
+    ]
+    figure = plotting.panels(drawings)
     plotting.save(figure, out / "sliding.png")
     rows = [
         ["Coulomb" if coulomb else "rows", f"{accuracy:g}", *(f"{value:.4f}" for value in values)]

@@ -18,27 +18,34 @@ import mjrock as mr
 from mjrock import plotting
 from scripts.checks.limit_analysis import PUBLISHED, wall
 from scripts.shared import cli
+from scripts.shared.labels import beside
 
 FAR = 0.01
 """Displacement to which the walls are pushed [m]."""
+BELOW = {1: 4, 2: -4}
+"""How far the name of a wall stands above the end of its curve [pt]."""
 INERTIA = 0.0025
 """Forces of inertia that are allowed, over the largest force [-]."""
 
 
 def drawn(found: dict[int, mr.Push]) -> Figure:
     """The curves, and the published multipliers as broken lines."""
-    figure = Figure(figsize=(6.4, 4.0), layout="constrained")
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     ax = figure.subplots()
     for i, (number, push) in enumerate(found.items()):
-        ax.plot(1e3 * push.displacement, push.force, color=f"C{i}", label=f"wall {number}")
-        ax.axhline(PUBLISHED[number][1], color=f"C{i}", linestyle="--", linewidth=0.8)
+        colour = plotting.PALETTE[i % 4]
+        ax.plot(1e3 * push.displacement, push.force, color=colour)
+        ax.axhline(PUBLISHED[number][1], color=colour, linestyle="--", linewidth=0.8)
+        beside(ax, (1e3 * FAR, float(push.force[-1])), f"wall {number}", colour, (4, BELOW.get(number, 0)))
+    ax.plot([], [], color="0.4", label="slow push, explicit steps")
+    ax.plot([], [], color="0.4", linestyle="--", linewidth=0.8, label="published, limit analysis without dilatancy")
     ax.set(
         xlabel="mean displacement of the blocks [mm]",
         ylabel="force over weight [-]",
         xlim=(0, 1e3 * FAR),
-        ylim=(0, 0.72),
+        ylim=(0, 0.85),
     )
-    ax.legend(ncols=3, title="broken: published")
+    ax.legend(frameon=False, fontsize=8, loc="upper right")
     return figure
 
 

@@ -21,7 +21,8 @@ from mjrock.study.matching.match import combinations
 from scripts.shared import accuracy, cli
 from scripts.shared.paper import FIGURE_3, K_N
 
-BETAS = {"beta = 0": 0.0, "beta = 1/12": 1 / 12, "beta = 1/4 (default)": 0.25, "beta = 1": 1.0}
+BETAS = {r"$\beta$ = 0": 0.0, r"$\beta$ = 1/12": 1 / 12, r"$\beta$ = 1/4, default": 0.25, r"$\beta$ = 1": 1.0}
+"""Newmark's beta by its name in the figure."""
 
 RESOLVED = (0.063, 0.1, 0.2, 0.4, 0.8)
 """Fixed steps times the highest contact frequency [-]; the first is the sound step."""
@@ -86,10 +87,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     steps = [4e-3, 2e-3, 1e-3] if args.quick else [6e-3, 4e-3, 3e-3, 2e-3, 1.5e-3, 1e-3]
     found = {name: errors(steps, beta) for name, beta in tqdm(BETAS.items(), disable=None, leave=False)}
-    figure = plotting.single(lambda ax: accuracy.convergence(ax, steps, found, order=2))
+    figure = plotting.single(lambda ax: accuracy.convergence(ax, steps, found, order=2), (6.4, 3.6))
     figure.axes[0].set_ylabel(r"largest error of $\theta$ / release [-]")
     plotting.save(figure, out / "convergence.png")
-    rows = [[name, *(f"{e:.2e}" for e in values), f"{order(steps, values):.2f}"] for name, values in found.items()]
+    rows = [
+        [name.replace("$\\beta$", "beta"), *(f"{e:.2e}" for e in values), f"{order(steps, values):.2f}"]
+        for name, values in found.items()
+    ]
     text = cli.table(["step [ms]", *(f"{h * 1e3:g}" for h in steps), "order"], rows)
     resolved = RESOLVED[1:3] if args.quick else RESOLVED
     lines = scatter(resolved, 2 if args.quick else 24)

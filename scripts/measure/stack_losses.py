@@ -22,9 +22,10 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.masonry.pile import Pile
-from mjrock.study.matching.masonry import STEP, excess, restitutions
+from mjrock.study.matching.masonry import SAMPLE_STEP, excess, restitutions
 from mjrock.theory.impact import as_one
 from scripts.shared import cli
+from scripts.shared.labels import beside
 from scripts.shared.paper import FIGURE_3
 
 BLOCKS = (1, 2, 4, 7)
@@ -32,7 +33,6 @@ K_N = (1e9, 3e9, 1e10, 1e11)
 ROTATIONS = (0.5, 0.16)
 """Rotations over alpha from which the stack falls to the impact [-]."""
 HOLDS = 10.0
-STYLES = {1: ("0.0", "o"), 2: ("#b5402a", "s"), 4: ("#6c8a4e", "^"), 7: ("#12406b", "D")}
 
 
 def stack(blocks: int, k_n: float, side_stop: bool, stiffer: float = 1.0) -> mr.Masonry:
@@ -63,7 +63,7 @@ def lost(made: mr.Masonry, rotation: float = ROTATIONS[0], accuracy: float = 1e-
     pile = Pile.of(made)
     e, (velocity, swing) = as_one(pile), pile.rising(rotation)
     case = mr.MasonryCase(made, (impact + 0.75) * swing, velocity=velocity)
-    found = restitutions(mr.simulate(case, accuracy=accuracy, output_step=STEP * swing), pile)
+    found = restitutions(mr.simulate(case, accuracy=accuracy, output_step=SAMPLE_STEP * swing), pile)
     return 1 + excess(float(found[impact - 1]), abs(e.lumped) if pile.sides else e.base)
 
 
@@ -85,25 +85,26 @@ def opens_below(made: mr.Masonry) -> float:
 
 
 def drawn(found: dict[tuple[str, float, bool], list[list[float]]], stiffnesses: Sequence[float]) -> Figure:
-    """Losses against stiffness: a column for each choice, a row for each rotation, a line for each number of blocks."""
-    figure = Figure(figsize=(9.6, 5.6), layout="constrained")
-    axes = figure.subplots(len(ROTATIONS), len(CHOICES), sharex=True, sharey="row")
-    for line, rotation in zip(axes, ROTATIONS, strict=True):
-        for ax, choice in zip(line, CHOICES, strict=True):
-            for side, dashes in ((False, "-"), (True, ":")):
-                for n, curve in zip(BLOCKS, zip(*found[choice, rotation, side], strict=True), strict=True):
-                    colour, marker = STYLES[n]
-                    label = f"{n} block{'s' * (n > 1)}, {'side stop' if side else 'two-sided'}"
-                    ax.plot(stiffnesses, curve, dashes, color=colour, marker=marker, mfc="none", label=label)
-            ax.set_xscale("log")
-            ax.axhline(1, color="0.6", linewidth=0.6)
-            ax.set_title(f"{choice}, from {rotation:g} $\\alpha$", fontsize=8)
-        line[0].set_ylabel("energy lost, over theory [-]")
-    for ax in axes[-1]:
+    """Losses of two-sided stacks against stiffness, by the law joint by joint and by joints stiffer above."""
+    figure = Figure(figsize=(7.4, 3.4), layout="constrained")
+    choices, rotation = list(CHOICES)[:2], ROTATIONS[-1]
+    for ax, choice in zip(figure.subplots(1, 2, sharey=True), choices, strict=True):
+        for side, dashes in ((False, "-"), (True, ":")):
+            curves = list(zip(*found[choice, rotation, side], strict=True))
+            for i, (n, curve) in enumerate(zip(BLOCKS, curves, strict=True)):
+                colour = plotting.PALETTE[i % len(plotting.PALETTE)]
+                ax.plot(stiffnesses, curve, dashes, color=colour, marker="osD^"[i], markerfacecolor="none")
+                if choice == choices[0] and not side:
+                    beside(ax, (stiffnesses[0], curve[0]), f"{n} block{'s' * (n > 1)}", colour, (10, 8))
+        ax.set_xscale("log")
+        ax.axhline(1, color="0.6", linewidth=0.6)
+        ax.set_title(choice, fontsize=9)
         ax.set_xlabel("$k_n$ of the base [N/m³]")
-    figure.legend(
-        *axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False, fontsize=8
-    )
+    ax.set_ylim(top=1.52)
+    figure.axes[0].set_ylabel("energy lost, over theory [-]")
+    figure.axes[1].plot([], [], "-", color="0.3", label="two-sided")
+    figure.axes[1].plot([], [], ":", color="0.3", label="with a side stop")
+    figure.axes[1].legend(frameon=False, fontsize=8)
     return figure
 
 

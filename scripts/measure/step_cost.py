@@ -4,7 +4,7 @@ Nanoseconds of the processor for a contact line of the plane or a point of space
 façades, whose ground accelerates at once, with sprung and with rigid friction. The earlier version is taken from the
 repository's history and runs in a process of its own, in turn with this one. Then set-up, rocking theory, first runs
 with an empty store, what large scenes take, and what it costs to keep the forces of joints. Prints the tables, and
-digests of the answers of this version, and writes step_cost.txt, .csv and .png, step_cost_starts.txt,
+digests of the answers of this version, and writes step_cost.txt and .csv, step_cost_starts.txt,
 step_cost_waits.txt and step_cost_forces.txt, each as soon as it is measured.
 """
 
@@ -22,11 +22,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from tqdm import tqdm
 
 import mjrock as mr
-from mjrock import plotting
 from mjrock.distinct.setup import setup_of
 from scripts.measure import speed
 from scripts.measure.steps import floor as step_floor
@@ -145,20 +143,6 @@ def compared(versions: Sequence[speed.Version], task: str, size: int, rounds: in
     return [statistics.median(times) for times in zip(*found, strict=True)]
 
 
-def drawn(rows: Sequence[Sequence[object]]) -> Figure:
-    """Nanoseconds of each scene before, now, and of plain C."""
-    figure = Figure(figsize=(7.4, 0.6 + 0.42 * len(rows)), layout="constrained")
-    ax, places = figure.add_subplot(), np.arange(len(rows))
-    for i, (label, colour) in enumerate((("before", "#b9b9b9"), ("now", "#12406b"), ("plain C", "#6c8a4e"))):
-        values = [float(str(row[3 + i]) or "nan") for row in rows]
-        ax.barh(places + 0.27 * (i - 1), values, 0.27, label=label, color=colour)
-    ax.set_xlabel("time of a step for one line [ns]")
-    ax.set_yticks(places, [f"{row[0]}, {row[1]:,} lines" for row in rows])
-    ax.invert_yaxis()
-    ax.legend(frameon=False)
-    return figure
-
-
 def main(argv: Sequence[str] | None = None) -> None:
     """Measure, and print the tables."""
     options = cli.parser(__doc__, "step_cost")
@@ -178,7 +162,6 @@ def main(argv: Sequence[str] | None = None) -> None:
         versions = speed.Version(there, TASKS), speed.Version(speed.ROOT, TASKS)
         try:
             text, rows = step_table(versions, floors(Path(folder), names, rounds), names, rounds)
-            plotting.save(drawn(rows), out / "step_cost.png")
             cli.report(out / "step_cost", text, HEADER, rows)
             if args.quick or args.steps_only:
                 return

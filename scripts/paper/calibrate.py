@@ -16,7 +16,7 @@ import numpy as np
 
 from mjrock import Restitution, Store, plotting
 from mjrock.problem.damping.forms import PowerLaw
-from mjrock.problem.damping.law import HIGHEST, LEAST
+from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI
 from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
 from mjrock.study.matching.match import K_N_RANGE, REFERENCE, Combination, Match
@@ -30,6 +30,14 @@ QUICK = Plan(base_count=10, side_count=6, losses=(0.8, 1.0, 1.1), sides=(0.3, 0.
 STARTS = {"reference": REFERENCE, "soft and slender": Combination(slenderness=10.0, k_base=1e8, k_side=1e8)}
 """Where the one-at-a-time study starts: the reference values of Table 1, and a base that matters more."""
 NAMES = {"R": "R", "slenderness": "h/b", "k_base": "k_n,b", "k_side": "k_n,s", "amplitude": "theta_0/alpha"}
+SYMBOLS = {
+    "R": "$R$",
+    "slenderness": "$h/b$",
+    "k_base": "$k_{n,b}$",
+    "k_side": "$k_{n,s}$",
+    "amplitude": r"$\theta_0/\alpha$",
+}
+"""Names of the parameters in tables and in figures."""
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -79,7 +87,7 @@ def summary(found: Calibration) -> str:
         reached = [(task, row["xi"]) for task, row in zip(tasks, rows, strict=True) if row["reached"]]
         xi = np.array([value for _, value in reached])
         predicted = [float(fit.form.xi(task.groups, task.loss)) for task, _ in reached]
-        whole = r_squared(np.clip(predicted, LEAST, HIGHEST) if part == "base" else np.array(predicted), xi)
+        whole = r_squared(np.clip(predicted, LEAST_XI, HIGHEST_XI) if part == "base" else np.array(predicted), xi)
         text += [
             f"{part}: {type(fit.form).__name__}({values})",
             f"  {len(rows)} searches of {sum(row['runs'] for row in rows)} simulations, {len(xi)} reached, "
@@ -118,12 +126,11 @@ def curves(found: Calibration, part: str) -> plotting.Drawing:
     families = []
     for i in np.unique(np.linspace(0, len(full) - 1, 8).astype(int)):
         matches = full[i]
-        first = matches[0][0]
+        softness = float(matches[0][0].groups.softness)
         losses = np.array([task.loss for task, _ in matches])
         line = np.linspace(losses.min(), losses.max(), 60)
-        label = f"h/b {first.combination.slenderness:.1f}, softness {float(first.groups.softness):.1g}"
         xi = np.array([value for _, value in matches])
-        families.append((label, (np.exp(-losses), xi), (np.exp(-line), form.xi(first.groups, line))))
+        families.append((softness, (np.exp(-losses), xi), (np.exp(-line), form.xi(matches[0][0].groups, line))))
     return lambda ax: law_pictures.damping_curves(ax, families)
 
 
@@ -135,7 +142,7 @@ def parity(fit: Regression) -> plotting.Drawing:
 def save_residuals(title: str, fit: Regression, picture: Path) -> None:
     """Residuals against every variable."""
     values = {name: np.array([getattr(one, name) for one in fit.combinations]) for name in NAMES}
-    variables = {label: (values[name], "log") for name, label in NAMES.items()}
+    variables = {label: (values[name], "log") for name, label in SYMBOLS.items()}
     variables |= {"softness": (fit.groups.softness, "log"), "|e| asked for": (np.exp(-fit.loss), "linear")}
     plotting.save(law_pictures.residuals(title, fit.predicted / fit.xi, variables), picture)
 
@@ -164,7 +171,7 @@ def sensitivities(found: Calibration, store: Path, workers: int | None, picture:
                 spread = f"{known.max() / known.min():.3f}" if known.size > 1 else "-"
                 rows.append([start, part, name, spread, f"{len(known)} of {len(xi)}"])
                 if known.size:
-                    lines[name] = np.linspace(0, 1, len(xi)), xi / np.exp(np.mean(np.log(known)))
+                    lines[SYMBOLS[key]] = np.linspace(0, 1, len(xi)), xi / np.exp(np.mean(np.log(known)))
             panels.append((f"{part}, {start}", functools.partial(law_pictures.sensitivity, curves=lines)))
     plotting.save(plotting.panels(panels), picture)
     return cli.table(["around", "xi of", "parameter", "largest over smallest xi", "reached"], rows)

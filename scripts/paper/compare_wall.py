@@ -8,9 +8,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
+import numpy as np
+from matplotlib.figure import Figure
+
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.sketch import section
 from scripts.shared import cli
+from scripts.shared.labels import beside
 
 LAWS = {"published": mr.PUBLISHED, "calibrated": mr.CALIBRATED, "calibrated-bed": mr.CALIBRATED_BED}
 
@@ -22,6 +27,28 @@ def law(name: str | None, points: int) -> mr.DampingLaw:
     if name not in LAWS and not name.endswith(".toml"):
         raise ValueError(f"law = {name!r} is not one of {', '.join(LAWS)} and not a .toml file")
     return LAWS[name] if name in LAWS else mr.DampingLaw.load(name)
+
+
+STEP = 0.02
+"""Least step of the energy that is marked, over the first energy [-]."""
+
+
+def drawn(case: mr.Case, responses: Sequence[mr.Response], title: str) -> Figure:
+    """Rotation and energy until the wall is at rest, |e| at the steps of the energy, and the wall."""
+    figure = plotting.comparison(responses, title)
+    above, below = figure.axes
+    theory = responses[0]
+    assert theory.rocking is not None
+    moving = np.flatnonzero(np.abs(theory.theta) > 1e-3 * theory.of_wall[0].wall.alpha)
+    below.set_xlim(0, min(theory.t[-1], 1.3 * theory.t[moving[-1]]))
+    for impact in theory.impacts:
+        if impact.energy_before > STEP * theory.energy[0]:
+            at = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
+            beside(below, at, f"$|e|$ = {abs(impact.restitution):.2f}", "0.2", (6, 0))
+    inset = above.inset_axes((0.72, 0.08, 0.28, 0.9))
+    section(inset, case)
+    inset.axis("off")
+    return figure
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -69,7 +96,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     cli.write_text(out / "scene.xml", mr.wall_mjcf(case, contacts, step))
     cli.write_text(out / "comparison.csv", comparison.csv())
     title = f"2h = {2 * wall.h:g} m, 2b = {2 * wall.b:g} m, {'one' if case.side_stop else 'two'}-sided"
-    plotting.save(plotting.comparison(responses, title), out / "comparison.png")
+    plotting.save(drawn(case, responses, title), out / "comparison.png")
 
     side = f", side {contacts.side.xi:.2%} (e = {e.side:.3f})" if contacts.side else ""
     print(

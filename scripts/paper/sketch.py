@@ -114,7 +114,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Draw the two walls."""
     args = cli.parser(__doc__, "sketch").parse_args(argv)
     out = cli.folder(args.out)
-    figure = Figure(figsize=(8.4, 4.9), layout="constrained")
+    figure = Figure(figsize=(7.4, 4.9), layout="constrained")
     left, right = figure.subplots(1, 2)
     standing(left)
     tilted(right)

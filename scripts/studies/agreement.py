@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from scipy.stats import binomtest, wilcoxon
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import power_of_ten
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 from scripts.shared.pairs import pairs
@@ -48,26 +49,18 @@ def main(argv: Sequence[str] | None = None) -> None:
         build,
         side_stop=[side_stop for side_stop, _ in SIDES],
         wall=range(1 if args.quick else len(WALLS)),
-        motion=suite.motions(args.records, 3 if args.quick else 8),
+        motion=suite.motions(args.records, 1 if args.quick else 8),
         polarity=(0, 1),
-        level=LEVELS[1:4] if args.quick else LEVELS,
+        level=LEVELS[1:3] if args.quick else LEVELS,
         k_n=(0.0, *STIFFNESSES),  # zero stands for the rigid base of theory
     )
     found = completed(grid, out / "agreement.sqlite", workers=args.workers)
-    figure = Figure(figsize=(10.2, 3.7 * len(SIDES)), layout="constrained")
     table = []
-    for axes, (side_stop, title) in zip(
-        figure.subplots(len(SIDES), len(STIFFNESSES), squeeze=False), SIDES, strict=True
-    ):
-        for ax, k_n in zip(axes, STIFFNESSES, strict=True):
-            own = [row for row in found if row["side_stop"] == side_stop and row["k_n"] in (0.0, k_n)]
-            if not side_stop:  # both polarities are the same to a wall without a side stop
-                own = [row for row in own if row["polarity"] == 0]
-            ends, peaks = suite.in_pairs(own)
-            pairs(ax, peaks, ("rocking theory", "MuJoCo"), (suite.STILL / 3, 1.5))
-            ax.set_title(f"{title}, $k_n$ = {k_n:.0e} N/m³".replace("e+", "e"), fontsize=10)
-            table.append([title, f"{k_n:.0e}", *compared(ends, peaks, [row["motion"] for row in own[::2]])])
-    plotting.save(figure, out / "agreement.png")
+    for side_stop, title in SIDES:
+        for k_n in STIFFNESSES:
+            own = of_case(found, side_stop, k_n)
+            table.append([title, f"{k_n:.0e}", *compared(*suite.in_pairs(own), [row["motion"] for row in own[::2]])])
+    plotting.save(drawn(found), out / "agreement.png")
     columns = ("side_stop", "wall", "motion", "polarity", "level", "k_n", "solver", "outcome", "peak_over_alpha")
     header = [
         "wall", "k_n [N/m3]", "cases", "theory rests/rocks/overturns", "MuJoCo", "overturning alike",
@@ -75,6 +68,25 @@ def main(argv: Sequence[str] | None = None) -> None:
         "in MuJoCo alone", "sign test p", "peak ratio 5/50/95 %", "Wilcoxon p",
     ]  # fmt: skip
     cli.report(out / "agreement", cli.table(header, table), columns, [[row[c] for c in columns] for row in found])
+
+
+def of_case(found: Sequence[Mapping[str, Any]], side_stop: int, k_n: float) -> list[Mapping[str, Any]]:
+    """The runs of theory and of a base. To a wall without a side stop both polarities are the same."""
+    own = [row for row in found if row["side_stop"] == side_stop and row["k_n"] in (0.0, k_n)]
+    return own if side_stop else [row for row in own if row["polarity"] == 0]
+
+
+def drawn(found: Sequence[Mapping[str, Any]]) -> Figure:
+    """Peaks of the same runs in theory and in MuJoCo: a row for each side, a column for each stiffness."""
+    figure = Figure(figsize=(7.4, 6.0), layout="constrained")
+    axes = figure.subplots(len(SIDES), len(STIFFNESSES), squeeze=False, sharex=True, sharey=True)
+    for line, (side_stop, title) in zip(axes, SIDES, strict=True):
+        for ax, k_n in zip(line, STIFFNESSES, strict=True):
+            _, peaks = suite.in_pairs(of_case(found, side_stop, k_n))
+            pairs(ax, peaks, ("theory", "MuJoCo"), (suite.STILL / 3, 1.5))
+            ax.set_title(f"{title},\n$k_n$ = {power_of_ten(k_n)} N/m³", fontsize=9)
+            ax.label_outer()
+    return figure
 
 
 def compared(ends: Any, peaks: Any, records: Sequence[str]) -> list[object]:

@@ -38,6 +38,8 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE
+from mjrock.plotting.style import Look, below_figure
 from mjrock.quantities import Array
 from scripts.shared import cli
 from scripts.shared.paths import OVERTURNED, PARTED, SAMPLE, Path, apart, draw_square, pairs_of, parting, path_of
@@ -58,17 +60,19 @@ SETTINGS = ("MuJoCo 1e-3", "MuJoCo 1e-4", "explicit", "explicit 100 k_n", "expli
 """Solvers: the accuracy of fitted steps in MuJoCo, and k_s of the joints of explicit steps, rigid where none stands."""
 FINEST, SLIGHT, SMALL = 20e-6, 1e-6, 1e-3
 """Step of the finest run of a record [s], and changes of k_n, over k_n [-]."""
-RUNS = {
-    "MuJoCo 1e-3": "C0",
-    "MuJoCo 1e-4": "C0",
-    "explicit": "C1",
-    "half the step": "C1",
-    "20 us": "k",
-    "k_n + 1e-6": "C4",
-    "k_n + 1e-3": "C5",
-    "0.4 k_n": "C2",
+RUNS = ("MuJoCo 1e-3", "MuJoCo 1e-4", "explicit", "half the step", "20 us", "k_n + 1e-6", "k_n + 1e-3", "0.4 k_n")
+"""Ways to run the records. All but those of MuJoCo are explicit steps."""
+LOOKS: dict[str, Look] = {
+    "MuJoCo 1e-4": {"color": ORANGE, "linestyle": "-", "linewidth": 2.4},
+    "explicit": {"color": BLUE, "linestyle": "-", "linewidth": 1.2},
+    "half the step": {"color": BLACK, "linestyle": "--", "linewidth": 1.0},
+    "explicit 0.4 k_n": {"color": GREEN, "linestyle": ":", "linewidth": 1.6},
+    "0.4 k_n": {"color": GREEN},
 }
-"""Ways to run the records, and their colours. All but those of MuJoCo are explicit steps."""
+"""The lines of some ways in the figures."""
+NAMES = {"MuJoCo 1e-4": "MuJoCo", "explicit": "explicit steps", "half the step": "explicit steps half as long"}
+NAMES |= dict.fromkeys(("explicit 0.4 k_n", "0.4 k_n"), "explicit, $k_s$ = 0.4 $k_n$ instead of rigid")
+SHORT = {"MuJoCo 1e-4": "MuJoCo", "half the step": "half the step", "0.4 k_n": "$k_s$ = 0.4 $k_n$"}
 COMPARED = {
     ("explicit", "MuJoCo 1e-3"): "two solvers",
     ("explicit", "MuJoCo 1e-4"): "two solvers",
@@ -82,18 +86,13 @@ COMPARED = {
 """Pairs of them, and what they are."""
 NEARLY = 0.03
 """Difference of peaks that is counted as small [-]."""
-GROWTH = {
-    ("explicit", "MuJoCo 1e-4"): "-",
-    ("20 us", "MuJoCo 1e-4"): "-",
-    ("explicit", "half the step"): "--",
-    ("explicit", "k_n + 1e-3"): "-.",
-    ("explicit", "k_n + 1e-6"): ":",
+GROWTH: dict[tuple[str, str], tuple[str, Look]] = {
+    ("explicit", "MuJoCo 1e-4"): ("the other solver", {"color": ORANGE}),
+    ("explicit", "half the step"): ("half the step", {"color": BLACK, "linestyle": "--"}),
+    ("explicit", "k_n + 1e-3"): ("$k_n$ larger by 10$^{-3}$", {"color": PURPLE, "linestyle": "-."}),
+    ("explicit", "k_n + 1e-6"): ("$k_n$ larger by 10$^{-6}$", {"color": GREEN, "linestyle": ":"}),
 }
-"""Pairs whose difference is drawn over time."""
-COLOURS = {"MuJoCo 1e-3": "C0", "MuJoCo 1e-4": "C0", "explicit": "C1", "explicit 100 k_n": "C3"} | {
-    "explicit 10 k_n": "C4",
-    "explicit 0.4 k_n": "C2",
-}
+"""Pairs whose difference is drawn over time, and what is other than in explicit steps."""
 
 
 @dataclass(frozen=True)
@@ -273,20 +272,27 @@ def costs(study: Study) -> list[list[object]]:
     return rows
 
 
-def drawn(histories: dict[str, dict[str, mr.Response]], paths: Sequence[dict[str, Path]]) -> Figure:
-    """Tilts over time; a record in several ways, how far apart they are, and the peaks of all records."""
-    figure = Figure(figsize=(11, 6.6), layout="constrained")
-    above, below = figure.subplots(2, len(histories))
-    for ax, (name, answers) in zip(above, histories.items(), strict=True):
+def drawn(histories: dict[str, dict[str, mr.Response]]) -> Figure:
+    """Tilts over time of each scene in both solvers, and with joints that are sprung along their faces."""
+    figure = Figure(figsize=(7.4, 3.0), layout="constrained")
+    axes = figure.subplots(1, len(histories))
+    for ax, (name, answers) in zip(axes, histories.items(), strict=True):
         for setting in ("MuJoCo 1e-4", "explicit", "explicit 0.4 k_n"):
-            line = "-" if setting.startswith("MuJoCo") else "--"
             answer = answers[setting]
-            ax.plot(answer.t, np.degrees(answer.tilt[:, -1]), line, color=COLOURS[setting], label=setting)
-        ax.set(title=name, xlabel="$t$ [s]", ylabel="tilt [deg]")
-    above[0].legend(frameon=False, fontsize=8)
-    draw_record(below[0], paths)
-    draw_growth(below[1], paths)
-    draw_peaks(below[2], paths)
+            ax.plot(answer.t, np.degrees(answer.tilt[:, -1]), label=NAMES[setting], **LOOKS[setting])
+        ax.set(xlabel="$t$ [s]", ylabel="tilt [deg]")
+        ax.set_title(name, fontsize=9)
+    below_figure(figure, axes[0])
+    return figure
+
+
+def under_records(paths: Sequence[dict[str, Path]]) -> Figure:
+    """A record in several ways, how far apart they are, and the peaks of all records."""
+    figure = Figure(figsize=(7.4, 5.6), layout="constrained")
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.3, 1))
+    draw_record(figure.add_subplot(grid[0, :]), paths)
+    draw_growth(figure.add_subplot(grid[1, 0]), paths)
+    draw_peaks(figure.add_subplot(grid[1, 1]), paths)
     return figure
 
 
@@ -296,31 +302,27 @@ def draw_record(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
     times = [parting(own["explicit"], own["MuJoCo 1e-4"]).when for own in paths]
     standing = [i for i, own in enumerate(paths) if not any(own[way].overturns for way in ways)] or [0]
     shown = sorted(standing, key=lambda i: times[i])[len(standing) // 2]
-    for way, line in zip(ways, ("-", "-", "--"), strict=True):
+    for way in ways:
         tilt = np.degrees(paths[shown][way].tilt[:, -1])
-        colour = "k" if line == "--" else RUNS[way]
-        ax.plot(SAMPLE * np.arange(len(tilt)), tilt, line, color=colour, linewidth=0.9, label=way)
-    title = f"column under record {shown}"
+        ax.plot(SAMPLE * np.arange(len(tilt)), tilt, label=NAMES[way], **LOOKS[way])
     if math.isfinite(times[shown]):
         ax.axvline(times[shown], color="0.5", linewidth=0.8, linestyle=":")
-        title += "; dotted: they part"
-    ax.set(xlabel="$t$ [s]", ylabel="tilt [deg]", ylim=(0, 1.4 * ax.get_ylim()[1]))
-    ax.set_title(title, fontsize=10)
+        ax.text(times[shown], ax.get_ylim()[1], " they part", fontsize=8, va="top")
+    ax.set(xlabel="$t$ [s]", ylabel="tilt [deg]", ylim=(0, None))
+    ax.set_title(f"column of three drums under record {shown}", fontsize=9)
     ax.legend(frameon=False, fontsize=8, loc="upper left")
 
 
 def draw_growth(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
-    """How far apart two ways are over time."""
-    for (name, other), line in GROWTH.items():
+    """How far apart two ways are over time, the median of the records."""
+    for (name, other), (said, look) in GROWTH.items():
         difference = 1e3 * growth(paths, name, other)
-        colour = "k" if name == "20 us" else RUNS[other]
-        ax.semilogy(
-            SAMPLE * np.arange(len(difference)), difference, line, color=colour, linewidth=1, label=f"{name} : {other}"
-        )
+        ax.semilogy(SAMPLE * np.arange(len(difference)), difference, linewidth=1.2, label=said, **look)
     ax.axhline(1e3 * PARTED, color="0.5", linewidth=0.8, linestyle=":")
+    ax.text(0.0, 1e3 * PARTED, "parted", fontsize=8, va="bottom")
     ax.set(xlabel="$t$ [s]", ylabel="difference of a rotation [mrad]", ylim=(1e-6, 1e3))
-    ax.set_title("median of the records; dotted: parted", fontsize=10)
-    ax.legend(frameon=False, fontsize=7, loc="lower right")
+    ax.set_title("off explicit steps, median of the records", fontsize=9)
+    ax.legend(frameon=False, fontsize=8, loc="lower right")
 
 
 def draw_peaks(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
@@ -328,12 +330,12 @@ def draw_peaks(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
     peaks = {way: np.array([own[way].peak for own in paths]) for way in RUNS}
     low, edge = 0.7 * min(values.min() for values in peaks.values()), OVERTURNED
     for way, marker in (("MuJoCo 1e-4", "o"), ("half the step", "x"), ("0.4 k_n", "^")):
-        colour = "k" if marker == "x" else RUNS[way]
         x, y = (np.degrees(np.minimum(peaks[name], 1.5 * edge)) for name in ("explicit", way))
-        ax.plot(x, y, marker, color=colour, markerfacecolor="none", markersize=5, label=way)
+        colour = LOOKS[way]["color"]
+        ax.plot(x, y, marker, color=colour, markerfacecolor="none", markersize=5, label=SHORT[way])
     draw_square(ax, math.degrees(low), math.degrees(edge))
-    ax.set(xlabel="peak tilt, explicit [deg]", ylabel="peak tilt [deg]")
-    ax.set_title("peaks of all records; grey: overturned", fontsize=10)
+    ax.set(xlabel="peak tilt, explicit steps [deg]", ylabel="peak tilt [deg]")
+    ax.set_title("peaks of all records; in the grey they overturn", fontsize=9)
     ax.legend(frameon=False, fontsize=8, loc="upper left")
 
 
@@ -367,7 +369,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     text += ["", cli.table([*differ, "same end", "peaks that stand", "most"], partings(paths))]
     per = ["scene", "sine [m/s2]", "blocks", "points", "MuJoCo [s/s]", "[s2]", "rigid [ns]", "sprung [ns]"]
     text += ["", cli.table(per, times)]
-    plotting.save(drawn(histories, paths), out / "columns_in_space.png")
+    plotting.save(drawn(histories), out / "columns_in_space.png")
+    plotting.save(under_records(paths), out / "columns_under_records.png")
     cli.report(out / "columns_in_space", "\n".join(text), header, rows)
 
 

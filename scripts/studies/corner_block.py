@@ -22,8 +22,10 @@ from scipy.signal import argrelmax
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import OWN
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.labels import SMALL
 
 SIDE, HEIGHT = 0.5, 2.0
 STIFFNESSES = (1e8, 1e9, 1e10, 1e11)
@@ -32,7 +34,6 @@ RETARDATIONS = (1e-4, 1e-3, 1e-2)
 """c/k [s]."""
 RISE = 0.25
 """Largest rotation of the first flight, over that which overturns the block [-]."""
-STYLES = (("#f0a35e", "v", ":"), ("#b5402a", "s", "--"), ("#12406b", "o", "-"))
 DURATION, SPACING, SHARE = 1.6, 1e-3, 0.1
 """Time that is followed, spacing of the samples [s], and step over the longest stable one [-]."""
 ASKEW = math.radians(20)
@@ -88,22 +89,24 @@ def bounds() -> tuple[float, float, float]:
 
 def drawn(shares: dict[float, list[float]], stiffnesses: Sequence[float], answer: mr.Response) -> Figure:
     """The block on its corner, and the share of the energy over the stiffness."""
-    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
-    solid = figure.add_subplot(1, 2, 1, projection="3d")
+    figure = Figure(figsize=(7.4, 3.8), layout="constrained")
+    grid = figure.add_gridspec(1, 2, width_ratios=(1, 2))
+    solid = figure.add_subplot(grid[0], projection="3d")
     at = int(argrelmax(answer.tilt[:, 0], order=60)[0][0])
     plotting.blocks(solid, answer.of_masonry.masonry, answer.pose[at], camera=(12.0, -40.0))
-    ax = figure.add_subplot(1, 2, 2)
-    for (retardation, values), (colour, marker, line) in zip(shares.items(), STYLES, strict=False):
-        label = f"c/k = {1e3 * retardation:g} ms"
-        ax.plot(stiffnesses, values, color=colour, marker=marker, linestyle=line, markerfacecolor="none", label=label)
+    ax = figure.add_subplot(grid[1])
+    for (retardation, values), look, marker in zip(shares.items(), OWN, "vso", strict=False):
+        label = f"{1e3 * retardation:g} ms"
+        ax.plot(stiffnesses, values, **look | {"label": label, "marker": marker, "markerfacecolor": "none"})
     edge, low, high = bounds()
     ax.axhspan(low, high, color="0.92")
-    ax.text(stiffnesses[0], low, " bounds for a corner", fontsize=8, va="bottom", color="0.35")
-    ax.axhline(edge, color="0.5", linestyle="-.", linewidth=0.8, label="an edge, Housner")
+    ax.text(stiffnesses[0], low, " bounds of theory for a corner", fontsize=SMALL, va="bottom", color="0.3")
+    ax.axhline(edge, color="0.5", linestyle="-.", linewidth=0.8)
+    ax.text(stiffnesses[0], edge, " about an edge, Housner", fontsize=SMALL, va="bottom", color="0.3")
     ax.set_xscale("log")
     ax.set_xlabel(r"stiffness of the joint $k_n$ [N/m$^3$]")
-    ax.set_ylabel("energy after a corner impact over that before [-]")
-    ax.legend(frameon=False, fontsize=8)
+    ax.set_ylabel("energy after a corner impact\nover that before [-]")
+    ax.legend(frameon=False, fontsize=SMALL, title="dashpot over spring, $c/k$", title_fontsize=SMALL)
     return figure
 
 

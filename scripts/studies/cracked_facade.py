@@ -26,17 +26,18 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK, BLUE, ORANGE
+from mjrock.plotting.style import below_figure
 from scripts.measure.effect_costs import BARE, K_N, MOST, SHARE, shown
 from scripts.shared import cli, suite
+from scripts.shared.labels import SMALL
 
 SIDES = {"one-sided": True, "two-sided": False}
-COLOURS = {"rocking theory": "0.15", "one block": "#f0a35e", "cracked": "#12406b"}
+COLOURS = {"rocking theory": BLACK, "one block": ORANGE, "cracked": BLUE}
 MARKS = {"rocking theory": "|", "one block": "s", "cracked": "o"}
 LEAST, RUNG = 0.12, 1.08
 """Lowest intensity of the search [g], and the ratio of two that follow each other before the last is halved."""
 HALVINGS = 2
-JUST_STANDS = 0.97
-"""Intensity of the picture of the cracked façade, over the one that overturns it [-]."""
 
 
 class Found(NamedTuple):
@@ -156,39 +157,27 @@ def summary(found: Sequence[Found]) -> list[list[str]]:
     return rows
 
 
-def drawn(found: Sequence[Found], motions: Sequence[mr.GroundMotion]) -> Figure:
-    """The intensities of every motion on the left, the cracked façade just before it overturns on the right.
-
-    That is under the motion to which the crack matters most.
-    """
-    figure = Figure(figsize=(9.4, 5.2), layout="constrained")
-    left, *right = figure.subplots(1, 3, width_ratios=(2.6, 1, 1))
-    y = np.arange(len(found)) + np.array([one.sides == "two-sided" for one in found])
+def drawn(found: Sequence[Found]) -> Figure:
+    """The intensities of every motion, a panel for each kind of wall."""
+    figure = Figure(figsize=(7.4, 4.2), layout="constrained")
+    counts = [sum(one.sides == sides for one in found) or 1 for sides in SIDES]
     least = np.minimum([one.least for one in found], MOST)
-    for i, (name, colour) in enumerate(COLOURS.items()):
-        left.scatter(
-            least[:, i], y, s=130 if i == 0 else 34, marker=MARKS[name], color=colour, label=name, zorder=3 - i / 2
-        )
-    left.hlines(y, least.min(axis=1), least.max(axis=1), color="0.8", linewidth=1, zorder=0)
-    left.set_yticks(y, [one.motion for one in found], fontsize=8)
-    left.invert_yaxis()
-    left.set_xscale("log")
-    ticks = [tick for tick in (0.1, 0.2, 0.3, 0.5, 1, 2, 4) if 0.8 * least.min() < tick < 1.3 * least.max()]
-    left.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-    left.set_xticks([], minor=True)
-    left.set_xlabel("least intensity that overturns [g]")
-    left.set_title("one-sided above, two-sided below", fontsize=10)
-    left.legend(frameon=False, fontsize=8)
-    for ax, sides in zip(right, SIDES, strict=True):
+    for ax, sides in zip(figure.subplots(2, 1, sharex=True, height_ratios=counts), SIDES, strict=True):
         of = [i for i, one in enumerate(found) if one.sides == sides]
-        most = max(of, key=lambda i: abs(math.log(least[i, 2] / least[i, 1])))
-        pga = JUST_STANDS * float(least[most, 2])
-        answer = solved(2, sides, motions[most], pga)
-        at = int(np.abs(answer.theta[:, 1] - answer.theta[:, 0]).argmax())
-        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[at])
-        ax.set_title(f"{sides}, {found[most].motion},\n{pga:.2g} g, {answer.t[at]:.1f} s", fontsize=9)
-        ax.set_ylim(-1.0, 9.6)
-        ax.set_xlim(-2.0, 2.0)
+        y, here = np.arange(len(of)), least[of]
+        for i, (name, colour) in enumerate(COLOURS.items()):
+            ax.scatter(here[:, i], y, (150, 60, 20)[i], marker=MARKS[name], color=colour, label=name, zorder=i)
+        if of:
+            ax.hlines(y, here.min(axis=1), here.max(axis=1), color="0.8", linewidth=1, zorder=0)
+        ax.set_yticks(y, [found[i].motion for i in of], fontsize=SMALL)
+        ax.set_ylim(len(of) - 0.4, -0.6)
+        ax.set_xscale("log")
+        ax.set_title(sides, fontsize=10)
+    ticks = [tick for tick in (0.1, 0.2, 0.3, 0.5, 1, 2, 4) if 0.8 * least.min() < tick < 1.3 * least.max()]
+    ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    ax.set_xticks([], minor=True)
+    ax.set_xlabel("least intensity that overturns [g]")
+    below_figure(figure, ax)
     return figure
 
 
@@ -206,7 +195,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         least = [shown(value, f"> {MOST:g}") for value in one.least]
         ratios = [f"{one.least[2] / one.least[i]:.2f}" for i in (1, 0)]
         rows.append([one.sides, one.motion, *least, *ratios, *(shown(value, "falls") for value in one.peaks)])
-    plotting.save(drawn(found, [motion for _, _, motion in studies]), out / "cracked_facade.png")
+    plotting.save(drawn(found), out / "cracked_facade.png")
     header = ["façade", "motion", "theory [g]", "one block [g]", "cracked [g]", "cracked/one", "cracked/theory"]
     header += ["peak/alpha: theory", "one block", "cracked"]
     summed = ["façade", "cracked over", "median", "range", "unsafe", "sign test p"]

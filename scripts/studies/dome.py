@@ -23,8 +23,8 @@ from mjrock import plotting
 from mjrock.problem.masonry.limit.statics import falling
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.at_times import at_times
 from scripts.shared.models_in_space import IN_SPACE
-from scripts.shared.two_times import at_two_times
 
 RADIUS, FRICTION, XI = 5.0, 0.9, 0.01
 STEP = 0.0005
@@ -93,10 +93,11 @@ def crept() -> str:
 
 
 def drawn(answer: mr.Response) -> Figure:
-    """The dome at rest and as it falls."""
+    """The dome at rest, as it falls and at the end."""
     far = sunk(answer)
     moment = int(np.argmax(far > SHOWN)) if far.max() > SHOWN else len(far) - 1
-    return at_two_times(answer, {"as drawn": 0, "falling": moment}, camera=(28.0, 35.0))
+    words = {"as drawn": 0, "rings open": moment, "at the end": len(answer.t) - 1}
+    return at_times(answer, words, camera=(28.0, 35.0))
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -166,7 +166,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     answers = {"facade": (facade_in_space.shaken(facade_in_space.facade(), 0.1 if args.quick else 7.0), (20.0, 38.0))}
     if not args.quick:
         answers["dome"] = dome.growing(dome.dome(0.038, dome.FACETS[-1], dome.STIFFNESSES[0])), (28.0, 35.0)
-    figure = Figure(figsize=(7.4, 1.7 * len(answers)), layout="constrained")
+    figure = Figure(figsize=(7.4, 1.75 * len(answers)), layout="constrained")
     axes, lines = figure.subplots(len(answers), 3, squeeze=False), []
     for row, (name, (answer, camera)) in zip(axes, answers.items(), strict=True):
         view, last = View(answer, camera), len(answer.t) - 1
@@ -185,7 +185,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         for ax, (way, (picture, _)) in zip(row, found.items(), strict=False):
             ax.imshow(picture)
             ax.set_axis_off()
-            ax.set_title(f"{name}, {way}", fontsize=9)
+            ax.set_title(f"{name}, {way}", fontsize=8)
     lines.append(f"PyVista and VTK are {megabytes('pyvista', 'vtk'):.0f} MB, MuJoCo and matplotlib are there")
     plotting.save(figure, out / "drawn_in_space.png")
     cli.report(out / "drawn_in_space", "\n".join(lines))

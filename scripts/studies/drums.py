@@ -21,8 +21,10 @@ from numpy.typing import NDArray
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK, BLUE, GREEN, ORANGE
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
+from scripts.shared.labels import beside
 
 COLUMN = mr.Block.from_size(thickness=0.75, height=6.0, length=0.75, density=2500.0)
 COLUMNS = ((1, 2), (2, 2), (4, 2), (4, 4), (8, 2))
@@ -34,14 +36,16 @@ LOWEST, HIGHEST = 0.9, 16.0
 """Amplitudes [g tan(alpha)]."""
 FOLLOWED = 10.0
 """How long a column is followed after the pulse [1/p]."""
-STYLES = (
-    ("#f0a35e", "o", 11.0, "-"),
-    ("#b5402a", "s", 8.0, "-"),
-    ("#6c8a4e", "^", 5.5, "-"),
-    ("#6c8a4e", "v", 5.5, ":"),
-    ("#12406b", "D", 3.0, "-"),
+LOOKS = (
+    {"color": ORANGE},
+    {"color": ORANGE},
+    {"color": GREEN},
+    {"color": GREEN, "linestyle": ":"},
+    {"color": BLUE},
 )
-"""Colour, marker, its size, and line: where curves fall together, all of them are seen."""
+"""Colour and line of each column."""
+RISE = {(4, 2): 7, (8, 2): -5, (4, 4): -5}
+"""How far the name of a column stands above the end of its curve [pt]."""
 
 
 def pulse(frequency: float, amplitude: float) -> mr.GroundMotion:
@@ -103,19 +107,24 @@ def lowest(falls: NDArray[np.bool_], amplitudes: NDArray[np.float64]) -> NDArray
 
 def drawn(frequencies: Sequence[float], least: NDArray[np.float64], theory: NDArray[np.float64]) -> Figure:
     """A curve for each number of drums, and rocking theory for one."""
-    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     ax = figure.subplots()
-    ax.plot(frequencies, theory, **plotting.STYLES["analytical"] | {"label": "rocking theory, 1 block"})
-    for column, (colour, marker, size, line), curve in zip(COLUMNS, STYLES, least, strict=True):
-        ax.plot(frequencies, curve, color=colour, linestyle=line, linewidth=0.8 + size / 4, label=name(*column))
-        ax.lines[-1].set(marker=marker, markersize=size, markerfacecolor="none")
+    ax.plot(frequencies, theory, **plotting.STYLES["analytical"] | {"label": None})
+    beside(ax, (frequencies[-1], theory[-1]), "rocking theory, 1 block", BLACK, (8, -4))
+    for column, look, marker, curve in zip(COLUMNS, LOOKS, "osD^v", least, strict=True):
+        if column == (1, 2):
+            continue  # it falls together with two drums
+        ax.plot(frequencies, curve, marker=marker, markersize=4, linewidth=1.4, **look)
+        said = "1 and 2 drums" if column == (2, 2) else name(*column)
+        beside(ax, (frequencies[-1], curve[-1]), said, look["color"], (8, RISE.get(column, 0)))
+    ax.text(frequencies[0], 1.7, "below $\\omega_p/p = 4$ all are alike,\nbut for joints of four lines", fontsize=8)
     ax.set_yscale("log")
+    ax.set_xlim(0.3, frequencies[-1] + 0.1)
     ticks = [1, 2, 3, 5, 10, 15]
     ax.set_yticks(ticks, [f"{tick}" for tick in ticks])
     ax.set_yticks([], minor=True)
-    ax.set_xlabel(r"$\omega_p / p$ [-]")
+    ax.set_xlabel(r"frequency of the pulse $\omega_p / p$ [-]")
     ax.set_ylabel(r"least $a_p / (g \tan\alpha)$ that overturns [-]")
-    ax.legend(frameon=False, fontsize=9)
     return figure
 
 

@@ -57,8 +57,8 @@ def drawn(responses: Sequence[mr.Response], motion: mr.GroundMotion) -> Figure:
     t = np.arange(len(motion.accel)) * motion.dt
     above.plot(t, motion.accel / mr.GRAVITY, color="0.3", linewidth=0.7)
     above.set_ylabel("ground $a_g$ [g]")
-    plotting.rotation(middle, responses).set_xlabel("")
-    for response in responses:
+    plotting.rotation(middle, responses[::-1]).set_xlabel("")
+    for response in responses[::-1]:
         style = {name: value for name, value in plotting.STYLES[response.solver].items() if name != "label"}
         below.plot(response.t, tie_force(response) / 1e3, **style)
     below.set_ylabel("tie [kN]")

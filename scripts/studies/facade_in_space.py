@@ -21,7 +21,7 @@ import numpy as np
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.shared.two_times import at_two_times
+from scripts.shared.at_times import at_times
 
 LENGTH, HEIGHT, DEPTH, UNIT = 3.2, 1.6, 1.2, (0.4, 0.2)
 WINDOWS = tuple((y, mr.Opening(width=0.4, height=0.6, sill=0.6)) for y in (-0.6, 0.6))
@@ -89,8 +89,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     answer = shaken(masonry, 0.05 if args.quick else DURATION)
     moment, stats = moment_of(answer), answer.stats
     far = np.linalg.norm(answer.pose[moment, :, :3] - answer.pose[0, :, :3], axis=1)
-    words = {"as the first block falls": moment, "at the end": len(answer.t) - 1}
-    plotting.save(at_two_times(answer, words, CAMERA), out / "facade_in_space.png")
+    words = {"at rest": 0, "as the first block falls": moment, "at the end": len(answer.t) - 1}
+    plotting.save(at_times(answer, words, CAMERA), out / "facade_in_space.png")
     film: dict[str, Any] = {"speed": 1.0, "fps": 10, "dpi": 85, "camera": CAMERA}
     path = plotting.animate(answer, out / "facade_in_space.gif", **film)
     header = ["blocks", "points", "set-up [s]", "step [us]", "s a simulated s", "ns a point and step"]

@@ -17,7 +17,9 @@ from scripts.shared import cli
 
 def with_every_effect() -> mr.Case:
     """A wall that carries one of each effect."""
-    wall = mr.Block.from_size(thickness=0.7, height=6.0, length=4.0, openings=[mr.Opening(width=1.2, height=2.2)])
+    wall = mr.Block.from_size(
+        thickness=0.7, height=6.0, length=4.0, gable=mr.Gable(1.2), openings=[mr.Opening(width=1.2, height=2.2)]
+    )
     effects = (
         mr.Tie(height=5.2, stiffness=2e6, strength=2e4, length=2.0),
         mr.Thrust(height=4.4, force=3e3),

@@ -105,15 +105,15 @@ def of_the_damping() -> list[list[object]]:
 
 
 def drawn(peaks: dict[str, list[tuple[float, float, int]]], ratios: Sequence[float]) -> Figure:
-    """Peaks against k_s over k_n, with that of joints that stick rigidly."""
-    figure = Figure(figsize=(9.5, 3.8), layout="constrained")
-    for ax, (name, found) in zip(figure.subplots(1, 2), peaks.items(), strict=True):
-        ax.plot(ratios, [1e3 * one[0] for one in found[:-1]], "C0o-", label="springs of stiffness $k_s$")
-        ax.axhline(1e3 * found[-1][0], color="k", linestyle="--", label="rigid, no $k_s$")
-        ax.set(xscale="log", title=f"{name}, {SINES[name]:g} m/s² sine")
-        ax.set_xlabel("$k_s$ / $k_n$ [-]")
-        ax.set_ylabel("largest displacement of a block [mm]")
-        ax.legend(frameon=False)
+    """Peaks against k_s over k_n, over that of joints that stick rigidly."""
+    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    ax = figure.subplots()
+    for (name, found), colour, marker in zip(peaks.items(), plotting.PALETTE, "os", strict=False):
+        off = [100 * (one[0] / found[-1][0] - 1) for one in found[:-1]]
+        ax.plot(ratios, off, color=colour, marker=marker, label=f"{name}, {SINES[name]:g} m/s² sine")
+    ax.axhline(0, color="0.3", linestyle="--", linewidth=0.8, label="joints that stick rigidly")
+    ax.set(xscale="log", xlabel="$k_s$ / $k_n$ [-]", ylabel="largest displacement,\noff that of rigid joints [%]")
+    ax.legend(frameon=False, fontsize=8)
     return figure
 
 

@@ -18,19 +18,19 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.labels import SMALL, beside
 
 RECORDS = Path(__file__).resolve().parents[2] / "tests" / "records" / "granite_walls"
 """The curves of the tests."""
@@ -164,30 +164,54 @@ def at_turn(curve: Array, place: float) -> float:
     return float(forces[np.abs(forces).argmax()]) if near.any() else math.nan
 
 
-def to_and_fro(ax: Axes) -> str:
-    """Draw the cyclic push over the envelope of its test; the forces of both in a sentence."""
-    test = measured("WS1100_cyclic_envelope")
-    push, took = pushed(LOADS["WS100"], TURNS)
-    found = curve_of(push)
-    ax.plot(*test.T, "o", color="0.4", markersize=4, label="envelope of WS1.100")
-    ax.plot(*found.T, color="C1", linewidth=0.9, label="found, pushed to and fro")
-    ax.legend(frameon=False, loc="upper left")
+def cyclic(test: Array, found: Array, took: float) -> str:
+    """The forces of test and cyclic push at the turns, in a sentence."""
     turns = (6e-3, -6e-3, 16e-3, -16e-3, 25e-3)
     ends = ", ".join(f"{at_turn(test, turn):.1f} / {at_turn(found, turn):.1f}" for turn in turns)
     return f"cyclic, test / found at 6, -6, 16, -16 and 25 mm [kN]: {ends}, processor {took:.0f} s"
+
+
+def drawn(pushes: Mapping[str, Array], turned: Array | None) -> Figure:
+    """The wall, the curves of tests and of the model, and the cyclic push over the envelope of its test."""
+    figure = Figure(figsize=(7.4, 6.6), layout="constrained")
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.9))
+    wall, ax, below = (figure.add_subplot(grid[place]) for place in ((0, 0), (0, 1), (1, slice(None))))
+    look = plotting.STYLES["explicit"] | {"linestyle": "-", "linewidth": 1.3, "label": None}
+    plotting.blocks(wall, wall_of(LOADS["WS100"]).masonry, joints=False)
+    top = COURSES * COURSE
+    wall.annotate("", (0.5 * LENGTH, top + 0.1), (0.5 * LENGTH, top + 0.5), arrowprops={"arrowstyle": "-|>"})
+    wall.annotate("", (0.0, SPAN), (-0.4, SPAN), arrowprops={"arrowstyle": "-|>"})
+    wall.text(0.55 * LENGTH, top + 0.35, "$N$", fontsize=9)
+    wall.text(-0.4, SPAN + 0.06, "$V$", fontsize=9)
+    wall.axis("off")
+    for name, found in pushes.items():
+        test = measured(name)
+        ax.plot(*test.T, color="0.65", linewidth=3)
+        ax.plot(*found.T, **look)
+        sigma = 1e-3 * LOADS[name] / (LENGTH * THICK)
+        beside(ax, (float(found[-1, 0]), float(found[-1, 1])), rf"$\sigma$ = {sigma:.2f} MPa", "0.2", (8, 0))
+    ax.set(xlim=(0, 56), ylim=(0, 95))
+    if turned is not None:
+        below.plot(*measured("WS1100_cyclic_envelope").T, "o", color="0.4", markersize=4, label="test, envelope")
+        below.plot(*turned.T, **look | {"label": plotting.STYLES["explicit"]["label"], "linewidth": 0.9})
+    below.legend(frameon=False, loc="upper left", fontsize=SMALL)
+    below.set_title(rf"to and fro, $\sigma$ = {1e-3 * LOADS['WS100'] / (LENGTH * THICK):.2f} MPa", fontsize=10)
+    ax.set_title("pushed to 40 mm: tests grey, explicit steps blue", fontsize=10)
+    for each in (ax, below):
+        each.set(xlabel="displacement at 1.325 m [mm]", ylabel="horizontal force $V$ [kN]")
+    return figure
 
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Push the walls, print the table, draw the curves."""
     args = cli.parser(__doc__, "granite_walls").parse_args(argv)
     out = cli.folder(args.out)
-    figure = Figure(figsize=(10.5, 4.0), layout="constrained")
-    ax, cyclic = figure.subplots(1, 2)
     rows: list[list[object]] = []
-    for i, (name, force) in enumerate(list(LOADS.items())[: 1 if args.quick else None]):
+    pushes: dict[str, Array] = {}
+    for name, force in list(LOADS.items())[: 1 if args.quick else None]:
         test = measured(name)
-        push, took = pushed(force, (0.002 if args.quick else 0.04,))
-        found = curve_of(push)
+        push, took = pushed(force, (0.0005 if args.quick else 0.04,))
+        pushes[name] = found = curve_of(push)
         peak, top = test[:, 1].max(), found[:, 1].max()
         rises = [(at(test, place), at(found, place)) for place in (2.0, 6.0)]
         told = [f"{a:.1f} / {b:.1f} ({b / a - 1:+.0%})" for a, b in rises]
@@ -195,14 +219,12 @@ def main(argv: Sequence[str] | None = None) -> None:
         rows.append(
             [name, force, f"{peak:.1f} / {top:.1f} ({top / peak - 1:+.1%})", *told, f"{share:.2f}", f"{took:.0f}"]
         )
-        for curve, line in ((test, {"linewidth": 3, "alpha": 0.35}), (found, {"label": f"{name}, {force:g} kN"})):
-            ax.plot(*curve.T, color=f"C{i}", **line)
-    said = "" if args.quick else to_and_fro(cyclic)
-    for each, title in ((ax, "pushed to 40 mm; tests broad"), (cyclic, "104.8 kN, cyclic")):
-        each.set(xlabel="displacement at 1.325 m [mm]", ylabel="horizontal force [kN]", title=title)
-    ax.legend(frameon=False, loc="upper left", ncols=2)
-    ax.set(xlim=(0, 45), ylim=(0, 115))
-    plotting.save(figure, out / "granite_walls.png")
+    said, turned = "", None
+    if not args.quick:
+        push, took = pushed(LOADS["WS100"], TURNS)
+        turned = curve_of(push)
+        said = cyclic(measured("WS1100_cyclic_envelope"), turned, took)
+    plotting.save(drawn(pushes, turned), out / "granite_walls.png")
     header = ("wall", "N [kN]", "V max, test / found [kN]", "at 2 mm", "at 6 mm", "V at the end / max", "processor [s]")
     cli.report(out / "granite_walls", f"{cli.table(header, rows)}\n\n{said}".rstrip(), header, rows)
 

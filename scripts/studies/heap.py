@@ -14,12 +14,13 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import several
 from scripts.shared import cli
 
 UNIT = (0.5, 0.25)
 AMPLITUDE, PERIOD = 12.0, 0.8
 """Of the sine [m/s2, s]."""
-FRAMES = 5
+FRAMES = 6
 
 
 def heap(length: float, height: float, duration: float) -> mr.Response:
@@ -33,12 +34,12 @@ def drawn(answer: mr.Response) -> Figure:
     """The wall at some times of its fall, seen from the ground."""
     masonry = answer.of_masonry.masonry
     length, height = np.concatenate([masonry.blocks[i].corners for i in masonry.free]).max(axis=0)
-    limits = [(-0.3 * length, 3.1 * length), (-0.5, height + 0.4)]
-    figure = Figure(figsize=(13, 1.9), layout="constrained")
-    for ax, row in zip(figure.subplots(1, FRAMES), np.linspace(0, len(answer.t) - 1, FRAMES).astype(int), strict=True):
+    limits = [(-0.3 * length, 3.6 * length), (-0.3, height + 0.5)]
+    figure, axes = several(FRAMES, 2, (3.7, 1.6))
+    for ax, row in zip(axes.flat, np.linspace(0, len(answer.t) - 1, FRAMES).astype(int), strict=True):
         plotting.blocks(ax, masonry, answer.pose[row], joints=False, limits=limits)
-        ax.set(title=f"{answer.t[row]:.1f} s", xlabel="x [m]")
-    figure.axes[0].set_ylabel("z [m]")
+        ax.set_title(f"{answer.t[row]:.1f} s", fontsize=9)
+        ax.axis("off")
     return figure
 
 

@@ -8,15 +8,27 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.quantities import Array
 from scripts.shared import cli, suite
 from scripts.shared.paper import FIGURE_3, K_N
+
+
+def drawn(curves: Mapping[str, tuple[Array, Array]]) -> Figure:
+    """Peaks over the intensity, a panel a solver, of its intensities [g] and peaks, shapes (n,) and (records, n)."""
+    figure = Figure(figsize=(7.4, 3.4), layout="constrained")
+    axes = figure.subplots(1, len(curves), sharey=True)
+    for ax, (solver, (levels, peaks)) in zip(axes, curves.items(), strict=True):
+        plotting.incremental(ax, levels, peaks, solver, top=1.6).label_outer()
+        ax.legend().remove()
+    axes[0].legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(0.0, 0.88))
+    return figure
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -31,11 +43,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         solver: mr.ida(records(motions, solver), levels, out / "ida.sqlite", workers=args.workers)
         for solver in suite.SOLVERS
     }
-    figure = Figure(figsize=(8.2, 3.6), layout="constrained")
-    for ax, (solver, one) in zip(figure.subplots(1, 2, sharey=True), found.items(), strict=True):
-        plotting.incremental(ax, one.scales, one.peaks, solver).label_outer()
-        ax.legend(frameon=False, fontsize=8, loc="lower right")
-    plotting.save(figure, out / "ida.png")
+    curves = {solver: (np.asarray(one.scales), one.peaks) for solver, one in found.items()}
+    plotting.save(drawn(curves), out / "ida.png")
     capacities = zip(*(one.capacity for one in found.values()), strict=True)
     rows = [
         [motion.name, *("-" if math.isnan(c) else f"{c:.3f}" for c in pair)]

@@ -63,15 +63,19 @@ def kept(answer: mr.Response) -> list[float]:
 
 
 def drawn(answers: dict[str, mr.Response]) -> Figure:
-    """Rotation over time."""
-    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
-    ax = figure.subplots()
-    for (name, answer), line in zip(answers.items(), ("-", ":", "-", ":"), strict=False):
-        colour = "#12406b" if name.endswith((" 2 lines", " 2 points")) else "#b5402a"
-        ax.plot(answer.t, answer.tilt[:, 0] / WALL.alpha, linestyle=line, color=colour, label=name, linewidth=1.6)
-    ax.set_xlabel("time $t$ [s]")
-    ax.set_ylabel(r"tilt over $\alpha$ [-]")
-    ax.legend(frameon=False, fontsize=8)
+    """Rotation over time in the plane, and how far the block in space is off it."""
+    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    names, tilts = list(answers), [answer.tilt[:, 0] / WALL.alpha for answer in answers.values()]
+    for i, colour in zip(range(0, len(names), 2), plotting.PALETTE, strict=False):
+        plane, space = tilts[i], tilts[i + 1]
+        t = answers[names[i]].t
+        above.plot(t, plane, color=colour, label=names[i].removeprefix("plane ") + " of the plane")
+        below.plot(t, 1e3 * (space - plane), color=colour, linewidth=1.0)
+    above.set(ylabel=r"tilt over $\alpha$ [-]")
+    above.set_ylim(top=1.3 * above.get_ylim()[1])
+    above.legend(frameon=False, fontsize=8, ncols=2)
+    below.set(xlabel="time $t$ [s]", ylabel="space less\nplane [10$^{-3}$]")
     return figure
 
 

@@ -64,6 +64,8 @@ MEASURED = (
     Group(0.75, 11, 0.9712, 0.0298, 9, 2),
 )
 FOUND = ("Housner", "MuJoCo, published law", "MuJoCo, calibrated law", "explicit, published law")
+LOOKS = (("analytical", "-"), ("MuJoCo", "--"), ("MuJoCo", "o"), ("explicit", "x"))
+"""The solver and the line of each."""
 
 
 def first_ratios(group: Group) -> tuple[float, ...]:
@@ -112,9 +114,10 @@ def drawn(found: Array) -> Figure:
         capsize=3,
         label="measured, two standard errors",
     )
-    for name, column, style in zip(FOUND, found.T, ("k-", "C0--", "C0o", "C1x"), strict=True):
-        ax.plot(slender, column, style, label=name, markersize=5, markerfacecolor="none")
-    ax.set(xlabel="slenderness h/b [-]", ylabel="first ratio of angular velocities [-]")
+    for name, column, (solver, style) in zip(FOUND, found.T, LOOKS, strict=True):
+        colour = plotting.STYLES[solver]["color"]
+        ax.plot(slender, column, style, color=colour, label=name, markersize=5, markerfacecolor="none")
+    ax.set(xlabel="slenderness $h/b$ [-]", ylabel="first ratio of angular velocities [-]")
     ax.legend(frameon=False, fontsize=8)
     return figure
 

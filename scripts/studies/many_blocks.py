@@ -26,6 +26,8 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLUE, GREEN, ORANGE
+from mjrock.plotting.style import Look, below_figure
 from mjrock.scene.explicit_step import STEP_TAKEN
 from scripts.shared import cli
 
@@ -50,13 +52,13 @@ LARGE = 100
 """Number of blocks from which on the exponents are fitted."""
 LINE_STEPS = 3e7
 """Steps times lines that are timed: some two seconds."""
-STYLES = {
-    "wall, rigid": ("#12406b", "o", "-"),
-    "wall, k_s = k_n": ("#6c8a4e", "s", "-"),
-    "wall, k_s = k_n, one c/k": ("#6c8a4e", "^", ":"),
-    "arch, rigid": ("#b5402a", "D", "-"),
+LOOKS: dict[str, Look] = {
+    "wall, rigid": {"color": BLUE, "marker": "o"},
+    "wall, k_s = k_n": {"color": ORANGE, "marker": "s"},
+    "wall, k_s = k_n, one c/k": {"color": ORANGE, "marker": "^", "linestyle": ":"},
+    "arch, rigid": {"color": GREEN, "marker": "D"},
 }
-NAMES = {scene: scene.replace("k_s = k_n", "$k_s = k_n$").replace("c/k", "$c/k$") for scene in STYLES}
+NAMES = {scene: scene.replace("k_s = k_n", "$k_s = k_n$").replace("c/k", "$c/k$") for scene in LOOKS}
 
 
 @dataclass(frozen=True)
@@ -111,25 +113,19 @@ def exponent(blocks: Sequence[int], times: Sequence[float]) -> float:
 
 def drawn(points: Sequence[Point]) -> Figure:
     """Set-up, time of a step and time of a simulated second over the number of blocks."""
-    figure = Figure(figsize=(10.5, 4.2), layout="constrained")
+    figure = Figure(figsize=(7.4, 3.4), layout="constrained")
     panels = figure.subplots(1, 3, sharex=True)
     titles = ("all but the steps [s]", "one step [ms]", "a simulated second [s/s]")
     for ax, title, factor, name in zip(panels, titles, (1.0, 1e3, 1.0), ("setting_up", "step", "second"), strict=True):
         for scene in dict.fromkeys(one.scene for one in points):
             own = [one for one in points if one.scene == scene]
             blocks, times = [one.blocks for one in own], [factor * getattr(one, name) for one in own]
-            colour, marker, line = STYLES[scene]
-            label = (
-                f"{scene.replace('k_s = k_n', '$k_s = k_n$').replace('c/k', '$c/k$')}: {exponent(blocks, times):.2f}"
-            )
-            ax.plot(blocks, times, color=colour, marker=marker, linestyle=line, markerfacecolor="none", label=label)
+            ax.plot(blocks, times, label=NAMES[scene], **LOOKS[scene] | {"markerfacecolor": "none", "markersize": 4})
         ax.set(xscale="log", yscale="log")
         ax.xaxis.set_minor_formatter(NullFormatter())
         ax.set_xlabel("blocks that are free [-]")
-        ax.set_ylabel(f"time of the processor for\n{title}")
-        ax.legend(frameon=False, fontsize=8, title="exponent of the blocks", title_fontsize=8, loc="upper left")
-        low, high = ax.get_ylim()
-        ax.set_ylim(low, high * (high / low) ** 0.35)
+        ax.set_title(f"CPU time of\n{title}", fontsize=9)
+    below_figure(figure, panels[0], ncols=4, fontsize=8)
     return figure
 
 

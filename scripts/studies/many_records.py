@@ -23,21 +23,30 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 from scipy.stats import binom, binomtest, ks_2samp
 from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK, BLUE, ORANGE
+from mjrock.plotting.style import Look, below_figure
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.labels import SMALL
 from scripts.shared.paths import OVERTURNED, SAMPLE, Path, draw_square, pairs_of, parting, path_of
 
 STRUCTURES = {"column": (5.0, 6.0), "arch": (8.0, 4.0)}
 """Largest acceleration of the records [m/s2], and their duration [s]."""
 AFTER = 1.0
 """How long the motion is followed after a record [s]."""
-RUNS = {"MuJoCo": ("#f0a35e", "-"), "explicit": ("#12406b", "-"), "explicit, half the step": ("#6c8a4e", "--")}
+RUNS: dict[str, Look] = {
+    "MuJoCo": {"color": ORANGE, "linestyle": "-"},
+    "explicit": {"color": BLUE, "linestyle": "-"},
+    "explicit, half the step": {"color": BLACK, "linestyle": "--"},
+}
+"""The runs and their lines."""
+SHOWN = "arch"
+"""What is drawn: of the column all three runs are alike."""
 
 
 def built(name: str) -> mr.Masonry:
@@ -88,17 +97,17 @@ def compared(of: str, found: Sequence[dict[str, Path]], name: str, other: str) -
     ]
 
 
-def drawn(found: dict[str, list[dict[str, Path]]]) -> Figure:
-    """For column and arch a record whose paths part, the peaks in pairs, and their distributions."""
-    figure = Figure(figsize=(11, 7.2), layout="constrained")
-    for axes, (name, own) in zip(figure.subplots(2, 3), found.items(), strict=True):
-        draw_paths(axes[0], name, own)
-        draw_pairs(axes[1], own)
-        draw_shares(axes[2], own)
+def drawn(found: Sequence[dict[str, Path]]) -> Figure:
+    """A record whose paths part, and the peaks in pairs."""
+    figure = Figure(figsize=(7.4, 3.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    draw_paths(left, found)
+    draw_pairs(right, [{run: path.peak for run, path in one.items()} for one in found])
+    below_figure(figure, left)
     return figure
 
 
-def draw_paths(ax: Axes, name: str, found: Sequence[dict[str, Path]]) -> None:
+def draw_paths(ax: Axes, found: Sequence[dict[str, Path]]) -> None:
     """Of the records under which nothing overturns, the one whose paths part at the median time."""
     first, second, _ = RUNS
     late = [parting(one[second], one[first]).when for one in found]
@@ -106,49 +115,28 @@ def draw_paths(ax: Axes, name: str, found: Sequence[dict[str, Path]]) -> None:
     parted = [i for i in standing if math.isfinite(late[i])] or standing or [0]
     shown = sorted(parted, key=lambda i: late[i])[len(parted) // 2]
     block = int(np.abs(found[shown][second].rotation).max(axis=0).argmax())
-    for run, (colour, line) in RUNS.items():
+    for run, look in RUNS.items():
         theta = 1e3 * found[shown][run].rotation[:, block]
-        ax.plot(SAMPLE * np.arange(len(theta)), theta, color=colour, linestyle=line, linewidth=1.1, label=run)
-    title = f"{name}, record {shown}, block {block}"
+        ax.plot(SAMPLE * np.arange(len(theta)), theta, linewidth=1.1, label=run, **look)
     if math.isfinite(late[shown]):
         ax.axvline(late[shown], color="0.5", linewidth=0.8, linestyle=":")
-        title += "; dotted: they part"
-    low, high = ax.get_ylim()
-    ax.set(xlabel="$t$ [s]", ylabel="rotation [mrad]", ylim=(low, high + 0.35 * (high - low)))
-    ax.set_title(title, fontsize=9)
-    ax.legend(frameon=False, fontsize=8, loc="upper left")
+        ax.text(late[shown], ax.get_ylim()[1], " they part", fontsize=SMALL, va="top")
+    ax.set(xlabel="$t$ [s]", ylabel="rotation [mrad]")
+    ax.set_title(f"{SHOWN}, record {shown}, block {block}", fontsize=9)
 
 
-def limits(found: Sequence[dict[str, Path]]) -> tuple[float, float]:
-    """Lowest peak in the picture, and the highest, beyond which those that overturn are drawn [rad]."""
-    return 0.7 * min(path.peak for one in found for path in one.values()), OVERTURNED
-
-
-def draw_pairs(ax: Axes, found: Sequence[dict[str, Path]]) -> None:
-    """Peaks of the same record, those that overturn in the grey."""
+def draw_pairs(ax: Axes, peaks: Sequence[dict[str, float]]) -> None:
+    """Peaks of the same record [rad], those that overturn in the grey."""
     first, second, third = RUNS
-    low, edge = limits(found)
+    edge = OVERTURNED
+    low = 0.7 * min(value for one in peaks for value in one.values())
     for other, marker in ((first, "o"), (third, "x")):
-        x = [min(one[other].peak, 1.5 * edge) for one in found]
-        y = [min(one[second].peak, 1.5 * edge) for one in found]
-        ax.plot(x, y, marker, color=RUNS[other][0], markerfacecolor="none", label=f"against {other}")
+        x, y = ([min(one[run], 1.4 * edge) for one in peaks] for run in (second, other))
+        ax.plot(x, y, marker, color=RUNS[other]["color"], markerfacecolor="none")
     draw_square(ax, low, edge)
-    ax.set(xlabel="peak rotation [rad]", ylabel="peak rotation, explicit [rad]")
-    ax.set_title("grey: overturned", fontsize=9)
-    ax.legend(frameon=False, fontsize=8, loc="upper left")
-
-
-def draw_shares(ax: Axes, found: Sequence[dict[str, Path]]) -> None:
-    """Distributions of the peaks; what is missing to 1 overturns."""
-    low, edge = limits(found)
-    for run, (colour, line) in RUNS.items():
-        peaks = np.sort([min(one[run].peak, 1e3) for one in found])
-        share = np.arange(1, len(peaks) + 1) / len(peaks)
-        ax.step(peaks, share, where="post", color=colour, linestyle=line, label=run)
-    ax.set(xscale="log", xlim=(low, edge), ylim=(0, 1))
-    ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.set(xlabel="peak rotation [rad]", ylabel="share of records with a smaller peak [-]")
-    ax.legend(frameon=False, fontsize=8, loc="upper left")
+    ax.text(0.98 * edge, low, "overturned ", rotation=90, fontsize=SMALL, ha="right", va="bottom", color="0.3")
+    ax.set(xlabel="peak rotation, explicit [rad]", ylabel="peak rotation of the other run [rad]")
+    ax.set_title("peaks of all records", fontsize=9)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -163,7 +151,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             for seed in range(count):
                 found[name].append(runs(name, seed, accuracy, 1.0 if args.quick else shaken))
                 bar.update()
-    plotting.save(drawn(found), out / "many_records.png")
+    plotting.save(drawn(found[SHOWN]), out / "many_records.png")
     first, second, third = RUNS
     text = "\n".join(
         line for name, own in found.items() for other in (first, third) for line in compared(name, own, second, other)

@@ -88,8 +88,9 @@ MECHANISMS = {
 def main(argv: Sequence[str] | None = None) -> None:
     """Push and draw them."""
     out = cli.folder(cli.parser(__doc__, "mechanisms").parse_args(argv).out)
-    figure = Figure(figsize=(14, 3.6), layout="constrained")
-    places = figure.add_gridspec(1, len(MECHANISMS), width_ratios=[0.7, 1.0, 0.7, 1.3, 1.3])
+    figure = Figure(figsize=(7.4, 4.4), layout="constrained")
+    rows = figure.add_gridspec(2, 1)
+    places = [rows[0].subgridspec(1, 3)[i] for i in range(3)] + [rows[1].subgridspec(1, 2)[i] for i in range(2)]
     lines = []
     for i, (name, (make, angle)) in enumerate(MECHANISMS.items()):
         masonry, alpha_0 = make()
@@ -100,7 +101,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         ax.axis("off")
         if isinstance(ax, Axes3D):
             x, y, z = (high - low for low, high in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim()))
-            ax.set_box_aspect((x, y, z), zoom=1.35)
+            ax.set_box_aspect((x, y, z), zoom=1.15)
         ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
     plotting.save(figure, out / "mechanisms.png")
     cli.report(out / "mechanisms", "\n".join(lines))

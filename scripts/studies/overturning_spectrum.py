@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,14 +21,16 @@ from numpy.typing import ArrayLike
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLUE, ORANGE
 from mjrock.plotting.style import legend_below
+from mjrock.quantities import Array
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 from scripts.shared.paper import FIGURE_3
 
 SIDES = {"two-sided": (False, -1), "one-sided, outward first": (True, -1), "one-sided, inward first": (True, 1)}
 SIZES = {"analytical": 60, "MuJoCo": 26}
-MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
+MODES = {"stands": "#f3f1ea", "overturns after impacts": ORANGE, "overturns without impact": BLUE}
 """How a wall takes a pulse, and colours that a black-and-white print still tells apart."""
 
 
@@ -61,24 +63,32 @@ def mode_legend(figure: Figure) -> None:
     legend_below(figure, handles, list(MODES), len(handles), fontsize=9)
 
 
+def drawn(maps: Mapping[tuple[str, str], tuple[Array, Array, Array]]) -> Figure:
+    """A row a solver, a column a kind of wall, of frequencies, amplitudes and modes, shapes (n,), (n,) and (n, n)."""
+    figure = Figure(figsize=(7.4, 5.4), layout="constrained")
+    axes = figure.subplots(len(SIZES), len(SIDES), sharex=True, sharey=True)
+    for ax, ((solver, sides), (frequency, amplitude, modes)) in zip(axes.flat, maps.items(), strict=True):
+        overturning_map(ax, frequency, amplitude, modes.T)
+        ax.set_title(f"{plotting.STYLES[solver]['label']},\n{sides}", fontsize=9)
+        ax.label_outer()
+    mode_legend(figure)
+    return figure
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the maps, draw them, and print how much of each is what."""
     args = suite.parser(__doc__, "overturning_spectrum", records=False).parse_args(argv)
     out = cli.folder(args.out)
-    figure = Figure(figsize=(9.0, 6.2), layout="constrained")
-    axes = figure.subplots(2, 3, sharex=True, sharey=True)
-    table, rows = [], []
-    for (solver, size), line in zip(SIZES.items(), axes, strict=True):
+    table, rows, maps = [], [], dict[tuple[str, str], tuple[Array, Array, Array]]()
+    for solver, size in SIZES.items():
         n = 4 if args.quick else size
         frequency, amplitude = np.linspace(0.5, 8.0, n), np.linspace(0.5, 14.0, n)
         grid = mr.Grid(build, solver=[solver], sides=SIDES, frequency=frequency.tolist(), amplitude=amplitude.tolist())
         found = np.array(
             [mode(row) for row in completed(grid, out / "overturning_spectrum.sqlite", workers=args.workers)]
         )
-        for ax, sides, modes in zip(line, SIDES, found.reshape(3, n, n), strict=True):
-            overturning_map(ax, frequency, amplitude, modes.T)
-            ax.set_title(f"{plotting.STYLES[solver]['label']}, {sides}", fontsize=9)
-            ax.label_outer()
+        for sides, modes in zip(SIDES, found.reshape(3, n, n), strict=True):
+            maps[solver, sides] = frequency, amplitude, modes
             falls = modes > 0
             lowest = np.array([amplitude[column.argmax()] if column.any() else math.inf for column in falls])
             island = (~falls & (amplitude[None] > lowest[:, None])).mean()
@@ -89,8 +99,7 @@ def main(argv: Sequence[str] | None = None) -> None:
                 for f, column in zip(frequency, modes, strict=True)
                 for a, m in zip(amplitude, column, strict=True)
             ]
-    mode_legend(figure)
-    plotting.save(figure, out / "overturning_spectrum.png")
+    plotting.save(drawn(maps), out / "overturning_spectrum.png")
     header = ["solver", "sides", "omega_p/p [-]", "a_p/(g tan alpha) [-]", "mode"]
     text = cli.table(["solver", "wall", "cases", *MODES, "safe islands"], table)
     cli.report(out / "overturning_spectrum", text, header, rows)

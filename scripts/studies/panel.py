@@ -23,8 +23,10 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import BLACK
 from mjrock.problem.masonry.limit.statics import falling
 from scripts.shared import cli
+from scripts.shared.labels import SMALL
 
 LENGTH, HEIGHT, UNIT = 1.5, 1.75, (0.5, 0.25)
 FRICTIONS = (0.3, 0.45, 0.6, 0.75)
@@ -105,30 +107,33 @@ def fails(answer: mr.MasonryResponse) -> bool:
 
 def drawn(measured: dict[float, float], answers: dict[float, mr.MasonryResponse], points: int) -> Figure:
     """The panel as it fails at each friction, and the multiples against the bounds, limit analysis at some `points`."""
-    figure = Figure(figsize=(9.6, 6.4), layout="constrained")
-    grid = figure.add_gridspec(2, max(2, len(answers)))
+    figure = Figure(figsize=(7.4, 5.6), layout="constrained")
+    grid = figure.add_gridspec(2, max(2, len(answers)), height_ratios=(1, 1.6))
     for i, (friction, answer) in enumerate(answers.items()):
         ax = figure.add_subplot(grid[0, i])
         far = np.hypot(answer.pose[:, :, 0], answer.pose[:, :, 1]).max(axis=1)
         at = int((far > SHOWN).argmax()) or len(far) - 1
-        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[at])
-        ax.set_xlim(-0.3, 2.0)
-        ax.set_ylim(-0.15, 2.0)
-        ax.set_title(rf"$\mu$ = {friction:g}, {measured[friction]:.3f} $g$", fontsize=10)
+        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[at], limits=[(-0.3, 2.0), (-0.15, 2.0)])
+        ax.axis("off")
+        ax.set_title(rf"$\mu$ = {friction:g}, {measured[friction]:.3f} $g$", fontsize=9)
         ax.plot([0, 0, LENGTH, LENGTH], [0, HEIGHT, HEIGHT, 0], color="0.4", linestyle=":", linewidth=0.9)  # at rest
-        if i:
-            ax.set_ylabel("")
     ax = figure.add_subplot(grid[1, :])
-    mu = np.linspace(0.2, 0.9, points)
-    ax.plot(mu, [limit(float(one)) for one in mu], color="0.15", linewidth=1.2, label="limit analysis")
-    ax.plot(mu, mu, color="0.5", linestyle="--", linewidth=1, label=r"slides: $\mu$")
-    ax.axhline(LENGTH / HEIGHT, color="#6c8a4e", linestyle="--", linewidth=1, label="turns as a whole: $b/h$")
-    ax.axhline(stair(), color="#12406b", linestyle="--", linewidth=1, label="turns above a stair")
-    ax.plot(list(measured), list(measured.values()), "o", color="#f0a35e", markersize=7, label="MuJoCo")
+    mu, turning = np.linspace(0.2, 0.9, points), LENGTH / HEIGHT
+    ax.plot(mu, [limit(float(one)) for one in mu], color=BLACK, linewidth=1.2, label="limit analysis")
+    bounds = (
+        (mu, r"slides: $\mu$", (0.77, 0.80)),
+        (0 * mu + turning, "turns as a whole: $b/h$", (0.2, turning)),
+        (0 * mu + stair(), "turns above a stair", (0.2, stair())),
+    )
+    for y, said, at in bounds:
+        ax.plot(mu, y, color="0.5", linestyle="--", linewidth=1)
+        ax.text(*at, said, color="0.3", fontsize=SMALL, va="bottom", ha="right" if at[0] > 0.5 else "left")
+    look = {"color": plotting.STYLES["MuJoCo"]["color"], "marker": "o", "linestyle": "", "markersize": 7}
+    ax.plot(list(measured), list(measured.values()), label="MuJoCo", **look)
     ax.set_ylim(0.15, 0.95)
     ax.set_xlabel(r"coefficient of friction $\mu$ [-]")
     ax.set_ylabel("multiple of $g$ at failure [-]")
-    ax.legend(frameon=False, fontsize=9, ncols=2)
+    ax.legend(frameon=False, fontsize=9, loc="lower right")
     return figure
 
 

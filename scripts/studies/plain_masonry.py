@@ -39,7 +39,9 @@ SPEED, LANDED = 3.0, 0.03
 HEIGHTS = np.linspace(0.02, 0.022, 6)
 """Heights that it falls from at that speed [m]."""
 SAMPLE = 1e-2
-COLOURS = {"plain model": "#b5402a", "explicit steps": "#2c7a4b", "contact points": "#12406b"}
+LOOKS = {"plain model": "plain MuJoCo", "explicit steps": "explicit", "contact points": "MuJoCo"}
+"""The solver whose colour each has."""
+NAMES = {"plain model": "plain model", "explicit steps": "explicit steps", "contact points": "MuJoCo, contact points"}
 
 Point = tuple[str, float, float, float]
 """A solver, what sets its step, its error [-] and its time [s]."""
@@ -173,13 +175,14 @@ def picture(found: dict[str, list[Point]]) -> Figure:
     """Errors against time, a panel for each case."""
     figure = Figure(figsize=(7.4, 5.6), layout="constrained")
     for ax, (name, points) in zip(figure.subplots(2, 2, sharex=True, sharey=True).ravel(), found.items(), strict=False):
-        for solver, colour in COLOURS.items():
+        for solver, of in LOOKS.items():
             own = [(seconds, error) for who, _, error, seconds in points if who == solver]
-            ax.loglog(*np.transpose(own), "o-", color=colour, label=solver)
-        ax.set(title=name, xlim=(0.02, 10), ylim=(1e-5, 1))
+            ax.loglog(*np.transpose(own), "o-", color=plotting.STYLES[of]["color"], label=NAMES[solver])
+        ax.set_title(name, fontsize=10)
+        ax.set(xlim=(0.02, 10), ylim=(1e-5, 1))
         ax.grid(alpha=0.3)
     figure.axes[0].legend(frameon=False, fontsize=8)
-    figure.supxlabel("time of the processor [s]", fontsize=10)
+    figure.supxlabel("CPU time [s]", fontsize=10)
     figure.supylabel("largest error over the largest displacement [-]", fontsize=10)
     return figure
 

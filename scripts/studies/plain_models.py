@@ -171,9 +171,12 @@ def picture(
     """Errors of |e| at the first rebound against omega h."""
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     ax = figure.subplots()
-    for i, (name, colour) in enumerate((("plain model", "#b5402a"), ("contact points", "#12406b"))):
+    for i, (name, solver) in enumerate((("plain model", "plain MuJoCo"), ("contact points", "MuJoCo"))):
+        colour = plotting.STYLES[solver]["color"]
         at = np.array([each[0] for each in errors])
-        ax.loglog(at, np.abs([each[1 + i] for each in errors]), "o-", color=colour, label=f"{name}, Figure 3")
+        ax.loglog(
+            at, np.abs([each[1 + i] for each in errors]), ("s--", "o-")[i], color=colour, label=f"{name}, Figure 3"
+        )
         for resolved, both in walls.items():
             near = resolved * np.where(i, 1.04, 0.96) * np.ones(len(both[i]))
             said = f"{name}, walls of Table 1" if resolved == RESOLVED[0] else None

@@ -6,7 +6,8 @@ Prints how often the two polarities end differently, and how far apart their pea
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,6 +18,17 @@ from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 from scripts.shared.pairs import pairs
 from scripts.shared.paper import FIGURE_3, K_N
+
+
+def drawn(found: Sequence[Mapping[str, Any]]) -> Figure:
+    """Peaks of both polarities, a panel a solver."""
+    figure = Figure(figsize=(7.4, 4.3), layout="constrained")
+    for ax, solver in zip(figure.subplots(1, 2, sharey=True), suite.SOLVERS, strict=True):
+        _, peaks = suite.in_pairs([row for row in found if row["solver"] == solver])
+        pairs(ax, peaks, ("as recorded", "reversed"), (suite.STILL / 3, 1.5))
+        ax.set_title(plotting.STYLES[solver]["label"], fontsize=10)
+        ax.label_outer()
+    return figure
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -31,13 +43,10 @@ def main(argv: Sequence[str] | None = None) -> None:
 
     grid = mr.Grid(build, solver=suite.SOLVERS, motion=motions, pga=levels, polarity=(0, 1))
     found = completed(grid, out / "polarity.sqlite", workers=args.workers)
-    figure = Figure(figsize=(7.4, 3.8), layout="constrained")
     rows = []
-    for ax, solver in zip(figure.subplots(1, 2), suite.SOLVERS, strict=True):
+    for solver in suite.SOLVERS:
         own = [row for row in found if row["solver"] == solver]
         ends, peaks = suite.in_pairs(own)
-        pairs(ax, peaks, ("as recorded", "reversed"), (suite.STILL / 3, 1.5))
-        ax.set_title(plotting.STYLES[solver]["label"], fontsize=10)
         rocking = (ends == "rocks").all(axis=1)
         apart = np.exp(np.abs(np.log(peaks[rocking, 0] / peaks[rocking, 1])))
         one = (ends == "overturns").sum(axis=1) == 1
@@ -50,7 +59,7 @@ def main(argv: Sequence[str] | None = None) -> None:
                 *(f"{q:.2f}" for q in np.percentile(apart, [50, 90])),
             ]
         )
-    plotting.save(figure, out / "polarity.png")
+    plotting.save(drawn(found), out / "polarity.png")
     columns = ("solver", "motion", "pga", "polarity", "outcome", "peak_over_alpha")
     header = ["solver", "pairs", "ends differ", "one alone overturns", "peaks apart, median", "peaks apart, 90 %"]
     cli.report(out / "polarity", cli.table(header, rows), columns, [[row[c] for c in columns] for row in found])

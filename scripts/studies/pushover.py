@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import power_of_ten
 from mjrock.problem.wall.effect import Effect
 from scripts.shared import cli
 from scripts.shared.paper import DENSITY, FIGURE_3, K_N
@@ -52,7 +53,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     lines = 16 if args.quick else BED
     plotting.save(plotting.single(lambda ax: bases(ax, lines), (5.6, 3.8)), out / "pushover_bases.png")
 
-    figure = Figure(figsize=(10.4, 5.6), layout="constrained")
+    figure = Figure(figsize=(7.4, 4.6), layout="constrained")
     rows: list[list[object]] = []
     cells: list[Sequence[object]] = []
     axes = figure.subplots(2, 4, sharex=True, sharey=True)
@@ -66,8 +67,10 @@ def main(argv: Sequence[str] | None = None) -> None:
         last = min(curves["rigid"].end, WIDEST)
         at = np.linspace(0, last, 400)
         expected = multiplier(block, effects, at)
-        plotting.pushover(ax, curves, {"rigid": (at[::40], expected[::40])}).set_title(name, fontsize=10)
+        plotting.pushover(ax, curves, {"rigid": (at[::40], expected[::40])}).set_title(name, fontsize=9)
         ax.legend().remove()
+        for text in list(ax.texts):
+            text.remove()  # where ties yield, which the title says
         ax.label_outer()
         off = mr.pushover(case, rotations=at).multiplier - expected
         end = falls(block, effects) if curves["rigid"].end < math.inf else math.inf
@@ -79,6 +82,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             for base, curve in curves.items()
             for theta, value, moment in zip(curve.rotation, curve.multiplier, curve.moment, strict=True)
         ]
+        ax.tick_params(labelsize=8)
     axes[0, 0].set(xlim=(0, WIDEST), ylim=(0, 0.22), xticks=(0.0, 0.1, 0.2))
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False, fontsize=9)
@@ -99,7 +103,7 @@ def bases(ax: Axes, lines: int) -> Axes:
     curves = {
         "rigid": mr.pushover(case),
         "corner lines": mr.pushover(case, contacts(FIGURE_3, SOFT, 2)),
-        "distributed": mr.pushover(case, contacts(FIGURE_3, SOFT, lines)),
+        "bed": mr.pushover(case, contacts(FIGURE_3, SOFT, lines)),
     }
     weight = FIGURE_3.weight
     lifting = weight / (2 * SOFT * B**2)  # theta_u of two lines and theta_1 of a bed are the same
@@ -109,10 +113,10 @@ def bases(ax: Axes, lines: int) -> Axes:
     contact = np.sqrt(2 * weight / (SOFT * at))
     bed = np.where(at < lifting, SOFT * (2 * B) ** 3 / 12 * at, weight * (B - contact / 3)) - toppling
     rigid = weight * B * np.cos(at) - toppling
-    here = at < curves["distributed"].end
-    closed = {"rigid": (at, rigid), "corner lines": (at, corners), "distributed": (at[here], bed[here])}
+    here = at < curves["bed"].end
+    closed = {"rigid": (at, rigid), "corner lines": (at, corners), "bed": (at[here], bed[here])}
     plotting.moment_rotation(ax, curves, closed).legend(frameon=False, fontsize=9)
-    ax.set_title(f"$k_n$ = {SOFT:.0e} N/m³".replace("e+0", "e"), fontsize=10)
+    ax.set_title(f"$k_n$ = {power_of_ten(SOFT)} N/m³", fontsize=10)
     return ax
 
 

@@ -50,14 +50,15 @@ def overturned(motions: Sequence[mr.GroundMotion], levels: Array, sd: float) -> 
 
 
 def drawn(peaks: dict[float, Array], fell: dict[float, Flags], fits: Sequence[mr.Fragility], levels: Array) -> Figure:
-    """Peaks of free rocking with their 16 and 84 %, and fragility."""
-    figure = Figure(figsize=(10.0, 4.0), layout="constrained")
+    """16, 50 and 84 % of the peaks of free rocking, in rows, and fragility."""
+    figure = Figure(figsize=(7.4, 3.6), layout="constrained")
     decay, ends = figure.subplots(1, 2)
-    for i, (sd, found) in enumerate(peaks.items()):
-        low, middle, high = np.percentile(found, [16, 50, 84], axis=0)
+    for i, (sd, (low, middle, high)) in enumerate(peaks.items()):
         at = np.arange(1, SHOWN + 1) + 0.12 * (i - 1)
-        decay.errorbar(at, middle, [middle - low, high - middle], fmt="o", color=f"C{i}", capsize=3, label=f"sd {sd:g}")
-    decay.set(xlabel="rebound", ylabel="peak over release [-], median and 16 to 84 %", ylim=(0, None))
+        decay.errorbar(
+            at, middle, [middle - low, high - middle], fmt="o", color=plotting.PALETTE[i], capsize=3, label=f"sd {sd:g}"
+        )
+    decay.set(xlabel="rebound", ylabel="peak over release [-],\nmedian and 16 to 84 %", ylim=(0, None))
     for sd, fit, marker in zip(fell, fits, "os^", strict=True):
         plotting.fragility(ends, fit, levels, fell[sd].mean(axis=0), f"sd {sd:g}", marker)
     for ax in (decay, ends):
@@ -83,7 +84,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         band = "{:.3f} to {:.3f}".format(*fit.median_interval())
         others = [f"{int(which.sum())} of {own.size}" for which in (own & ~fell[0.0], fell[0.0] & ~own)]
         rows.append([sd, *parts, f"{fit.median:.3f}", band, f"{fit.dispersion:.3f}", *others])
-    plotting.save(drawn(peaks, fell, fits, levels), out / "restitution_spread.png")
+    quantiles = {sd: np.percentile(found, [16, 50, 84], axis=0) for sd, found in peaks.items()}
+    plotting.save(drawn(quantiles, fell, fits, levels), out / "restitution_spread.png")
     cli.report(out / "restitution_spread", cli.table(header, rows), header, rows)
 
 

@@ -37,6 +37,8 @@ codes: MuJoCo has no k_s."""
 RESOLVED = 0.5
 """omega h of the plain models, omega the highest frequency of the closed contacts [-]."""
 SOLVERS = ("explicit", "plain")
+CODES = {"explicit": "explicit", "plain": "plain MuJoCo"}
+"""The line of each in a figure."""
 ASKED = ("fallen", "first fall [s]", "moved [m]", "lost [J]")
 """What is compared."""
 
@@ -207,19 +209,20 @@ def apart(one: Sequence[Fall], other: Sequence[Fall]) -> NDArray[np.float64]:
 
 def drawn(runs: dict[str, dict[str, list[Fall]]]) -> Figure:
     """For each scene, how far blocks moved and what was lost, with their scatter, by both codes."""
-    figure = Figure(figsize=(9.5, 4.4), layout="constrained")
+    figure = Figure(figsize=(7.4, 4.4), layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
     rows = np.arange(len(runs))
     for ax, i, label in ((axes[0], 2, "mean displacement in the end"), (axes[1], 3, "energy lost")):
-        for (solver, colour), shift in zip((("explicit", "#12406b"), ("plain", "#b5402a")), (0.15, -0.15), strict=True):
+        for (solver, of), shift in zip(CODES.items(), (0.15, -0.15), strict=True):
             values = [np.array([each.asked[i] for each in by[solver]]) for by in runs.values()]
             scale = [np.mean([each.asked[i] for each in by["explicit"]]) for by in runs.values()]
             middle = np.array([one.mean() / by for one, by in zip(values, scale, strict=True)])
             spread = np.array([one.std() / by for one, by in zip(values, scale, strict=True)])
-            name = {"explicit": "explicit steps", "plain": "plain MuJoCo"}[solver]
-            ax.errorbar(middle, rows + shift, xerr=spread, fmt="o", color=colour, capsize=3, label=name)
-        ax.set_xlabel(f"{label}, over the mean of explicit steps [-]")
+            look = plotting.STYLES[of]
+            ax.errorbar(middle, rows + shift, xerr=spread, fmt="o", color=look["color"], capsize=3, label=look["label"])
+        ax.set_xlabel(f"{label},\nover the mean of explicit steps [-]", fontsize=9)
         ax.axvline(1.0, color="0.8", zorder=0)
+        ax.locator_params(axis="x", nbins=5)
     axes[0].set_yticks(rows, list(runs))
     axes[0].invert_yaxis()
     axes[0].legend(frameon=False, fontsize=9)

@@ -24,6 +24,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.labels import width_bar
 
 WIDTH, COURSES, BRICK, THICK = 0.99, 16, (0.22, 1.0 / 16), 0.1
 TOP = 4e-3
@@ -113,15 +114,17 @@ DRAWN = "5 lines"
 
 def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
     """The curve beside the test, and the cracks at the end: lines by the width of the crack."""
-    figure = Figure(figsize=(11, 4.6), layout="constrained")
+    figure = Figure(figsize=(7.4, 3.5), layout="constrained")
     curve, cracks = figure.subplots(1, 2)
     begun = answer.t > 0.07
-    curve.plot(1e3 * moved[begun], 1e-3 * force[begun], color="#12406b", label="explicit steps")
-    curve.errorbar(list(MEASURED), list(MEASURED.values()), 8, fmt="o", color="0.3", capsize=2, label="test J4D")
+    look = plotting.STYLES["explicit"] | {"linestyle": "-"}
+    curve.plot(1e3 * moved[begun], 1e-3 * force[begun], **look)
+    curve.errorbar(list(MEASURED), list(MEASURED.values()), 8, fmt="o", color="0.2", capsize=2, label="test J4D")
     curve.set(xlabel="displacement of the beam [mm]", ylabel="force [kN]", ylim=(0, None))
-    curve.legend(frameon=False)
-    plotting.blocks(cracks, answer, forces="cracks", limits=[(-0.1, WIDTH + 0.1), (-0.05, 1.05)])
-    cracks.set(title="cracks")
+    curve.legend(frameon=False, fontsize=8)
+    plotting.blocks(cracks, answer, forces="cracks", limits=[(-0.05, WIDTH + 0.05), (-0.05, 1.05)])
+    cracks.set_title("cracks at 4 mm", fontsize=10)
+    width_bar(cracks)
     return figure
 
 

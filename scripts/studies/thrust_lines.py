@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
+from scripts.shared.labels import width_bar
 
 RADIUS, SPREAD = 5.0, 0.1
 """Radius of the arches and displacement of the support of the second [m]."""
@@ -62,11 +63,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     thin, spread = thin_arch(20 if args.quick else 60), spread_arch(11 if args.quick else 15)
     wall = shaken_wall(1.2 if args.quick else 2.4)
-    figure = Figure(figsize=(10, 2.8), layout="constrained")
+    figure = Figure(figsize=(7.4, 2.4), layout="constrained")
     times = ("at rest", 0.0, thin), (f"support {SPREAD:g} m apart", None, spread), ("sine, 0.1 s", 0.1, wall)
     for ax, (title, at, answer) in zip(figure.subplots(1, 3), times, strict=True):
         plotting.thrust(ax, answer, at=at)
         ax.set_title(title, fontsize=10)
+        width_bar(ax)
     plotting.save(figure, out / "thrust_lines.png")
     thrust = spread.reactions["left_abutment"][[0, -1], 0] / 1e3
     cli.report(

@@ -119,20 +119,19 @@ def run(masonry: mr.Masonry, study: Study, peak: float) -> mr.Response:
 
 
 def drawn(study: Study, answers: Sequence[mr.Response]) -> Figure:
-    """The wall at rest, and at the end of both runs."""
-    figure = Figure(figsize=(11, 2.5), layout="constrained")
+    """The wall at rest, and at the end of both runs, one above the other."""
+    figure = Figure(figsize=(7.4, 7.0), layout="constrained")
     masonry = answers[0].of_masonry.masonry
-    titles = [
-        "at rest",
-        *(f"{peak:g} m/s² after {one.t[-1]:.1f} s" for peak, one in zip(study.peaks, answers, strict=True)),
-    ]
-    for ax, title, pose in zip(
-        figure.subplots(1, 3, sharey=True), titles, (None, *(one.pose[-1] for one in answers)), strict=True
-    ):
-        limits = [(-REACH * study.length, (1 + REACH) * study.length), (-0.4, 1.12 * study.height)]
+    titles = ["at rest"]
+    titles += [f"{peak:g} m/s² after {one.t[-1]:.1f} s" for peak, one in zip(study.peaks, answers, strict=True)]
+    poses = (None, *(one.pose[-1] for one in answers))
+    for ax, title, pose in zip(figure.subplots(3, 1), titles, poses, strict=True):
+        limits = [(-0.1 * study.length, (1 + REACH) * study.length), (-0.3, 1.05 * study.height)]
         plotting.blocks(ax, masonry, pose, joints=False, limits=limits)
-        ax.set_title(title)
-        ax.label_outer()
+        for note in list(ax.texts):
+            note.remove()  # how many lie outside, which the caption says
+        ax.axis("off")
+        ax.set_title(title, fontsize=10)
     return figure
 
 

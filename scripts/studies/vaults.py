@@ -22,7 +22,7 @@ groin_vault = partial(mr.Masonry.groin_vault, 2.0, 0.3, length=4.1, unit=0.8, sp
 """Two barrels over a bay of 4.1 m."""
 VIEWS = [("barrel vault", (25, 35)), ("groin vault", (25, 35)), ("groin vault", (-30, 35))]
 """What is drawn in space, and its camera."""
-AROUND = 0.9
+AROUND = 0.2
 """What is drawn around arches [m]."""
 
 
@@ -61,6 +61,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         limits = np.array([corners.min(axis=0) - AROUND, corners.max(axis=0) + AROUND]).T
         plotting.blocks(ax, each, joints=False, limits=limits)
         ax.set_title(name, fontsize=10)
+        ax.axis("off")
     lowest = lower.subgridspec(1, len(VIEWS))
     for i, (name, camera) in enumerate(VIEWS):
         ax = figure.add_subplot(lowest[i], projection="3d")

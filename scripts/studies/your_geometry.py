@@ -68,14 +68,14 @@ def main(argv: Sequence[str] | None = None) -> None:
         except ValueError as error:
             lines.append(f"convex={convex}: {error}")
     shown = {"as it is": as_it_is, 'unit="cm", up="y"': turned, 'convex="parts"': found}
-    figure = Figure(figsize=(11, 3.2), layout="constrained")
+    figure = Figure(figsize=(7.4, 2.6), layout="constrained")
     for i, (title, each) in enumerate(shown.items(), 1):
         ax = figure.add_subplot(1, 3, i, projection="3d")
         ends = np.concatenate([each.blocks[k].corners for k in each.free])
         room = 0.1 * np.ptp(ends, axis=0).max()
         limits = np.column_stack([ends.min(axis=0) - room, ends.max(axis=0) + room])
         plotting.blocks(ax, each, limits=limits, camera=(22, -60))
-        ax.set_title(title)
+        ax.set_title(title, fontsize=9)
     plotting.save(figure, out / "your_geometry.png")
     cli.report(out / "your_geometry", "\n".join(lines))
 

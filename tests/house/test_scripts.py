@@ -22,7 +22,7 @@ SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*
 WRITES = {
     "animate": {"arch.gif", "figure3.gif"},
     "compare_wall": {"scene.xml", "comparison.png", "comparison.csv"},
-    "figure3": {"figure3_one_sided.png", "figure3_two_sided.png", "figure3.csv"},
+    "figure3": {"figure3.png", "figure3.csv"},
     "table2": {"table2.png", "table2.csv"},
     "layouts": {"layouts.txt"},
     "friction": {"friction.txt"},
@@ -70,7 +70,8 @@ WRITES = {
     "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
     "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
     | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
-    "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")},
+    "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")}
+    | {"columns_under_records.png"},
     "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
     "facade_in_space": {f"facade_in_space.{ending}" for ending in ("png", "gif", "csv", "txt")},
@@ -102,7 +103,7 @@ WRITES = {
     "sketch": {"sketch.png"},
     "first_pictures": {"effects.png", "tutorial.png", "record.png"},
     "speed": {"speed.txt"},
-    "step_cost": {f"step_cost.{ending}" for ending in ("png", "csv", "txt")},
+    "step_cost": {"step_cost.csv", "step_cost.txt"},
     "step_vectors": {f"step_vectors.{ending}" for ending in ("csv", "txt")},
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}

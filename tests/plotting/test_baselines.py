@@ -108,7 +108,7 @@ PICTURES = {
         lambda ax: accuracy.convergence(ax, [1e-3, 2e-3, 4e-3], {"e": [1e-5, 4e-5, 1.6e-4]}, 2)
     ),
     "damping_curves": lambda: plotting.single(
-        lambda ax: law_pictures.damping_curves(ax, [("a", (RISING, RISING**2), (RISING, RISING**1.9))])
+        lambda ax: law_pictures.damping_curves(ax, [(1e-2, (RISING, RISING**2), (RISING, RISING**1.9))])
     ),
     "displacement": lambda: plotting.displacement([swung()]),
     "energy": lambda: plotting.energy([shaken()]),
@@ -129,7 +129,7 @@ PICTURES = {
         [("a", lambda ax: plotting.blocks(ax, BOND)), ("b", lambda ax: plotting.ties(ax, both()))]
     ),
     "parity": lambda: alone(law_pictures.parity, RISING, RISING**1.1, RISING),
-    "peers": lambda: accuracy.peers(points(4)),
+    "peers": lambda: accuracy.peers(points(4), {"c, a": "c"}),
     "push": lambda: plotting.push(
         {"a": mr.Push(RISING, 1e4 * RISING * (2 - RISING), 0 * RISING, "", swung(), energy=RISING)}
     ),
@@ -146,7 +146,7 @@ PICTURES = {
     "thrust": lambda: plotting.thrust(pressed()),
     "ties": lambda: plotting.ties([shaken()]),
     "tornado": lambda: plotting.tornado(found()),
-    "work_precision": lambda: accuracy.work_precision(points(4)),
+    "work_precision": lambda: accuracy.work_precision(points(3), {"c, a": plotting.STYLES["MuJoCo"]}),
 }
 OF_STUDIES = {"convergence", "damping_curves", "obtained", "overturning_map", "pairs", "parity", "peers", "residuals"}
 OF_STUDIES |= {"sensitivity", "work_precision"}
@@ -185,7 +185,7 @@ def difference(name, drawn):
 
 
 def test_every_public_picture_is_kept():
-    others = {"STYLES", "Drawing", "save", "animate", "animate_bodies", "view"}
+    others = {"PALETTE", "STYLES", "Drawing", "save", "animate", "animate_bodies", "view"}
     assert set(plotting.__all__) - others == set(PICTURES) - {"blocks_in_space"} - OF_STUDIES
     assert {path.stem for path in FOLDER.glob("*.png")} == set(PICTURES)
 

@@ -1,9 +1,13 @@
+import itertools
+
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.figures import Picture
 
 
 @pytest.fixture(scope="module")
@@ -111,3 +115,73 @@ def test_a_rotation_that_overturns_below_alpha_is_drawn(wall, contacts):
         share = run.case.overturning_rotation / wall.alpha
         assert levels == ([pytest.approx(share)] if drawn else [])
         assert ("overturns" in [text.get_text() for text in ax.texts]) == drawn
+
+
+def own_figure(width=6.0):
+    figure = Picture(figsize=(width, 3.0), layout="constrained")
+    return figure, figure.add_subplot()
+
+
+BREACHES = {
+    r"the figure is 7\.5 in wide; at most 7\.4 in": lambda: own_figure(7.5)[0],
+    r"text 'small' has 7\.5 pt; at least 8 pt": lambda: own_figure()[1].text(0.5, 0.5, "small", fontsize=7.5),
+    "text 'far' is cut off by the edge": lambda: own_figure()[1].text(1.2, 0.5, "far" * 30, in_layout=False),
+    "'mine' has the colour #1f77b4 of Matplotlib": lambda: own_figure()[1].plot([0, 1], "C0", label="mine")[0],
+    "'bars' has the colour #d62728 of Matplotlib": lambda: own_figure()[1].axvspan(0, 1, color="tab:red", label="bars"),
+}
+
+
+@pytest.mark.parametrize("said", BREACHES)
+def test_what_a_page_cannot_show_is_not_saved(said, tmp_path):
+    drawn = BREACHES[said]()
+    figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
+    with pytest.raises(ValueError, match=said.replace("'far'", "'(far)+'")):
+        plotting.save(figure, tmp_path / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_figure_of_its_own_has_colours_that_may_be_saved(tmp_path):
+    figure, ax = own_figure(7.4)
+    for i in range(6):
+        ax.plot([0, 1], [i, i], label=f"line {i}")
+    ax.plot([0, 1], [7, 7], label="MuJoCo, coarse", color=plotting.STYLES["MuJoCo"]["color"])
+    ax.legend(fontsize=8)
+    assert plotting.save(figure, tmp_path / "a.png").exists()
+
+
+SEEN_WITHOUT = {
+    "red": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+    "green": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+    "blue": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+}
+"""What an eye without one kind of cones sees of linear RGB: Machado, Oliveira and Fernandes, A physiologically-based
+model for simulation of color vision deficiency, IEEE TVCG 15 (2009), Table 1, severity 1."""
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+"""From linear RGB, IEC 61966-2-1."""
+
+
+def linear(colour):
+    rgb = np.array(to_rgb(colour))
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+
+
+def lab(rgb):
+    """CIELAB of linear RGB, white D65."""
+    share = TO_XYZ @ np.clip(rgb, 0, 1) / (TO_XYZ @ np.ones(3))
+    x, y, z = np.where(share > (6 / 29) ** 3, np.cbrt(share), share / (3 * (6 / 29) ** 2) + 4 / 29)
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+@pytest.mark.parametrize("missing", SEEN_WITHOUT)
+def test_colours_are_told_apart_by_those_who_do_not_see_one(missing):
+    """At 15 or more in CIELAB; red and green of Matplotlib come as near as 7."""
+    seen = [lab(np.array(SEEN_WITHOUT[missing]) @ linear(colour)) for colour in plotting.PALETTE]
+    assert min(np.linalg.norm(a - b) for a, b in itertools.combinations(seen, 2)) > 15
+
+
+def test_colours_have_a_contrast_of_three_on_white():
+    """What graphics need, WCAG 2.1, 1.4.11."""
+    light = [TO_XYZ[1] @ linear(colour) for colour in plotting.PALETTE]
+    assert min(1.05 / (one + 0.05) for one in light) > 3
+    assert {style["color"] for style in plotting.STYLES.values()} <= set(plotting.PALETTE)
+    assert len({style["color"] for style in plotting.STYLES.values()}) == len(plotting.STYLES)

@@ -79,7 +79,7 @@ def test_spectra_their_mean_and_their_target():
     np.testing.assert_allclose(asked, target(T) / mr.GRAVITY)
     assert np.exp(np.log(mean / asked).mean()) == pytest.approx(1.0, abs=0.1)
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["records", "mean of 3", "target"]
-    assert heights_of(ax.figure, ax, "#f0a35e")[1] == pytest.approx(asked.max(), rel=0.05)
+    assert heights_of(ax.figure, ax, plotting.PALETTE[1])[1] == pytest.approx(asked.max(), rel=0.05)
     records = mr.RecordSet(a=tuple(motions), b=(motions[1],))
     of_set = plotting.spectra(Figure().subplots(), records, T, target).lines  # without the vertical component of a
     np.testing.assert_allclose(of_set[-2].get_ydata(), np.mean([single[0], single[1], single[1]], axis=0))
