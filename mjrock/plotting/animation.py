@@ -33,7 +33,7 @@ from ..result.response import Response
 from .bodies import Bodies, round_length
 from .forces import forces_on, require_shown
 from .histories import acceleration, rotation, ties
-from .perspective import fill, solids, ties_in_view
+from .perspective import TITLED, fill, solids, ties_in_view
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
 from .style import Drawing, titled
@@ -417,7 +417,7 @@ def scene(
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
-        fill(ax, bodies, box)
+        fill(ax, bodies, box, TITLED)
         figure.draw_without_rendering()
 
     def update(frame: int) -> None:
