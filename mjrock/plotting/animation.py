@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from shutil import which
-from typing import Any, ClassVar, Protocol, cast
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
@@ -33,7 +33,7 @@ from ..result.response import Response
 from .bodies import Bodies, round_length
 from .forces import forces_on, require_shown
 from .histories import acceleration, rotation, ties
-from .perspective import fill, solids, ties_in_view
+from .perspective import TITLED, fill, solids, ties_in_view
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
 from .style import Drawing, titled
@@ -100,7 +100,7 @@ class FilmedMasonry(Filmed):
         def strip(ax: Axes) -> Axes:
             acceleration(ax, self.case, float(response.t[-1]))
             if ax.get_legend() is not None:
-                ax.legend(frameon=False, fontsize=8, loc="upper right", ncols=3)
+                ax.legend(edgecolor="none", fontsize=8, loc="upper right", ncols=3)
             return ax
 
         return [strip] if self.case.grounds else []
@@ -119,8 +119,8 @@ HUNDREDTHS = 100
 
 WIDE = 8.0
 """Width of a film [inch]."""
-LOWEST, HIGHEST = 2.0, 6.0
-"""Heights of what shows the bodies [inch], which otherwise fill it."""
+LOWEST, HIGHEST, OTHERWISE = 2.0, 6.0, 4.5
+"""Heights of what shows masonry, which fills it in between, and of a film of a wall or of other bodies [inch]."""
 STRIP, CLOCK = 1.1, 0.4
 """Heights of a strip below the bodies and of what is said above them [inch]."""
 HELD = 1.0
@@ -397,10 +397,9 @@ def scene(
         speed, title: as in `animate`.
         pressed: the response whose forces are drawn, and how, or None.
     """
-    figure, part, strips = _laid_out(bodies, case, len(histories))
-    depth = {"projection": "3d"} if isinstance(bodies, Solids) else None
-    ax: Axes = part.subplots(subplot_kw=depth)
-    updates = _standing(ax, bodies, case, part.bbox)
+    figure, ax, strips = _laid_out(bodies, case, len(histories))
+    box = ax.figure.bbox
+    updates = _standing(ax, bodies, case, box)
     if pressed is not None:
         updates.append(forces_on(ax, pressed[0], bodies.moving, pressed[1]))
     magnify = bodies.moving.magnify
@@ -418,7 +417,7 @@ def scene(
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
-        fill(ax, bodies, part.bbox)
+        fill(ax, bodies, box, TITLED)
         figure.draw_without_rendering()
 
     def update(frame: int) -> None:
@@ -429,21 +428,17 @@ def scene(
     return figure, update
 
 
-def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tuple[Figure, Any, Sequence[Axes]]:
-    """A figure as high as its bodies ask for, the part of it that shows them, and so many strips over the time."""
-    if case is None or not filmed(case).is_below:
-        figure = Figure(figsize=(WIDE, 4.5), layout="constrained")
-        if not count:
-            return figure, figure, ()
-        left, right = cast(Any, figure).subfigures(1, 2, width_ratios=(1.0, 1.5))
-        return figure, left, right.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-    wide, high = bodies.extent_seen
-    shown = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST))
-    figure = Figure(figsize=(WIDE, round(50 * (shown + STRIP * count)) / 50), layout="constrained")  # even pixels
-    if not count:
-        return figure, figure, ()
-    above, below = cast(Any, figure).subfigures(2, 1, height_ratios=(shown, STRIP * count))
-    return figure, above, below.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tuple[Figure, Axes, Sequence[Axes]]:
+    """A figure as high as its bodies ask for, the Axes that shows them, and so many over the time."""
+    is_below, (wide, high) = case is not None and filmed(case).is_below, bodies.extent_seen
+    shown = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST)) if is_below else OTHERWISE
+    figure: Any = Figure(figsize=(WIDE, shown + is_below * STRIP * count), layout="constrained")
+    part, others = figure, None
+    if count:
+        ratios = {"height_ratios": (shown, STRIP * count)} if is_below else {"width_ratios": (1.0, 1.5)}
+        part, others = figure.subfigures(1 + is_below, 2 - is_below, **ratios)
+    ax: Axes = part.subplots(subplot_kw={"projection": "3d"} if isinstance(bodies, Solids) else None)
+    return figure, ax, others.subplots(count, 1, sharex=True, squeeze=False)[:, 0] if count else ()
 
 
 def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None, box: BboxBase) -> list[Update]:

@@ -20,12 +20,10 @@ from .style import figure_of
 
 ZOOM = 1.0
 """Size of a picture before it is enlarged [-]."""
-MARGIN = np.array([0.2, 0.8])
-"""Width and height that stay free around a view, for the scale bar and a title [inch]."""
+MARGIN, TITLED = (0.2, 0.4), (0.2, 0.8)
+"""Width and height that stay free around a view, for the scale bar, and for a title too [inch]."""
 BELOW = 0.05
 """How far a scale bar stands below what is seen, over its height [-]."""
-
-
 FINE, DENSE = 2, 150
 """Pixels that are drawn along each side of one of the picture, where it has fewer than so many to an inch."""
 EDGE, RIM = 0.55, 0.1
@@ -103,7 +101,7 @@ def solids(ax: Axes, bodies: Solids, box: BboxBase, *, animated: bool = True) ->
     return update
 
 
-def fill(ax: Axes, bodies: Solids, box: BboxBase) -> None:
+def fill(ax: Axes, bodies: Solids, box: BboxBase, margin: tuple[float, float] = MARGIN) -> None:
     """Enlarge a view until its blocks fill a box [pixel], such as that of its figure, but for a margin."""
     space = in_three(ax)
     figure, seen = figure_of(ax), bodies.seen
@@ -115,7 +113,7 @@ def fill(ax: Axes, bodies: Solids, box: BboxBase) -> None:
     x, y, _ = proj_transform(*(seen @ bodies.across).T, space.get_proj())
     space.apply_aspect()
     spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0)
-    room = np.maximum(np.array(box.size) - figure.dpi * MARGIN, 0.4 * np.array(box.size))
+    room = np.maximum(np.array(box.size) - figure.dpi * np.array(margin), 0.4 * np.array(box.size))
     space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((room / spans).min()))
 
 

@@ -3,8 +3,9 @@
 All three compare depths pixel by pixel. This package also draws edges where a picture shows another plane piece of a
 block than beside it, and the shadow of each block on the others and on the ground, on a ground that ends beyond the
 rubble. PyVista draws the edges of faces; VTK's shadows are blurred where the ground is wide, and it draws none beside
-lines. Prints what a frame takes, how many pixels inside the blocks show another block than in PyVista, and how large
-PyVista is. MuJoCo draws through EGL. Writes drawn_in_space.png and .txt. Needs PyVista, `pip install pyvista`.
+lines. Prints the time of the processor of a frame, how many pixels inside the blocks show another block than in
+PyVista, and how large PyVista is. MuJoCo draws through EGL. Writes drawn_in_space.png and .txt.
+Needs PyVista, `pip install pyvista`.
 """
 
 from __future__ import annotations
@@ -149,11 +150,11 @@ def megabytes(*packages: str) -> float:
 
 
 def timed(draw: Callable[[int], Array], frames: Integers) -> tuple[Array, float]:
-    """The last frame, and the time of one [s]."""
+    """The last frame, and the time of the processor of one [s]."""
     draw(0)
-    begun = time.perf_counter()
+    begun = time.process_time()
     pictures = [draw(int(frame)) for frame in frames]
-    return pictures[-1], (time.perf_counter() - begun) / len(pictures)
+    return pictures[-1], (time.process_time() - begun) / len(pictures)
 
 
 def main(argv: Sequence[str] | None = None) -> None:

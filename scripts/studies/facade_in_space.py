@@ -91,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     far = np.linalg.norm(answer.pose[moment, :, :3] - answer.pose[0, :, :3], axis=1)
     words = {"at rest": 0, "as the first block falls": moment, "at the end": len(answer.t) - 1}
     plotting.save(at_times(answer, words, CAMERA), out / "facade_in_space.png")
-    film: dict[str, Any] = {"speed": 1.0, "fps": 12, "dpi": 80, "camera": CAMERA}
+    film: dict[str, Any] = {"speed": 1.0, "fps": 10, "dpi": 85, "camera": CAMERA}
     path = plotting.animate(answer, out / "facade_in_space.gif", **film)
     header = ["blocks", "points", "set-up [s]", "step [us]", "s a simulated s", "ns a point and step"]
     rows = [cost(0.4, 2)] if args.quick else [cost(*size) for size in SIZES]

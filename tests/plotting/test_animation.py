@@ -154,6 +154,29 @@ def test_any_bodies_can_be_drawn(tmp_path):
         plotting.animate_bodies([0.0, 0.1, 0.2], [square], rests[:1], poses, tmp_path / "one.gif")
 
 
+@pytest.mark.parametrize("wide", [1, 4])
+def test_a_film_of_masonry_fills_its_frame_above_the_motion_of_the_ground(wide, tmp_path):
+    """Its height follows from what it shows: 8 inch wide, between 2 and 6 inch high."""
+    masonry = mr.Masonry.running_bond(0.8 * wide, 0.8, (0.4, 0.2), k_n=1e9)
+    case = mr.MasonryCase(masonry, 0.1, mr.GroundMotion.sine(2.0, 0.05))
+    response = mr.solve_explicit(case)
+    bodies = Bodies.of(response).at(response.t[[0, -1]])
+    figure, _ = animation.scene(bodies, animation.filmed(case).beside(response), case)
+    shown, strip = figure.axes
+    wanted = np.clip(8.0 * np.divide(*bodies.extent_seen[::-1]), 2.0, 6.0)
+    assert figure.get_size_inches() == pytest.approx((8.0, wanted + animation.CLOCK + animation.STRIP), abs=0.02)
+    assert not shown.axison
+    box = shown.get_window_extent()
+    assert max(box.width / figure.bbox.width, box.height / (figure.dpi * wanted)) > 0.9
+    assert strip.get_ylabel() == "base [m/s²]"
+    assert strip.get_window_extent().y1 < box.y0
+    path = plotting.animate(response, tmp_path / "wall.gif", fps=20, dpi=25)
+    with Image.open(path) as film:
+        assert film.convert("RGB").getpixel((1, 1)) == (255, 255, 255)
+        film.seek(film.n_frames - 1)
+        assert film.info["duration"] == 1050
+
+
 def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
     triangle, square = [[-1.0, 0.0], [1.0, 0.0], [0.0, 2.0]], [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
     poses = 0.1 * np.random.default_rng(0).normal(size=(4, 2, 3))
