@@ -17,6 +17,7 @@ import matplotlib
 from docutils import nodes
 from latex2mathml.converter import convert
 from matplotlib.figure import Figure
+from sphinx.util.inspect import TypeAliasForwardRef
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
@@ -44,6 +45,7 @@ nitpicky = True  # a name that leads nowhere is an error
 nitpick_ignore_regex = [
     ("py:class", r"(numpy|matplotlib|collections|concurrent|pathlib|os|typing|mujoco|pandas)\b.*"),
     ("py:class", r"mjrock\.[\w.]+"),
+    ("py:class", r"Array|ArrayLike|Flags|Integers"),
 ]
 
 myst_heading_anchors = 3
@@ -52,6 +54,8 @@ html_math_renderer = "mathml"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
+autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "Flags", "Integers")}
+TypeAliasForwardRef.__repr__ = lambda alias: alias.name  # type: ignore[method-assign]  # inside a tuple too
 autodoc_default_options = {"members": True}
 python_maximum_signature_line_length = 88
 napoleon_numpy_docstring = False
@@ -131,7 +135,8 @@ def plain(app: object, what: str, name: str, obj: object, options: object, lines
 def without_ranges(
     app: object, what: str, name: str, obj: object, options: object, signature: str | None, returns: str | None
 ) -> tuple[str | None, str | None]:
-    """A signature without the declared ranges of its numbers, which the text has."""
+    """A signature without the declared ranges of numbers, which the text has, and `...` for what a factory makes."""
+    signature = signature and signature.replace("<factory>", "...")
     return signature and re.sub(r"(?:\w+\.)*Annotated\[(.+?), Within\([^()]*\)\]", r"\1", signature), returns
 
 
@@ -153,13 +158,14 @@ def write_live_view() -> None:
 
 
 def write_card() -> None:
-    """Write the picture of the site that a message shows which links to it: a film's middle frame and the name."""
+    """Write the picture that a message shows which links to the site: a façade as it falls, and the name."""
+    film = made_pages.whole("facade_in_space.gif", 0.7)
     figure = Figure(figsize=(12.0, 6.3), dpi=100)
-    ax = figure.add_axes((0, 0, 1, 1))
-    ax.imshow(made_pages.whole("facade_in_space.gif"))
+    ax = figure.add_axes((0.0, 0.2, 1.0, 0.8))
+    ax.imshow(film.crop((0, film.height // 9, film.width, 8 * film.height // 9)), aspect="equal")
     ax.axis("off")
-    figure.text(0.04, 0.9, "mjrock", fontsize=44, weight="bold", va="top")
-    figure.text(0.04, 0.1, "Rocking masonry: MuJoCo, explicit steps and theory", fontsize=26)
+    figure.text(0.04, 0.09, "mjrock", fontsize=44, weight="bold", va="center")
+    figure.text(0.96, 0.09, "rocking masonry in MuJoCo and by theory", fontsize=24, va="center", ha="right")
     figure.savefig(LIVE / "card.png")
 
 
@@ -178,9 +184,11 @@ def as_mathml(display: str) -> Callable[[Any, nodes.math | nodes.math_block], No
     return visit
 
 
-def made(app: object, page: str, source: list[str]) -> None:
-    """The text of a page as the site has it."""
+def made(app: Any, page: str, source: list[str]) -> None:
+    """The text of a page as the site has it, which is made anew when what it is made of changes."""
     source[0] = made_pages.made(page, source[0])
+    for other in made_pages.made_of(page):
+        app.env.note_dependency(other)
 
 
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:

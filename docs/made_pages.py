@@ -73,10 +73,10 @@ def reference(page: str, text: str) -> str:
     return text.replace("```{summary}\n```", "\n\n".join(tables))
 
 
-def whole(figure: str) -> Image.Image:
-    """A picture on white, of a film its middle frame."""
+def whole(figure: str, share: float = 0.5) -> Image.Image:
+    """A picture on white, of a film its frame at a share of it."""
     with Image.open(FIGURES / figure) as picture:
-        picture.seek(getattr(picture, "n_frames", 1) // 2)
+        picture.seek(int(share * getattr(picture, "n_frames", 1)))
         shown = picture.convert("RGBA")
     return Image.alpha_composite(Image.new("RGBA", shown.size, "white"), shown).convert("RGB")
 
@@ -146,3 +146,12 @@ def made(page: str, text: str) -> str:
     if page == "gallery":
         return gallery(text)
     return reference(page, text) if page == "api" or page.startswith("api/") else text
+
+
+def made_of(page: str) -> list[Path]:
+    """The other files that a page of the site is made of."""
+    return {
+        "index": [HERE.parent / "README.md"],
+        "gallery": sorted(HERE.glob("*.md")),
+        "api": sorted((HERE / "api").glob("*.md")),
+    }.get(page, [])

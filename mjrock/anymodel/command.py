@@ -16,13 +16,13 @@ from ..engine.replay import load
 from ..files import aligned, csv_text, write_text
 from ..quantities import named, require_within
 from .flexes import flex_report
-from .geoms import BODY, GeomPair, label_of, names_of
+from .geoms import BODY, GeomPair, geom_label, names_of_objects
 from .inspect import InspectedContact, inspect_contacts
 from .notes import VARIES
 
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
-GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
+GAINS_NOTE, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
 """Parts of notes that put a contact first or last in the table."""
 
 
@@ -42,10 +42,10 @@ def is_of(found: GeomPair, geoms: Sequence[str], bodies: Sequence[str], pair: Se
     )
 
 
-def require_known(model: mujoco.MjModel, patterns: Sequence[str]) -> None:
+def require_names(model: mujoco.MjModel, patterns: Sequence[str]) -> None:
     """Raise a ValueError with those names and patterns that no geom and no body of a model has."""
-    geoms = [label_of(model, geom) for geom in range(model.ngeom)]
-    names = [*geoms, *(name or f"[{body}]" for body, name in enumerate(names_of(model, BODY)))]
+    geoms = [geom_label(model, geom) for geom in range(model.ngeom)]
+    names = [*geoms, *(name or f"[{body}]" for body, name in enumerate(names_of_objects(model, BODY)))]
     unknown = [pattern for pattern in patterns if not _like(names, [pattern])]
     if unknown:
         raise ValueError(f"the model has no geom or body {named(unknown)}; geoms are: {named(geoms)}")
@@ -58,12 +58,12 @@ def worst_first(found: Sequence[InspectedContact]) -> list[InspectedContact]:
         said = " ".join(contact.notes)
         immobile = any(part in said for part in IMMOBILE)
         frequency = contact.frequency if contact.mass < math.inf else 0.0
-        return immobile, GAINS not in said, LONG not in said, not contact.notes, -frequency
+        return immobile, GAINS_NOTE not in said, LONG not in said, not contact.notes, -frequency
 
     return sorted(found, key=rank)
 
 
-def report(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int | None = None) -> str:
+def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int | None = None) -> str:
     """The table, and below it the notes that its last column numbers.
 
     Args:
@@ -154,7 +154,7 @@ def answer(argv: Sequence[str]) -> str:
         raise FileNotFoundError(f"model {args.model} is not a file")
     keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
     model = load(args.model)
-    require_known(model, [*args.geom, *args.body, *(args.pair or ())])
+    require_names(model, [*args.geom, *args.body, *(args.pair or ())])
     found = inspect_contacts(
         model,
         candidates=not args.pairs,
@@ -171,4 +171,4 @@ def answer(argv: Sequence[str]) -> str:
     flexes = flex_report(model)
     if not chosen and (args.geom or args.body or args.pair):
         return "No contact of this model is of these geoms, bodies or pairs." + flexes
-    return report(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes
+    return table_and_notes(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes

@@ -16,10 +16,10 @@ from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text, short_repr
-from .geoms import GeomPair, compiled_model, kept_apart, label_of
+from .geoms import GeomPair, compiled_model, geom_label, kept_apart
 from .notes import (
     ENOUGH,
-    SCATTER,
+    SCATTER_WARNED_OF,
     UNSOUND,
     ContactWarning,
     SolverNeed,
@@ -34,12 +34,12 @@ from .notes import (
 from .others import Changed, Others, sentence
 from .row_of_model import HOLD, Mixed
 
-DEEP = 0.01
+SOFT_DEPTH = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
 GAINS = 0.5
 """omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
 with 1.09 at 0.9 and with 2.4 at 1.9."""
-NOTHING, SMALL = 0.03, 0.2999
+NO_REBOUND, SMALL_REBOUND = 0.03, 0.2999
 """Restitutions between which gravity is warned of where no speed is given [-]."""
 LEAST_SPEED, MOST_SPEED = 1e-9, 1e4
 """Speeds of approach that are looked at [m/s]."""
@@ -208,7 +208,7 @@ class PairContact:
         for name, number in zip((self.geom1, self.geom2), self.ids, strict=True):
             if not name:
                 geom = next(each for each in spec.geoms if each.id == number)
-                geom.name = geom.name or label_of(whole, number)
+                geom.name = geom.name or geom_label(whole, number)
             names.append(name or geom.name)
         return replace(self, geom1=names[0], geom2=names[1])
 
@@ -410,9 +410,9 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
 def weight_spoilers(contact: PairContact) -> Iterator[str]:
     """The effect of weight on a small restitution, as a sentence."""
     e = rebound_restitution(contact.xi)
-    if contact.speed is not None or contact.gravity <= 0 or not NOTHING < e < SMALL:
+    if contact.speed is not None or contact.gravity <= 0 or not NO_REBOUND < e < SMALL_REBOUND:
         return
-    slow, fast = max(NOTHING * contact.gravity, LEAST_SPEED), MOST_SPEED
+    slow, fast = max(NO_REBOUND * contact.gravity, LEAST_SPEED), MOST_SPEED
     for _ in range(60):
         middle = math.sqrt(slow * fast)
         slow, fast = (slow, middle) if contact.restitution_at(middle) > 0.5 * e else (middle, fast)
@@ -426,14 +426,14 @@ def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Ite
     """Where the stiffest contact that the step resolves is soft under the weight: against that of the model [N/m], and
     against the smallest half extent of the geoms [m]."""
     h, k = contact.timestep, contact.k
-    if k < (1 - SCATTER) * model_k:
+    if k < (1 - SCATTER_WARNED_OF) * model_k:
         yield (
             f"k = {k:.3g} N/m, the stiffest that a step of {h:g} s resolves, is softer than the contact that "
             f"the model had, {model_k:.3g} N/m under the weight; "
             f"{rounded_down(h * math.sqrt(k / model_k))} s resolves as much"
         )
-    if contact.depth > DEEP * thickness:
-        resolving = h * math.sqrt(DEEP * thickness / contact.depth)
+    if contact.depth > SOFT_DEPTH * thickness:
+        resolving = h * math.sqrt(SOFT_DEPTH * thickness / contact.depth)
         yield (
             f"the weight presses the geoms into each other by {contact.depth:.2g} m with the stiffest contact that a "
             f"step of {h:g} s resolves, {contact.depth / thickness:.0%} of their smallest half extent; "

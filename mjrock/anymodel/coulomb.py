@@ -14,16 +14,16 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers, named, require_kind, require_within
-from .geoms import label_of
+from .geoms import geom_label
 from .notes import ContactWarning
 
-LOOKS = 10
+FRICTION_ITERATIONS = 10
 """Most iterations for the friction in a step."""
 KNOWN = 1e-6
 """Change of the friction in an iteration at which it has converged, as a share of it [-]."""
 SATURATED = 0.99
 """Friction over mu times the normal force from which on a contact is taken to slide [-]."""
-REST = np.zeros(2)
+WITHOUT_SLIP = np.zeros(2)
 VELOCITY = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
@@ -68,7 +68,7 @@ class CoulombFriction:
         self.kinetic = require_within("kinetic", kinetic, 0.0, 1.0)
         if spun := np.flatnonzero(model.pair_dim > 3).tolist():
             ends = zip(model.pair_geom1[spun], model.pair_geom2[spun], strict=True)
-            names = [" on ".join(label_of(model, int(geom)) for geom in both) for both in ends]
+            names = [" on ".join(geom_label(model, int(geom)) for geom in both) for both in ends]
             warnings.warn(
                 f"pairs {named(names)} have condim 4 or 6, torsional or rolling friction, and keep their rows, which "
                 "press apart what slides; condim 3 has Coulomb's friction",
@@ -174,10 +174,10 @@ class CoulombFriction:
         number, owners, rows = number[chosen], owners[chosen], rows[chosen]
         tangents = self._tangents(data, number, owners)
         mu = self.kinetic * model.pair_friction[owners, :2]
-        slip = tangents @ data.qvel + np.reshape([self._moving.get(i, REST) for i in number.tolist()], (-1, 2))
+        slip = tangents @ data.qvel + np.reshape([self._moving.get(i, WITHOUT_SLIP) for i in number.tolist()], (-1, 2))
         before = np.zeros(model.nv)
         stops = np.zeros(len(rows), dtype=bool)
-        for _ in range(LOOKS):
+        for _ in range(FRICTION_ITERATIONS):
             change = h * (tangents @ data.qacc)
             stops = (slip * (slip + change)).sum(axis=1) <= 0
             middle = slip + 0.5 * change

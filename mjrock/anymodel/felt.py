@@ -29,7 +29,7 @@ Owner = tuple[mujoco.mjtObj, int]
 """Owner of a spring, damper or dry friction: a joint, a tendon or an actuator, and its number."""
 
 
-class JointSprings:
+class ModelSprings:
     """The springs and dampers of a model in its pose.
 
     Attributes:
@@ -123,15 +123,15 @@ def _actuators(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, Array
     for name in ("actuator_length", "actuator_velocity"):
         values = getattr(data, name)
         before = np.array(values)
-        values += NUDGE
+        values += ACTUATOR_CHANGE
         mujoco.mj_fwdActuation(model, data)
-        found.append(np.maximum((kept - data.actuator_force) / NUDGE, 0.0))
+        found.append(np.maximum((kept - data.actuator_force) / ACTUATOR_CHANGE, 0.0))
         values[:] = before
     mujoco.mj_fwdActuation(model, data)
     return found[0], found[1]
 
 
-NUDGE = 1e-6
+ACTUATOR_CHANGE = 1e-6
 """Change of the length and of the speed of an actuator at which its force is read [m or rad, and per second]."""
 
 
@@ -143,13 +143,13 @@ def _dense(values: Array, count: Integers, start: Integers, columns: Integers, w
     return dense
 
 
-RIGID = 5.0
+RIGID_CONSTRAINT = 5.0
 """Frequency of an equality constraint over that of the contact above which it counts as rigid without a note [-]."""
-HOLDS = 1.0
+RIGID_IN_MASS = 1.0
 """Ratio of these frequencies above which it is rigid in the mass. A slower one adds only the inertia of its row."""
 TIED = 0.05
 """A point of which friction leaves less than this share of its freedom along the normal slides as it lands [-]."""
-FIXED = 1e-10
+WITHOUT_FREEDOM = 1e-10
 """A point of which rigid constraints leave less than this share of its freedom cannot approach [-]; it is rounding."""
 FALL_ALIKE = 1e-9
 """Share of the accelerations of the joints up to which two bodies fall alike [-]."""
@@ -216,9 +216,9 @@ def felt(
     if frequency is None:
         frequency = math.sqrt(k / mass) if k is not None and mass < math.inf else 0.0
     limit = ~held.equality
-    softness = np.where((held.rate < HOLDS * frequency) | limit, held.softness, 0.0)
+    softness = np.where((held.rate < RIGID_IN_MASS * frequency) | limit, held.softness, 0.0)
     answer = held.answer(free, softness, held.equality)
-    if not _free(answer, rows) > FIXED * _free(free, rows):
+    if not _free(answer, rows) > WITHOUT_FREEDOM * _free(free, rows):
         return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     mass, impulse = _mass(answer, rows, friction)
     slides = mass == math.inf or bool(friction > 0 and _free(answer, rows) * TIED > _stuck(answer, rows))
@@ -226,7 +226,7 @@ def felt(
         mass, impulse = 1 / _free(answer, rows), np.array((1.0, 0.0, 0.0))
     motion = answer @ impulse
     motion = motion / float(rows[0] @ motion)
-    yields = (held.rate < RIGID * frequency) & held.equality
+    yields = (held.rate < RIGID_CONSTRAINT * frequency) & held.equality
     matters = not math.isclose(_free(free, rows), _free(answer, rows), rel_tol=MATTERS)
     pressed = limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
     limited = held.answer(free, softness, held.equality | pressed) if pressed.any() else answer

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, short_repr
-from .geoms import compiled_model, label_of
+from .geoms import compiled_model, geom_label
 from .notes import model_spoilers
 from .row_of_model import Mixed, ModelRow
 
@@ -72,7 +72,7 @@ def _contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
                 rows = [ModelRow(model, float(weight), mixed) for weight in ends]
                 name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, flex) or f"[{flex}]"
                 k, c = (np.array([getattr(row, each) for row in rows]) for each in ("k", "c"))
-                yield FlexContact(name, label_of(model, geom), int(model.flex_vertnum[flex]), k, c)
+                yield FlexContact(name, geom_label(model, geom), int(model.flex_vertnum[flex]), k, c)
 
 
 def flex_report(model: mujoco.MjModel) -> str:

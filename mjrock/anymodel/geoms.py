@@ -16,9 +16,9 @@ import numpy as np
 from ..quantities import Array, Flags, require_kind, require_text, shown
 
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
-FARTHEST = 1e10
+FARTHEST_GEOM = 1e10
 """Distance up to which the nearest points of two geoms are looked for [m]."""
-TOUCHING, ASIDE = 1e-3, 1e-2
+TOUCHING_SHARE, BESIDE_THE_LINE = 1e-3, 1e-2
 """Geoms that are nearer than this share of the distance of their centres touch, and the shortest distance has no
 direction. It is then looked for with one of them moved aside by the other share."""
 FACING = 0.999
@@ -27,7 +27,7 @@ ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPS
 """Geoms that meet any other convex geom in a single point."""
 FACED = (int(mujoco.mjtGeom.mjGEOM_BOX), int(mujoco.mjtGeom.mjGEOM_MESH))
 """Geoms with faces and corners."""
-UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
+NOT_CONVEX = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 """Geoms that are not convex."""
 
 
@@ -67,7 +67,7 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
                 "from the flex and the other geom"
             )
         if body < 0:
-            geoms, bodies = (", ".join(filter(None, names_of(model, kind))) or "none" for kind in (GEOM, BODY))
+            geoms, bodies = (", ".join(filter(None, names_of_objects(model, kind))) or "none" for kind in (GEOM, BODY))
             raise ValueError(
                 f"{argument} = {value!r} is not a geom or body of this model; its named geoms are: {geoms}; "
                 f"its named bodies are: {bodies}"
@@ -82,13 +82,13 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
     return int(value)
 
 
-def names_of(model: mujoco.MjModel, kind: mujoco.mjtObj) -> list[str]:
+def names_of_objects(model: mujoco.MjModel, kind: mujoco.mjtObj) -> list[str]:
     """The names of all geoms or bodies; one without a name has an empty one."""
     count = model.ngeom if kind == GEOM else model.nbody
     return [mujoco.mj_id2name(model, kind, number) or "" for number in range(count)]
 
 
-def label_of(model: mujoco.MjModel, geom: int) -> str:
+def geom_label(model: mujoco.MjModel, geom: int) -> str:
     """The name of a geom; one without a name has that of its body, with its own number in brackets."""
     body = mujoco.mj_id2name(model, BODY, model.geom_bodyid[geom]) or ""
     return mujoco.mj_id2name(model, GEOM, geom) or f"{body}[{geom}]"
@@ -129,8 +129,8 @@ class GeomPair:
 
     @property
     def labels(self) -> tuple[str, str]:
-        """The labels of both, see `label_of`."""
-        first, second = (label_of(self.model, geom) for geom in self.geoms)
+        """The labels of both, see `geom_label`."""
+        first, second = (geom_label(self.model, geom) for geom in self.geoms)
         return first, second
 
     @property
@@ -200,7 +200,7 @@ class GeomPair:
     @property
     def is_uneven(self) -> bool:
         """Whether one of the geoms is not convex, so that the number of points changes from place to place."""
-        return any(self.model.geom_type[geom] in UNEVEN for geom in self.geoms)
+        return any(self.model.geom_type[geom] in NOT_CONVEX for geom in self.geoms)
 
     def can_turn(self, data: mujoco.MjData, axis: Array) -> bool:
         """Whether the joints let one of the bodies turn against the other about an axis, shape (3,)."""
@@ -228,9 +228,9 @@ class GeomPair:
             if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
                 return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2]), distance, ends
         apart = np.zeros(3) if ends is None else np.copysign(1.0, distance) * (ends[0] - ends[1])
-        if np.linalg.norm(apart) < TOUCHING * np.linalg.norm(between):
+        if np.linalg.norm(apart) < TOUCHING_SHARE * np.linalg.norm(between):
             place = np.array(data.geom_xpos[self.geoms[0]])
-            data.geom_xpos[self.geoms[0]] += ASIDE * between
+            data.geom_xpos[self.geoms[0]] += BESIDE_THE_LINE * between
             aside, moved = self._shortest(data)
             data.geom_xpos[self.geoms[0]] = place
             apart = np.zeros(3) if moved is None else np.copysign(1.0, aside) * (moved[0] - moved[1])
@@ -250,7 +250,7 @@ class GeomPair:
         model, found = self.model, []
         for geom in self.geoms:
             kind, along = model.geom_type[geom], np.abs(data.geom_xmat[geom].reshape(3, 3).T @ away)
-            if kind == mujoco.mjtGeom.mjGEOM_PLANE or kind in UNEVEN:
+            if kind == mujoco.mjtGeom.mjGEOM_PLANE or kind in NOT_CONVEX:
                 return False
             if kind == mujoco.mjtGeom.mjGEOM_BOX:
                 found.append(along.max())
@@ -268,10 +268,10 @@ class GeomPair:
         """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo knows none."""
         ends = np.zeros(6)
         try:
-            distance = float(mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST, ends))
+            distance = float(mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST_GEOM, ends))
         except mujoco.FatalError:
             return 0.0, None
-        known = distance < FARTHEST and np.any(ends != 0)
+        known = distance < FARTHEST_GEOM and np.any(ends != 0)
         return (distance, ends.reshape(2, 3)) if known else (0.0, None)
 
 

@@ -14,7 +14,7 @@ from ..quantities import Array, named
 from .felt import ACTUATOR, JOINT, TENDON, EffectiveMass
 from .meeting import Pose
 
-STIFF = 0.05
+STIFF_BESIDE = 0.05
 """Stiffness beside that of the contact, as a share of it, from which it is named [-]."""
 SHIFTS = 0.02
 """Change of the restitution by dampers and dry friction from which they are named [-]."""
@@ -55,7 +55,7 @@ def _beside(pose: Pose, motion: Array, k: float, xi: float, mass: float, speed: 
     stiffness, damping = springs.along(motion, speed)
     friction = springs.friction(motion)
     added = float(stiffness.sum())
-    if abs(added) > STIFF * k:
+    if abs(added) > STIFF_BESIDE * k:
         yield (
             f"{_names(pose, stiffness)} {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
             "approach, which changes its restitution"

@@ -13,7 +13,7 @@ from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within, short_repr
 from .geoms import GeomPair, compiled_model, every_pair
 from .holding import holding
-from .meeting import IMMOVABLE, Keyframe, PairMeeting, Pose, meeting, other_keyframes
+from .meeting import IMMOVABLE, Keyframe, PairMeeting, Pose, meeting_of_geoms, other_keyframes
 from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
 from .row_of_model import ModelRow
 
@@ -137,7 +137,7 @@ def inspect_contacts(
 def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
     row = ModelRow.of(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
-    met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
+    met = meeting_of_geoms(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
     force = load if load is not None else pose.load(pair, met.points, points)
     contact = InspectedContact(
         *pair.labels,

@@ -17,9 +17,9 @@ from ..quantities import Array, named, require_whole, require_within, shown, spe
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting, other_keyframes
+from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting_of_geoms, other_keyframes
 from .notes import (
-    RESOLVED,
+    LONG_STEP,
     UNSOUND,
     ContactWarning,
     resolving_step,
@@ -145,9 +145,11 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
     if asked.mass is not None and asked.at is not None:
         raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
     grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
-    rate = None if k is not None else RESOLVED / h
+    rate = None if k is not None else LONG_STEP / h
     alone = asked.mass is not None
-    met = meeting(pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k)
+    met = meeting_of_geoms(
+        pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k
+    )
     share = _mass(pair, pose, asked.mass, met)
     _require_one_loss(asked)
     if k is None:
@@ -256,7 +258,7 @@ def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, grav
     """The stiffest contact that the step resolves, rounded down [N/m]."""
     if asked.c is not None:
         raise ValueError(f"k = None takes restitution or xi, and c = {spelt(asked.c)} is given; give k")
-    omega = RESOLVED / h
+    omega = LONG_STEP / h
     for _ in range(20):  # with gravity the damping depends on the frequency, a little
         k = stiffest(h, _damping_ratio(asked, omega, gravity), mass)
         omega = math.sqrt(k / mass)

@@ -13,7 +13,7 @@ import mujoco
 
 from ..quantities import Array, named, short_repr, shown
 from .contact import PairContact, Writing, document, options_of, spoilers, write
-from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of
+from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
 from .make import ContactRequest, beside, contact_of
 from .meeting import Keyframe, Pose
 from .notes import VARIES, ContactWarning
@@ -184,10 +184,10 @@ def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
     """The numbers of the geoms that a name with wildcards means."""
     if not isinstance(value, str) or not _is_wild(value):
         return [geom_id(model, argument, value)]
-    geoms = names_of(model, GEOM)
+    geoms = names_of_objects(model, GEOM)
     found = [i for i, name in enumerate(geoms) if name and fnmatchcase(name, value)]
     if not found:
-        alike = (i for i, name in enumerate(names_of(model, BODY)) if fnmatchcase(name, value))
+        alike = (i for i, name in enumerate(names_of_objects(model, BODY)) if fnmatchcase(name, value))
         found = [int(model.body_geomadr[i]) for i in alike if model.body_geomnum[i] == 1]
     if not found:
         known = named([name for name in geoms if name]) or "none"

@@ -16,13 +16,13 @@ import numpy as np
 
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
-from .felt import EffectiveMass, JointSprings, PoseConstraints, felt
-from .geoms import FARTHEST, GeomPair, makes
+from .felt import EffectiveMass, ModelSprings, PoseConstraints, felt
+from .geoms import FARTHEST_GEOM, GeomPair, makes
 
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
 one in a thousand meets in all of its points."""
-HALVINGS = 40
+LANDING_HALVINGS = 40
 """Halvings of the way on which a landing is looked for."""
 DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 """Geoms that stay where they are."""
@@ -31,7 +31,7 @@ Keyframe = str | int | Sequence[str | int] | None
 """A keyframe by name or number, or several."""
 FOREIGN = 1.2
 """Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
-LEVEL = 0.05
+NEARLY_LEVEL = 0.05
 """Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
 SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
@@ -39,7 +39,7 @@ IMMOVABLE = 10.0
 """Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
 TURN = 0.01
 """Turn about the normal with which the points of two faces are counted again [degrees]."""
-REST = 1e-4
+TOUCHING_AT_REST = 1e-4
 """Distance within which geoms of a pose at rest touch [m]."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
@@ -97,7 +97,7 @@ class Trial:
             far, near = level - 1.01 * float(radii[list(geoms)].sum()), level
             if not len(self.points(pair, away, near)):
                 continue
-            for _ in range(HALVINGS):
+            for _ in range(LANDING_HALVINGS):
                 middle = 0.5 * (far + near)
                 far, near = (far, middle) if len(self.points(pair, away, middle)) else (middle, near)
             distance = near + self.pressed(pair)
@@ -223,12 +223,12 @@ def awake(model: mujoco.MjModel) -> mujoco.MjModel:
 def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset[int], list[float]]:
     """Normal forces of all contact points of a pose at rest [N], by the numbers of their geoms.
 
-    They hold the bodies where they are: contacts that do not yield, within `REST` of touch. Joints beyond the first
-    body of each tree are held by a great armature, as servos hold a robot that stands.
+    They hold the bodies where they are: contacts that do not yield, within `TOUCHING_AT_REST` of touch. Joints beyond
+    the first body of each tree are held by a great armature, as servos hold a robot that stands.
     """
     held, option = copy.copy(model), mujoco.mjtEnableBit
     held.opt.enableflags = int(held.opt.enableflags & ~int(option.mjENBL_SPECULATIVE) | int(option.mjENBL_OVERRIDE))
-    held.opt.o_solref[:], held.opt.o_solimp[:3], held.opt.o_margin = 0, (0.9999, 0.9999, 0.001), REST
+    held.opt.o_solref[:], held.opt.o_solimp[:3], held.opt.o_margin = 0, (0.9999, 0.9999, 0.001), TOUCHING_AT_REST
     held.opt.solver, held.opt.cone = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtCone.mjCONE_ELLIPTIC
     held.opt.iterations, held.opt.ls_iterations, held.opt.impratio = 100, 50, 1
     held.body_invweight0[:] *= 1e-4  # of the regularisation
@@ -293,7 +293,7 @@ class Pose:
                 "MuJoCo has no shortest line to a geom of signed distances, and that of the centres is taken; give "
                 "normal, the direction in which the first geom parts from the second"
             )
-        elif self.normal is None and here.distance > REST and pair.meets_edges(self.data, here.away):
+        elif self.normal is None and here.distance > TOUCHING_AT_REST and pair.meets_edges(self.data, here.away):
             yield (
                 f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
                 "neither: how they land is not known, nor the mass; give normal, the direction in which the first "
@@ -345,9 +345,9 @@ class Pose:
         return PoseConstraints(self.model, self.data)
 
     @cached_property
-    def springs(self) -> JointSprings:
+    def springs(self) -> ModelSprings:
         """The springs and dampers of joints, tendons and actuators."""
-        return JointSprings(self.model, self.data)
+        return ModelSprings(self.model, self.data)
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
@@ -396,7 +396,7 @@ class PairMeeting:
         return self.felt.mass / self.points
 
 
-def meeting(
+def meeting_of_geoms(
     pair: GeomPair,
     pose: Pose,
     *,
@@ -419,8 +419,8 @@ def meeting(
     """
     if at is not None:
         point = require_array("at", at, (3,))
-        if np.abs(point).max() > FARTHEST:
-            raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
+        if np.abs(point).max() > FARTHEST_GEOM:
+            raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST_GEOM:g} m")
     here = pose.landing(pair)
     others = Company() if alone or contacts is not None or at is not None else company(pair, pose)
     landings = [here, *(pose.landing(other) for other in others.level)]
@@ -477,7 +477,7 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     distance, away, middle = group.landed(near)
     between, differs = np.linalg.norm(middle - here.first.mean(axis=0), axis=1), np.abs(distance - here.distance)
     along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
-    level = along & (differs <= LEVEL * between)
+    level = along & (differs <= NEARLY_LEVEL * between)
     late = level & (differs > DEPTH * (between + pair.thickness))
     return Company(
         tuple(group.pairs[i] for i in near[level]),
@@ -532,7 +532,7 @@ def other_keyframes(
     for name, other in zip(names, pose.others, strict=False):
         if pose.given and other.leaves(pair):
             continue
-        share = meeting(pair, other, contacts=contacts, friction=friction).share
+        share = meeting_of_geoms(pair, other, contacts=contacts, friction=friction).share
         if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be
             worst = max(worst, (max(share / here.share, here.share / share), name, share))
     _, name, share = worst

@@ -17,9 +17,9 @@ import mujoco
 from ..problem.damping.rebound import rebound_restitution
 from .geoms import GeomPair
 
-SCATTER = 0.02
+SCATTER_WARNED_OF = 0.02
 """Scatter of the restitution from step to step that is worth a warning [-]."""
-RESOLVED = 0.3
+LONG_STEP = 0.3
 """omega h from which a step is called long [-]. The mean of e is then off by up to 0.025, most at e = 0.1."""
 UNSOUND = 1.0
 """omega h from which a step does not resolve the contact [-]. `contact_for` then makes it lose what the step takes."""
@@ -57,7 +57,7 @@ JUDGED: dict[mujoco.mjtEnableBit | mujoco.mjtDisableBit, str] = {
 """What each flag of MuJoCo does to a contact in N/m, once it is set; empty where it does nothing."""
 
 SAFE = "; with refsafe it also replaces contacts that the step does not resolve by some without a rebound"
-MOST, LINE_SEARCHES = 100, 50
+MOST_TURNS, LINE_SEARCHES = 100, 50
 """Iterations and line searches with which a solver is taken to converge, MuJoCo's defaults."""
 
 VARIES = re.compile(
@@ -118,12 +118,12 @@ def few_iterations(option: mujoco.MjOption, needs: SolverNeed) -> Iterator[str]:
         )
     elif not needs.converges and needs.impratio == math.inf:
         yield (
-            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST)} "
+            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST_TURNS)} "
             "iterations, and with no smaller impratio; take Newton, or a smaller ratio of masses"
         )
     elif not needs.converges and (few or option.impratio > needs.impratio):
         yield (
-            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST)} "
+            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST_TURNS)} "
             f"iterations; with impratio = {needs.impratio:g} it does in {needs.iterations}, and friction creeps more: "
             "apply(model, iterations=True) writes both and caveats then says how much; or take Newton"
         )
@@ -156,13 +156,13 @@ def resolving_step(k: float, c: float, mass: float) -> float:
         return math.inf
     omega = math.sqrt(k / mass)
     e = rebound_restitution(c / (2 * mass * omega))
-    return min(RESOLVED / omega, SCATTER * math.sqrt(12) * mass / max(e * c, 1e-300))
+    return min(LONG_STEP / omega, SCATTER_WARNED_OF * math.sqrt(12) * mass / max(e * c, 1e-300))
 
 
 def stiffest(h: float, xi: float, mass: float) -> float:
     """The stiffest contact of a mass and a damping ratio that a step resolves [N/m]; see `resolving_step`."""
     e = rebound_restitution(xi)
-    omega = min(RESOLVED, SCATTER * math.sqrt(12) / max(2 * e * xi, 1e-300)) / h
+    omega = min(LONG_STEP, SCATTER_WARNED_OF * math.sqrt(12) / max(2 * e * xi, 1e-300)) / h
     return mass * omega**2
 
 

@@ -24,7 +24,7 @@ from .row_of_model import Mixed, ModelRow
 
 SAME = 0.05
 """Change of stiffness from which a contact is another [-]."""
-KEPT = 0.1
+KEPT_WITHIN = 0.1
 """Change of stiffness within which a contact is kept [-]; 5 % for MuJoCo's impedance of 0.9 to 0.95 and mu = 1.5."""
 
 
@@ -71,7 +71,7 @@ class Changed(NamedTuple):
             if math.isclose(
                 ModelRow(self.pair.model, self.pair.inverse_weight, made).loaded(load),
                 before.loaded(load),
-                rel_tol=KEPT,
+                rel_tol=KEPT_WITHIN,
             )
             else None
         )

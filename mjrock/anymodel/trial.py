@@ -19,13 +19,13 @@ from ..quantities import Array
 from .contact import PairContact
 from .geoms import GeomPair
 from .meeting import Pose, awake
-from .notes import LINE_SEARCHES, MOST, SolverNeed
+from .notes import LINE_SEARCHES, MOST_TURNS, SolverNeed
 
 STEPS = 50
 """Steps of a trial."""
 MOVING = 0.1
 """Largest speed of a joint at the start of a trial [m/s or rad/s]."""
-OTHER = 0.01
+OTHER_FORCES = 0.01
 """Change of the forces, as a share of the largest, from which they are others [-]."""
 
 
@@ -36,7 +36,7 @@ def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContac
     """
     tried = _with(model, pose, contacts)
     own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
-    cap, searches = max(own[0], MOST), max(own[1], LINE_SEARCHES)
+    cap, searches = max(own[0], MOST_TURNS), max(own[1], LINE_SEARCHES)
     most, enough = _stepped(tried, pose, cap, searches)
     if most < cap:
         return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), searches)
@@ -103,4 +103,4 @@ def _alike(other: mujoco.MjData, data: mujoco.MjData) -> bool:
     if other.nefc != data.nefc or not data.nefc:
         return True
     difference = np.abs(np.array(other.efc_force) - data.efc_force).max()
-    return bool(difference <= OTHER * np.abs(data.efc_force).max())
+    return bool(difference <= OTHER_FORCES * np.abs(data.efc_force).max())

@@ -64,7 +64,7 @@ def area(polygon: Array) -> float:
     return 0.5 * float(cross(about, np.roll(about, -1, axis=0)).sum())
 
 
-def centroid(polygon: Array) -> Array:
+def polygon_centroid(polygon: Array) -> Array:
     """Centroid of the area of a polygon [m], shape (2,)."""
     about = polygon - polygon[0]
     after = np.roll(about, -1, axis=0)
@@ -126,7 +126,7 @@ def spread(polygon: Array, points: int) -> tuple[Array, Array]:
     the polygon, and their mean is its centroid.
     """
     if points == 2:
-        return polygon, area(polygon) * shares(polygon, centroid(polygon))
+        return polygon, area(polygon) * shares(polygon, polygon_centroid(polygon))
     quads, divisions = ([polygon], points - 1) if len(polygon) == 4 else (_quarters(polygon), points // 2)
     places, areas = [], []
     for quad in quads:
@@ -135,7 +135,7 @@ def spread(polygon: Array, points: int) -> tuple[Array, Array]:
             for j in range(divisions):
                 cell = np.array([grid[i, j], grid[i + 1, j], grid[i + 1, j + 1], grid[i, j + 1]])
                 places.append(cell)
-                areas.append(area(cell) * shares(cell, centroid(cell)))
+                areas.append(area(cell) * shares(cell, polygon_centroid(cell)))
     return _gathered(np.concatenate(places), np.concatenate(areas))
 
 
@@ -154,7 +154,7 @@ def sectioned(polygon: Array, points: int) -> tuple[Array, Array]:
 
 def _quarters(polygon: Array) -> list[Array]:
     """Quadrilaterals of a polygon: one per corner, between it, the middles of its edges and the centroid."""
-    middle, halves = centroid(polygon), 0.5 * (polygon + np.roll(polygon, -1, axis=0))
+    middle, halves = polygon_centroid(polygon), 0.5 * (polygon + np.roll(polygon, -1, axis=0))
     return [np.array([polygon[i], halves[i], middle, halves[i - 1]]) for i in range(len(polygon))]
 
 

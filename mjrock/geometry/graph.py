@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ..quantities import Integers
 
 
-def components(pairs: ArrayLike, count: int) -> Integers:
+def connected_parts(pairs: ArrayLike, count: int) -> Integers:
     """The number of the connected component of each node, shape (count,).
 
     Args:

@@ -7,15 +7,20 @@ import html
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Protocol
+from shutil import which
+from typing import Any, ClassVar, Protocol, cast
 
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.transforms import BboxBase
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from numpy.typing import ArrayLike
 from PIL import Image
 
@@ -25,7 +30,7 @@ from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
-from .bodies import Bodies
+from .bodies import Bodies, round_length
 from .forces import forces_on, require_shown
 from .histories import acceleration, rotation, ties
 from .perspective import fill, solids, ties_in_view
@@ -36,6 +41,10 @@ from .style import Drawing, titled
 
 class Filmed(Protocol):
     """A wall or masonry as a film sees it."""
+
+    @property
+    def is_below(self) -> bool:
+        """Whether the histories stand below the bodies, as a strip, and not beside them."""
 
     def around(self, ax: Axes, bodies: Bodies | Solids) -> Update:
         """Draw what its bodies meet."""
@@ -49,6 +58,7 @@ class FilmedWall(Filmed):
     """A wall, see `Filmed`."""
 
     case: Case
+    is_below: ClassVar[bool] = False
 
     def around(self, ax: Axes, bodies: Bodies | Solids) -> Update:
         """Base, side stop and effects."""
@@ -71,17 +81,29 @@ class FilmedMasonry(Filmed):
     """Masonry, see `Filmed`."""
 
     case: MasonryCase
+    is_below: ClassVar[bool] = True
 
     def around(self, ax: Axes, bodies: Bodies | Solids) -> Update:
         """Its ties."""
         if isinstance(bodies, Solids):
             return ties_in_view(ax, bodies)
         frame_view(ax, bodies)
+        ax.axis("off")
+        length = round_length(float(bodies.extent_seen[0]))
+        bar = AnchoredSizeBar(ax.transData, length, f"{length:g} m", "lower left", pad=0, frameon=False, fill_bar=True)
+        ax.add_artist(bar)
         return ties_of_masonry(ax, self.case, bodies)
 
     def beside(self, response: Response) -> list[Drawing]:
-        """Nothing."""
-        return []
+        """The motion of its ground."""
+
+        def strip(ax: Axes) -> Axes:
+            acceleration(ax, self.case, float(response.t[-1]))
+            if ax.get_legend() is not None:
+                ax.legend(frameon=False, fontsize=8, loc="upper right", ncols=3)
+            return ax
+
+        return [strip] if self.case.grounds else []
 
 
 def filmed(case: AnyCase) -> Filmed:
@@ -90,9 +112,19 @@ def filmed(case: AnyCase) -> Filmed:
 
 
 MOST_FRAMES = 20_000
+COLOURS = 128
+"""Colours of a film. Flat drawings need no more, and files are three times smaller."""
 HUNDREDTHS = 100
 """A GIF gives the time of a frame in hundredths of a second, and browsers play below two of them slower [1/s]."""
 
+WIDE = 8.0
+"""Width of a film [inch]."""
+LOWEST, HIGHEST = 2.0, 6.0
+"""Heights of what shows the bodies [inch], which otherwise fill it."""
+STRIP, CLOCK = 1.1, 0.4
+"""Heights of a strip below the bodies and of what is said above them [inch]."""
+HELD = 1.0
+"""How much longer than others a GIF shows its last frame, after which it begins anew [s]."""
 JUST = 1 - 1e-9
 """Factor on the rate of frames [-]: writers round the milliseconds of a frame down, which must not lose one."""
 
@@ -110,16 +142,29 @@ class Stage:
         self.moving = sorted(moving, key=lambda pair: pair[1].get_zorder())
         self.palette: Image.Image | None = None
 
+    def keep_colours(self, update: Update, count: int) -> None:
+        """Take the colours of all pictures from the first, the middle and the last of so many."""
+        taken = []
+        for frame in sorted({0, count // 2, count - 1}):
+            update(frame)
+            taken.append(np.asarray(self.drawn()))
+        self.palette = Image.fromarray(np.concatenate(taken)).quantize(COLOURS)
+        colours = np.array(self.palette.getpalette() or [255] * 3).reshape(-1, 3)
+        colours[colours.min(axis=1) > 248] = 255  # paper is white
+        self.palette.putpalette(colours.ravel().tolist())
+
     def picture(self) -> Image.Image:
-        """The figure as it is now, in the colours of the first picture."""
+        """The figure as it is now, in the colours that are kept."""
+        assert self.palette is not None
+        return self.drawn().quantize(palette=self.palette, dither=Image.Dither.NONE)
+
+    def drawn(self) -> Image.Image:
+        """The figure as it is now."""
         self.canvas.restore_region(self.background)
         for ax, artist in self.moving:
             ax.draw_artist(artist)
         size = self.canvas.get_width_height()
-        drawn = Image.frombuffer("RGBA", size, self.canvas.buffer_rgba(), "raw", "RGBA", 0, 1).convert("RGB")
-        if self.palette is None:
-            self.palette = drawn.quantize(128)  # flat drawings need no more colours, and files are three times smaller
-        return drawn.quantize(palette=self.palette, dither=Image.Dither.NONE)
+        return Image.frombuffer("RGBA", size, self.canvas.buffer_rgba(), "raw", "RGBA", 0, 1).convert("RGB")
 
 
 class GifWriter(PillowWriter):
@@ -130,6 +175,24 @@ class GifWriter(PillowWriter):
     def grab_frame(self, **options: Any) -> None:
         """Take the figure as it is now."""
         self._frames.append(self.stage.picture())  # type: ignore[attr-defined]
+
+    def finish(self) -> None:
+        """Write the file, whose last frame stays a while."""
+        first, *more = self._frames  # type: ignore[attr-defined]
+        each = int(1000 / self.fps)
+        times = [*[each] * len(more), each + int(1000 * HELD)]
+        first.save(self.outfile, save_all=True, append_images=more, duration=times if more else times[0], loop=0)
+
+
+class MovieWriter(FFMpegWriter):
+    """Writes a film with ffmpeg, the program or that of the package imageio-ffmpeg."""
+
+    @classmethod
+    def bin_path(cls) -> str:
+        """Where ffmpeg is, or its name where it is not."""
+        if which("ffmpeg") is None and find_spec("imageio_ffmpeg"):
+            return str(import_module("imageio_ffmpeg").get_ffmpeg_exe())
+        return "ffmpeg"
 
 
 class PageWriter(HTMLWriter):
@@ -189,11 +252,12 @@ def animate(
 
     It shows the wall with its base, pivots, side stop, ties, openings, loads, thrusts and masses, and beside it the
     rotation over time, the motion of the ground and the forces of the ties where there are any. Of masonry it shows
-    the blocks and their ties, in space without what has sunk below the ground.
+    the blocks and their ties above the motion of the ground. A GIF shows the end for another second.
 
     Args:
         response: of any solver.
-        path: where to: a .gif, an .mp4 (needs the program ffmpeg), or an .html that needs no other file.
+        path: where to: a .gif, an .mp4 or a .webm (both need the program ffmpeg, or `pip install imageio-ffmpeg`), or
+            an .html that needs no other file.
         speed: time of the motion that passes in a second of the picture [-], 0.001 to 1000; 1 is real time.
         fps: frames a second [1/s], 1 to 120. In a GIF a frame lasts a whole number of hundredths of a second, at least
             two; the motion keeps its speed.
@@ -211,7 +275,7 @@ def animate(
 
     Raises:
         ValueError: for another ending, a value outside its range, or more than 20,000 frames.
-        RuntimeError: for an .mp4 where there is no ffmpeg.
+        RuntimeError: for an .mp4 or a .webm where there is no ffmpeg.
     """
     require_kind("response", response, Response)
     bodies: Bodies | Solids
@@ -277,6 +341,7 @@ def _film(
         with writer.saving(figure, str(partial), dpi):
             if isinstance(writer, GifWriter | PageWriter):
                 writer.stage = Stage(figure, dpi)
+                writer.stage.keep_colours(update, len(times))
             for frame in counted(range(len(times)), path.name, "frames"):
                 update(frame)
                 writer.grab_frame()
@@ -293,16 +358,17 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
         case ".gif":
             interval = max(2, round(HUNDREDTHS / fps)) / HUNDREDTHS
             return GifWriter(fps=JUST / interval), interval  # type: ignore[arg-type]
-        case ".mp4":
-            if not FFMpegWriter.isAvailable():
-                needs = "an .mp4 needs the program ffmpeg, which is not on the PATH"
-                raise RuntimeError(f"{path.name}: {needs}; install it, or write a .gif or an .html")
-            return FFMpegWriter(fps=fps, codec="h264"), 1 / fps  # type: ignore[arg-type]
+        case ".mp4" | ".webm" as ending:
+            if not MovieWriter.isAvailable():
+                needs = f"{ending} needs the program ffmpeg, which is not on the PATH"
+                raise RuntimeError(f"{path.name}: {needs}; pip install imageio-ffmpeg, or write a .gif or an .html")
+            codec = "h264" if ending == ".mp4" else "libvpx-vp9"
+            return MovieWriter(fps=fps, codec=codec, extra_args=["-pix_fmt", "yuv420p"]), 1 / fps  # type: ignore[arg-type]
         case ".html":
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
             options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
             return PageWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
-    raise ValueError(f"path = {(path.name or str(path))!r} does not end in .gif, .mp4 or .html")
+    raise ValueError(f"path = {(path.name or str(path))!r} does not end in .gif, .mp4, .webm or .html")
 
 
 def frame_times(t: Array, step: float) -> Array:
@@ -331,44 +397,58 @@ def scene(
         speed, title: as in `animate`.
         pressed: the response whose forces are drawn, and how, or None.
     """
-    figure = Figure(figsize=(8.0, 4.5), layout="constrained")
-    halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.5)) if histories else None
+    figure, part, strips = _laid_out(bodies, case, len(histories))
     depth = {"projection": "3d"} if isinstance(bodies, Solids) else None
-    ax: Axes = (figure if halves is None else halves[0]).subplots(subplot_kw=depth)
-    updates = _standing(ax, bodies, case)
+    ax: Axes = part.subplots(subplot_kw=depth)
+    updates = _standing(ax, bodies, case, part.bbox)
     if pressed is not None:
         updates.append(forces_on(ax, pressed[0], bodies.moving, pressed[1]))
     magnify = bodies.moving.magnify
     scale = "true to scale" if magnify == 1 else f"displacements x {magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
-    clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)
+    clock = ax.set_title(f"{scale}, {rate}, $t$ = 0.00 s", fontsize=9)
     clock.set_animated(True)
-    if halves is not None:
-        axes = halves[1].subplots(len(histories), 1, sharex=True, squeeze=False)[:, 0]
-        for panel, draw in zip(axes, histories, strict=True):
-            draw(panel)
-            panel.set_xlim(bodies.t[0], max(bodies.t[-1], bodies.t[0] + 1e-9))
-            updates.append(_marker(panel, bodies.t))
-            panel.label_outer()
+    for panel, draw in zip(strips, histories, strict=True):
+        draw(panel)
+        panel.set_xlim(bodies.t[0], max(bodies.t[-1], bodies.t[0] + 1e-9))
+        updates.append(_marker(panel, bodies.t))
+        panel.label_outer()
     titled(figure, title, 10)
     moved = together(updates)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
-        fill(ax, bodies, figure.bbox)
+        fill(ax, bodies, part.bbox)
         figure.draw_without_rendering()
 
     def update(frame: int) -> None:
-        clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")
+        clock.set_text(f"{scale}, {rate}, $t$ = {bodies.t[frame]:.2f} s")
         moved(frame)
 
     update(0)
     return figure, update
 
 
-def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None) -> list[Update]:
+def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tuple[Figure, Any, Sequence[Axes]]:
+    """A figure as high as its bodies ask for, the part of it that shows them, and so many strips over the time."""
+    if case is None or not filmed(case).is_below:
+        figure = Figure(figsize=(WIDE, 4.5), layout="constrained")
+        if not count:
+            return figure, figure, ()
+        left, right = cast(Any, figure).subfigures(1, 2, width_ratios=(1.0, 1.5))
+        return figure, left, right.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    wide, high = bodies.extent_seen
+    shown = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST))
+    figure = Figure(figsize=(WIDE, round(50 * (shown + STRIP * count)) / 50), layout="constrained")  # even pixels
+    if not count:
+        return figure, figure, ()
+    above, below = cast(Any, figure).subfigures(2, 1, height_ratios=(shown, STRIP * count))
+    return figure, above, below.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+
+
+def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None, box: BboxBase) -> list[Update]:
     """Draw bodies and what they meet."""
-    updates = [blocks(ax, bodies) if isinstance(bodies, Bodies) else solids(ax, bodies)]
+    updates = [blocks(ax, bodies) if isinstance(bodies, Bodies) else solids(ax, bodies, box)]
     if case is not None:
         updates.append(filmed(case).around(ax, bodies))
     elif isinstance(bodies, Bodies):

@@ -34,6 +34,8 @@ def require_masonry(what: str, response: Response) -> Masonry:
     return response.of_masonry.masonry
 
 
+BAR = 0.25
+"""Longest scale bar over the width of what is seen [-]."""
 Ends = tuple[Array, Array]
 """The lowest and the highest x and z of something [m], shape (2,) each."""
 
@@ -42,6 +44,13 @@ def ends_of(points: Array) -> tuple[Array, Array]:
     """The lowest and the highest x and z of points [m], shape (..., 2)."""
     flat = points.reshape(-1, 2)
     return flat.min(axis=0), flat.max(axis=0)
+
+
+def round_length(wide: float) -> float:
+    """The length of a scale bar of a picture so wide [m]: 1, 2 or 5 times a power of ten, at most a quarter of it."""
+    most = BAR * wide * (1 + 1e-9)
+    power = float(10.0 ** np.floor(np.log10(most)))
+    return power * max(step for step in (1, 2, 5) if step * power <= most)
 
 
 def evened(rows: Sequence[Array]) -> Array:
@@ -205,8 +214,7 @@ class Bodies:
     @property
     def outlines(self) -> tuple[Array, ...]:
         """Corners of each body about its centroid, at rest [m]."""
-        outlines: tuple[Array, ...] = self.moving.case.outlines
-        return outlines
+        return self.moving.case.outlines
 
     def at(self, times: Array) -> Bodies:
         """The same bodies at other times, their poses interpolated linearly."""
@@ -218,8 +226,7 @@ class Bodies:
         The points are given about the centroid of the body at rest [m], shape (n, 2). Their displacement is drawn times
         `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
-        drawn: Array = self.moving.placed_at(frame, self._numbers[[body]], points[None])[0]
-        return drawn
+        return np.asarray(self.moving.placed_at(frame, self._numbers[[body]], points[None])[0])
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all bodies are drawn at a frame [m], shape (bodies, corners, 2).
@@ -244,6 +251,12 @@ class Bodies:
         rests = self.moving.case.rests
         stays = np.concatenate(fixed) if fixed else rests
         return window(ends_of(rests[:, None] + self._padded), ends_of(moving), ends_of(stays))
+
+    @property
+    def extent_seen(self) -> Array:
+        """Width and height of what the picture has to hold [m], shape (2,)."""
+        low, high = self.extent()
+        return np.asarray(high - low)
 
     @cached_property
     def _numbers(self) -> Integers:

@@ -88,7 +88,7 @@ def blocks(
     moving = Moving(case, time, placed, magnified)
     if case.in_space:
         bodies = Solids(moving, camera, required_limits(limits, "xyz"))
-        solids(ax, bodies, animated=False)(0)
+        solids(ax, bodies, ax.bbox, animated=False)(0)
         fill(ax, bodies, ax.bbox)
     else:
         flat = Bodies.at_poses(case, time, placed, magnified, limits)

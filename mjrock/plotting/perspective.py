@@ -1,51 +1,84 @@
-"""A view of blocks in space: the camera, the light, the ground, and blocks that hide those behind them."""
+"""A view of blocks in space on an Axes: where the camera stands, what it shows, a scale bar, and ties."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.transforms import BboxBase
 from mpl_toolkits.mplot3d import Axes3D
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.proj3d import proj_transform
 
-from ..geometry import convex
-from ..quantities import Array
+from ..quantities import Integers
+from .bodies import round_length
+from .depths import View
 from .section import Update, pulling
 from .solids import Solids
 from .style import figure_of
 
-GROUND_COLOUR = "#e6e6e2"
-LIGHT = np.array([0.62, -0.25, 0.74])
-"""Where the light comes from."""
-DARKEST = 0.62
-"""Brightness of a face that is turned away from the light [-]."""
 ZOOM = 1.0
 """Size of a picture before it is enlarged [-]."""
 MARGIN = np.array([0.2, 0.8])
 """Width and height that stay free around a view, for the scale bar and a title [inch]."""
-BAR, BELOW = 0.25, 0.05
-"""Longest scale bar over the width of what is seen, and how far below it stands over its height [-]."""
+BELOW = 0.05
+"""How far a scale bar stands below what is seen, over its height [-]."""
 
 
-class Faces(PolyCollection):
-    """Faces in space, drawn in the order given and not by their depth."""
+FINE, DENSE = 2, 150
+"""Pixels that are drawn along each side of one of the picture, where it has fewer than so many to an inch."""
+EDGE, RIM = 0.55, 0.1
+"""Width of edges [point], and of the rim of the box within which the picture fades [inch]."""
 
-    corners: Sequence[Array] = ()
-    """Corners of each face [m], shape (n, 3)."""
 
-    def do_3d_projection(self) -> float:
-        """Bring the faces into the plane of the picture, whenever the axes are drawn."""
-        if len(self.corners):
-            space: Any = self.axes
-            x, y, _ = proj_transform(*np.concatenate(self.corners).T, space.M)
-            ends = np.cumsum([len(face) for face in self.corners])[:-1]
-            self.set_verts(np.split(np.column_stack([x, y]), ends))
-        return 0.0
+class Rendered(Artist):
+    """Blocks in space and the ground below them, drawn over a box of a figure.
+
+    Args:
+        ax: of three dimensions.
+        bodies: the blocks, and where they are seen from.
+        box: what is drawn over [pixel], such as the box of the figure.
+    """
+
+    def __init__(self, ax: Axes, bodies: Solids, box: BboxBase) -> None:
+        super().__init__()
+        self.ax, self.bodies, self.box, self.frame = ax, bodies, box, 0
+        self._kept: tuple[object, Integers] = None, np.empty(0, dtype=np.uint8)
+        self.set_zorder(2)
+        self.set_in_layout(False)
+
+    def draw(self, renderer: Any) -> None:
+        """Draw it at the resolution of the renderer."""
+        times = renderer.get_image_magnification()
+        inch = times * figure_of(self.ax).dpi
+        fine = FINE if inch < DENSE else 1
+        view, gc = self.view(times, fine), renderer.new_gc()
+        key = self.frame, view.size, view.pixel, view.middle.tobytes()
+        if key != self._kept[0]:  # a figure is drawn once for its layout, and once more
+            self._kept = key, self._picture(view, fine, inch)
+        renderer.draw_image(gc, self.box.x0, self.box.y0, self._kept[1])
+        gc.restore()
+
+    def _picture(self, view: View, fine: int, inch: float) -> Integers:
+        """Red, green, blue and opacity, 0 to 255, with so many pixels to an inch, which fade at the rim."""
+        line = max(1, round(fine * EDGE * inch / 72))
+        colours = view.picture(*self.bodies.stage(self.frame), line, fine)
+        rows, columns = (np.arange(count) + 0.5 for count in colours.shape[:2])
+        rim = [np.clip(np.minimum(at, len(at) - at) / (RIM * inch), 0, 1) for at in (rows, columns)]
+        colours[..., 3] *= np.outer(*rim)
+        return np.rint(255 * colours).astype(np.uint8)
+
+    def view(self, times: float = 1.0, fine: int = 1) -> View:
+        """What the box shows, of so many pixels for each of its own, each as so many, along either side."""
+        space, bodies = in_three(self.ax), self.bodies
+        ends = np.mean([getattr(space, f"get_{name}lim")() for name in "xyz"], axis=1)
+        x, y, _ = proj_transform(*np.transpose([ends, ends + bodies.across[0]]), space.get_proj())
+        (at, beside) = space.transData.transform(np.column_stack([x, y]))
+        metre = float(np.hypot(*(beside - at)))
+        middle = ends + (self.box.get_points().mean(axis=0) - at) / metre @ bodies.across
+        wide, high = (fine * max(1, round(times * size)) for size in self.box.size)
+        return View(np.array([*bodies.across, bodies.eye]), middle, (wide, high), 1 / (metre * times * fine))
 
 
 def in_three(ax: Axes) -> Any:
@@ -55,48 +88,24 @@ def in_three(ax: Axes) -> Any:
     return ax
 
 
-def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
-    """Draw blocks in space, true to scale, with a scale bar, and the ground below them.
-
-    Blocks, and the convex parts of one that is not convex, are drawn from the farthest to the nearest, see
-    `Solids.order`. What has sunk below the ground is left out.
-    """
+def solids(ax: Axes, bodies: Solids, box: BboxBase, *, animated: bool = True) -> Update:
+    """Draw blocks in space, true to scale, with a scale bar, and the ground below them, over a box [pixel]."""
     space = in_three(ax)
-    level = _ground(space, bodies)
     _frame(space, bodies)
-    _scale_bar(space, bodies)
-    tints = bodies.colours
-    moving = Faces([], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated, clip_on=False)
-    space.add_collection(moving, autolim=False)
+    _scale_bar(space, bodies, animated=animated)
+    drawn = Rendered(ax, bodies, box)
+    drawn.set_animated(animated)
+    space.add_artist(drawn)
 
     def update(frame: int) -> None:
-        corners = bodies.corners(frame)
-        normals = _normals(corners)
-        seen = normals @ bodies.eye > 0
-        if level is not None and bodies.eye[2] > 0:
-            seen &= corners[..., 2].mean(axis=1) > level
-        place = np.argsort(bodies.order(frame))  # of each convex part in the order
-        number = np.flatnonzero(seen)[np.argsort(place[bodies.facets.part[seen]], kind="stable")]
-        bright = DARKEST + (1 - DARKEST) * np.clip(normals[number] @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
-        counts = bodies.facets.counts[number]
-        moving.corners = [face[:count] for face, count in zip(corners[number], counts, strict=True)]
-        moving.set_facecolor(cast(Any, tints[number] * bright[:, None]))
-        if space.M is not None:
-            moving.do_3d_projection()
+        drawn.frame = frame
 
     return update
 
 
 def fill(ax: Axes, bodies: Solids, box: BboxBase) -> None:
-    """Enlarge a view until its blocks fill a box [pixel], such as that of its figure, but for a margin.
-
-    The ground is cut at the box.
-    """
+    """Enlarge a view until its blocks fill a box [pixel], such as that of its figure, but for a margin."""
     space = in_three(ax)
-    for ground in space.collections:
-        if isinstance(ground, Poly3DCollection):
-            ground.set_clip_path(None)
-            ground.set_clip_box(box)
     figure, seen = figure_of(ax), bodies.seen
     limits = np.array([getattr(space, f"get_{name}lim")() for name in "xyz"])
     if bodies.limits is None:
@@ -141,36 +150,14 @@ def _frame(ax: Axes3D, bodies: Solids) -> None:
     ax.set_axis_off()
 
 
-def _scale_bar(ax: Axes3D, bodies: Solids) -> None:
+def _scale_bar(ax: Axes3D, bodies: Solids, *, animated: bool) -> None:
     """Draw a line of 1, 2 or 5 times a power of ten [m] across the line of sight, below what is seen at the left."""
     (left, low), (right, high) = bodies.seen
-    power = 10.0 ** np.floor(np.log10(BAR * (right - left)))
-    length = power * max(step for step in (1, 2, 5) if step * power <= BAR * (right - left) * (1 + 1e-9))
+    length = round_length(float(right - left))
     start = np.array([left, low - BELOW * (high - low)])
     ends = np.array([start, start + np.array([length, 0.0])]) @ bodies.across
     (line,) = ax.plot(*ends.T, color="0.15", linewidth=2.5, solid_capstyle="butt", zorder=6, clip_on=False)
     text = ax.text(*ends[1], f"  {length:g} m", va="center", fontsize=8, zorder=6)
     for part in (line, text):
         part.set_in_layout(False)  # its place is known when the view is
-
-
-def _ground(ax: Axes3D, bodies: Solids) -> float | None:
-    """Draw the upper faces of the fixed blocks below all others, beyond all that moves; their highest z [m]."""
-    (left, near), (right, far) = bodies.floor
-    window, level = np.array([(left, near), (right, near), (right, far), (left, far)]), None
-    for block in bodies.ground:
-        level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
-        for face in (side.corners for side in block.sides):
-            plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
-            if len(plan) > 2:
-                patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
-                look = {"facecolors": GROUND_COLOUR, "edgecolors": "0.6", "linewidths": 0.6, "zorder": 0.5}
-                ax.add_collection3d(Poly3DCollection(patch, **look)).set_in_layout(False)
-    return level
-
-
-def _normals(corners: Array) -> Array:
-    """Unit normals out of faces, shape (faces, 3)."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.asarray(normals / np.where(length > 0, length, 1.0))
+        part.set_animated(animated)

@@ -12,7 +12,7 @@ from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored, Effect, Point
-from ..problem.wall.effects import forces_of
+from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array, Flags
 from ..result.bodies import Moving
 from ..result.ties import elongation_of
@@ -72,7 +72,7 @@ def frame_view(ax: Axes, bodies: Bodies) -> None:
 def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     """Draw what a wall meets and carries. The limits of the axes are set for all frames."""
     wall, height = case.block, 2 * case.block.h
-    ties, forces = list(case.links.values()), list(forces_of(case.effects).values())
+    ties, forces = list(case.links.values()), list(constant_forces_of(case.effects).values())
     low, high = bodies.extent()
     behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
     corners = np.vstack([np.zeros((1, 2)), *(added.outline for added in case.wall.masses)])

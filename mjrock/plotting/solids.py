@@ -9,9 +9,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import null_space
 
-from ..geometry.hull import unlike_ways
 from ..problem.masonry.blocks.compound import SolidBlock
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
@@ -20,64 +18,25 @@ from ..result.bodies import Moving
 from ..result.response import Response
 from ..scene.tints import colours_of
 from .bodies import evened, required_limits
+from .depths import Ground, Surfaces
 
-ASIDE = 1e-9
-"""Cosine of the angle between the line of sight and the normal of a plane that is seen as a line [-]."""
-TOUCHING = 1e-4
-"""Overlap of bodies, or of their outlines in the picture, that counts as touching, over the extent of all [-]."""
-AROUND, FARTHEST = 0.15, 3.0
+AROUND, FARTHEST = 0.6, 3.0
 """How far the ground is drawn beyond all corners, and the farthest corners that count for it, over the extent [-]."""
+SUNK = 0.05
+"""How far blocks may lie below the ground and it is still drawn, over the extent [-]."""
+ROUND = 1e-6
+"""Part of normals and of the extent to which two faces lie in one plane [-]."""
+SUN = np.array([-0.75, 0.55, 1.0])
+"""Where the sun stands: to the right of the camera, towards it, and upwards."""
 
 
 class Facets(NamedTuple):
     """The faces of bodies: corners about the centroid of the body, at rest [m], shape (faces, most, 3), of which a face
-    with few repeats the last one; the number of the body, that of its convex part, counted over all bodies, and that of
-    the corners, shape (faces,) each."""
+    with few repeats the last one; and the numbers of the block and of the plane piece of it, shape (faces,) each."""
 
     corners: Array
-    body: Integers
-    part: Integers
-    counts: Integers
-
-
-class Parts(NamedTuple):
-    """Convex parts of bodies: the number of the body, shape (parts,); corners about its centroid at rest [m], and unit
-    normals of faces and unit vectors along edges at rest, those that are parallel once, shapes (parts, most, 3) each,
-    of which a part with few repeats the last one."""
-
-    body: Integers
-    corners: Array
-    normals: Array
-    edges: Array
-
-
-def hiding(corners: Array, normals: Array, edges: Array, eye: Array) -> Integers:
-    """Pairs of convex bodies of which the second hides some of the first, as numbers, shape (n, 2).
-
-    Two convex bodies lie on two sides of a plane. It is looked for along their faces, and along the lines of sight that
-    pass an edge: bodies on two sides of a line of sight do not hide each other. Of two bodies that overlap, or lie
-    across each other's edges, the one that is nearer by the widest gap is the second.
-
-    Args:
-        corners: of each body [m], shape (bodies, most, 3).
-        normals, edges: of its faces, and vectors along its edges, shapes (bodies, most, 3).
-        eye: unit vector to the camera, shape (3,).
-    """
-    ways = np.concatenate([normals, np.cross(edges, eye)], axis=1)
-    length = np.linalg.norm(ways, axis=2, keepdims=True)
-    ways = np.where(length > ASIDE, ways, ways[:, :1])  # in place of an edge along the line of sight
-    ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), ASIDE)
-    ways *= np.where(ways @ eye < 0, -1.0, 1.0)[..., None]
-    screen = corners @ null_space(eye[None])
-    low, high = screen.min(axis=1), screen.max(axis=1)
-    first, second = np.nonzero(np.triu(((low[:, None] < high) & (low < high[:, None])).all(axis=2), 1))
-    ways = np.concatenate([ways[first], ways[second]], axis=1)
-    one, other = (ways @ np.swapaxes(corners[body], 1, 2) for body in (first, second))
-    nearer, farther = other.min(axis=2) - one.max(axis=2), one.min(axis=2) - other.max(axis=2)
-    across = np.where(ways @ eye < ASIDE, np.maximum(nearer, farther), -np.inf)
-    gaps = np.maximum([nearer, farther], across).max(axis=2)  # with which the second is nearer, and farther
-    pairs = np.where(gaps[0] > gaps[1], [first, second], [second, first])
-    return np.asarray(pairs[:, gaps.min(axis=0) < -TOUCHING * np.ptp(screen, axis=(0, 1)).max()].T)
+    block: Integers
+    plane: Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +109,7 @@ class Solids:
         return np.flatnonzero(~np.array(self._are_ground))
 
     @property
-    def ground(self) -> list[SolidBlock]:
+    def _grounds(self) -> list[SolidBlock]:
         """The fixed blocks below all that move, which are not moved themselves."""
         return [block for block, is_ground in zip(self.masonry.polyhedra, self._are_ground, strict=True) if is_ground]
 
@@ -162,48 +121,49 @@ class Solids:
         moved = {support.block for support in self.case.supports}
         return [low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)]
 
-    @property
-    def colours(self) -> Array:
-        """Red, green and blue of each facet, 0 to 1, shape (faces, 3)."""
-        return colours_of(self.case.standing)[self.shown[self.facets.body]]
-
     @cached_property
     def facets(self) -> Facets:
         """The faces of the blocks that are shown."""
-        blocks = self._blocks
-        counts = np.array([len(side.corners) for block in blocks for side in block.sides])
-        body = np.repeat(np.arange(len(blocks)), [len(block.sides) for block in blocks])
-        first = np.searchsorted(self._parts.body, body)
-        part = first + np.array([side.parts[0] for block in blocks for side in block.sides])
-        corners = evened([side.corners for block in blocks for side in block.sides])
-        return Facets(corners - self.case.centroids[self.shown[body], None], body, part, counts)
+        return self._faces_of(self.shown)
+
+    def _faces_of(self, blocks: Integers) -> Facets:
+        """The faces of some blocks."""
+        parts = [(block, part) for block in blocks.tolist() for part in self.case.standing.solids[block].parts]
+        block = np.repeat([block for block, _ in parts], [len(part.faces) for _, part in parts])
+        corners = evened([part.corners[list(face)] for _, part in parts for face in part.faces])
+        normals = np.concatenate([part.normals for _, part in parts])
+        offsets = np.concatenate([part.offsets for _, part in parts])
+        planes = np.round(np.column_stack([block * ROUND, normals, offsets / np.abs(corners).max()]) / ROUND)
+        return Facets(corners, block, np.unique(planes, axis=0, return_inverse=True)[1].ravel())
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
-        return self._drawn(frame, self.facets.body, self.facets.corners)
+        return self.moving.placed_at(frame, self.facets.block, self.facets.corners)
 
-    def order(self, frame: int) -> Integers:
-        """The convex parts of all bodies from the farthest to the nearest, shape (parts,).
+    def stage(self, frame: int) -> tuple[Surfaces, Array, Ground | None]:
+        """What is seen at a frame, a unit vector to the sun, which stands to the left of the camera, and the ground."""
+        (right, _), azimuth = self.across, np.radians(np.asarray(self.camera)[1])
+        sun = SUN @ np.array([right, (np.cos(azimuth), np.sin(azimuth), 0.0), (0.0, 0.0, 1.0)])
+        corners, block, plane = self._staged
+        surfaces = Surfaces(self.moving.placed_at(frame, block, corners), plane, colours_of(self.case.standing)[block])
+        return surfaces, sun / np.linalg.norm(sun), self.ground
 
-        A part that another one hides comes before it. Parts that hide one another in a ring, or that overlap, have no
-        such order: one of them is drawn too early.
-        """
-        parts, hidden = self._parts, [set[int]() for _ in self._parts.body]
-        corners = self._drawn(frame, parts.body, parts.corners)
-        turned = self._drawn(frame, parts.body, np.eye(3)[None]) - self._drawn(frame, parts.body, np.zeros((1, 1, 3)))
-        areas = np.cross(np.roll(turned, -1, axis=1), np.roll(turned, -2, axis=1))
-        normals, edges = parts.normals @ areas, parts.edges @ turned
-        for behind, before in hiding(corners, normals, edges, self.eye).tolist():
-            hidden[before].add(behind)
-        order, begun, stack = dict[int, None](), set[int](), np.argsort(-corners.mean(axis=1) @ self.eye).tolist()
-        while stack:
-            part = stack.pop()
-            if part in begun:  # what it hides is in the order
-                order[part] = None
-            else:
-                begun.add(part)
-                stack += [part, *hidden[part] - begun]
-        return np.array([*order])
+    @cached_property
+    def _staged(self) -> Facets:
+        """The faces of the blocks that are shown, and those of the ground where blocks fall past its edge."""
+        return self.facets if self.ground is not None else self._faces_of(np.arange(len(self.masonry.blocks)))
+
+    @cached_property
+    def ground(self) -> Ground | None:
+        """The ground, which reaches beyond all corners; None where there is none, or blocks fall past its edge."""
+        tops = [float(block.corners[:, 2].max()) for block in self._grounds]
+        low, high = self.extent()
+        size = float((high - low).max())
+        if not tops or self.reached[0, 2] < max(tops) - SUNK * size:
+            return None
+        near, far = np.clip(self.reached, low - FARTHEST * size, high + FARTHEST * size)[:, :2]
+        low, high = np.minimum(near, low[:2]), np.maximum(far, high[:2])
+        return Ground(max(tops), 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)) + AROUND * size)
 
     def extent(self) -> tuple[Array, Array]:
         """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (3,) each.
@@ -213,7 +173,7 @@ class Solids:
         """
         if self.limits is not None:
             return self.limits[:, 0], self.limits[:, 1]
-        rest = self.facets.corners + self.case.centroids[self.shown[self.facets.body], None]
+        rest = self.facets.corners + self.case.centroids[self.facets.block, None]
         rest_low, rest_high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
         room = float((rest_high - rest_low).max())
         low, high = np.maximum(self.reached[0], rest_low - room), np.minimum(self.reached[1], rest_high + room)
@@ -224,14 +184,6 @@ class Solids:
         """The lowest and the highest x, y and z of all corners [m], shape (2, 3)."""
         ends = [(corners.min(axis=(0, 1)), corners.max(axis=(0, 1))) for corners in map(self.corners, self._some)]
         return np.array([np.min(ends, axis=(0, 1)), np.max(ends, axis=(0, 1))])
-
-    @property
-    def floor(self) -> Array:
-        """The lowest and the highest x and y of the ground that is drawn: beyond all corners [m], shape (2, 2)."""
-        low, high = self.extent()
-        size = float((high - low).max())
-        near, far = np.clip(self.reached, low - FARTHEST * size, high + FARTHEST * size)
-        return np.array([np.minimum(near, low) - AROUND * size, np.maximum(far, high) + AROUND * size])[:, :2]
 
     @cached_property
     def across(self) -> Array:
@@ -254,25 +206,12 @@ class Solids:
         return np.array([np.min(ends, axis=(0, 1)), np.max(ends, axis=(0, 1))])
 
     @property
+    def extent_seen(self) -> Array:
+        """Width and height of what the picture has to hold [m], shape (2,)."""
+        return np.asarray(np.ptp(self.seen, axis=0))
+
+    @property
     def _some(self) -> list[int]:
         """Numbers of at most 100 frames, from the first to the last."""
         numbers: list[int] = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int)).tolist()
         return numbers
-
-    @cached_property
-    def _blocks(self) -> list[SolidBlock]:
-        """The blocks that are drawn as bodies."""
-        return [self.masonry.polyhedra[i] for i in self.shown]
-
-    @cached_property
-    def _parts(self) -> Parts:
-        """The convex parts of the blocks that are shown."""
-        solids = [self.case.standing.solids[i] for i in self.shown]
-        body = np.repeat(np.arange(len(solids)), [len(solid.parts) for solid in solids])
-        parts = [part for solid in solids for part in solid.parts]
-        normals, edges = evened([unlike_ways(part.normals) for part in parts]), evened([part.edges for part in parts])
-        return Parts(body, evened([part.corners for part in parts]), normals, edges)
-
-    def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
-        """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
-        return self.moving.placed_at(frame, self.shown[body], points)

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..quantities import require_kind, require_text
-from ..study.sensitivity import Sensitivity, shortened
+from ..study.sensitivity import Sensitivity, setting_text
 from .arguments import mapping, picture
 from .figures import BLUE, ORANGE
 from .style import power_of_ten
@@ -65,7 +65,7 @@ def _tried(found: Sensitivity, setting: str) -> str:
     """The values of a setting that were tried, with the unit of the settings that have a known one."""
     values = list(dict.fromkeys(row[setting] for row in found.rows)) if setting in found.settings else []
     if len(values) < 2 or not all(isinstance(value, int | float) for value in values):
-        return ", ".join(shortened(value) for value in values)
+        return ", ".join(setting_text(value) for value in values)
     return f"{power_of_ten(min(values))} to {power_of_ten(max(values))} {SETTINGS.get(setting, '')}".strip()
 
 

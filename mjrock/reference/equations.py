@@ -13,10 +13,10 @@ from scipy.optimize import brentq, fsolve
 from ..problem.damping.contacts import Contacts
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored, LinkLaw
-from ..problem.wall.effects import forces_of
+from ..problem.wall.effects import constant_forces_of
 from ..quantities import GRAVITY, Array
 
-ROUNDING = 1e-9
+SLIP_ROUNDING = 1e-9
 """Share of the slip force that is put down to rounding [-]."""
 
 
@@ -50,7 +50,7 @@ class Wall:
             self.heights = self.side.positions + 0.5 * float(case.stop_top or 0.0) - self.up
         self.forces = [
             (effect.offset - off, effect.height - self.up, force[0], force[2])
-            for effect, force in forces_of(case.effects).values()
+            for effect, force in constant_forces_of(case.effects).values()
         ]
         self.ties = [(tie.height - self.up, tie) for tie in case.springs.values() if tie.law.push == 0]
         self.sliders: dict[str, Slider] = {}  # of friction dampers, which bear nothing at rest
@@ -309,5 +309,5 @@ class Slider:
         if before:
             slips = not fired and before * rate >= 0
         else:
-            slips = abs(pull) >= self.law.strength * (1 - ROUNDING) and (fired or pull * rate > 0)
+            slips = abs(pull) >= self.law.strength * (1 - SLIP_ROUNDING) and (fired or pull * rate > 0)
         self.way = int(math.copysign(1.0, pull)) if slips else 0

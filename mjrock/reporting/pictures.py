@@ -15,7 +15,7 @@ from ..plotting.bodies import Bodies
 from ..plotting.sketch import elevation, section
 from ..plotting.style import OWN, Look, legend_below, several
 from ..problem.wall.case import Case
-from ..problem.wall.effects import forces_of
+from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array
 from ..result.response import Response
 from ..study.loading.mechanism import MechanismCheck
@@ -74,7 +74,7 @@ def wall_drawn(case: Case, words: Words) -> Figure:
     figure = Figure(figsize=(WIDE, TALL))
     left, right = figure.add_axes((0.0, 0.0, 0.55, 0.94)), figure.add_axes((0.55, 0.0, 0.45, 0.94))
     section(left, case, words("stop"))
-    loaded = any(force[0] == 0 for _, force in forces_of(case.effects).values())
+    loaded = any(force[0] == 0 for _, force in constant_forces_of(case.effects).values())
     left.set_ylim(-0.13 * 2 * case.block.h, left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h)
     elevation(right, case, left.get_ylim())
     opened = Bodies.at_poses(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None])

@@ -11,7 +11,7 @@ import scipy
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import frames_of, inverse_rotation_change, take_frames
-from ..geometry.graph import components, nearest_roots
+from ..geometry.graph import connected_parts, nearest_roots
 from ..geometry.kinematics import Meeting, Places, meeting
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
@@ -145,7 +145,7 @@ def _pairs(masonry: Masonry) -> Integers:
 
 def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
     """Whether no chain of joints connects each free block with a fixed one, shape (bodies,); `pairs` of joints."""
-    labels = components(pairs, len(masonry.blocks))
+    labels = connected_parts(pairs, len(masonry.blocks))
     standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
     return ~np.isin(labels[list(masonry.free)], list(standing))
 

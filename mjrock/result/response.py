@@ -26,7 +26,7 @@ from .gltf import write_gltf
 from .joint_motion import JointMotion
 from .ledger import Ledger
 from .motion import Motion, sample_at
-from .rocking import Impact, Rocking, farthest, restitution_of
+from .rocking import Impact, Rocking, largest_rotations, restitution_of
 from .ties import Plastic, TieMotion, motion_of_ties
 from .vtk import texts_of_bodies, texts_of_joints, write_series
 
@@ -318,12 +318,12 @@ class Response(Drawn):
     def inwards_over_alpha(self) -> float | None:
         """How far a wall leaned inwards over its side stop, over alpha [-]; None without a stop."""
         case, rocking = self.of_wall
-        return farthest(case, rocking, self.theta)[1] / case.wall.alpha if case.one_sided else None
+        return largest_rotations(case, rocking, self.theta)[1] / case.wall.alpha if case.one_sided else None
 
     def _largest(self, outer: float, inner: float) -> float:
         """Largest rotation over a limit outwards and one inwards [rad], infinite for a wall that has overturned."""
         case, rocking = self.of_wall
-        outwards, inwards = farthest(case, rocking, self.theta)
+        outwards, inwards = largest_rotations(case, rocking, self.theta)
         if self.outcome is Outcome.OVERTURNED:
             return math.inf
         return outwards / outer if case.stop_top == 2 * case.block.h else max(outwards / outer, inwards / inner)

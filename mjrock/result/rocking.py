@@ -93,7 +93,7 @@ def restitution_of(leaving: Array, reaching: Array) -> Array:
         return np.sqrt(reaching[1:] / leaving[:-1])
 
 
-def farthest(case: Case, rocking: Rocking, theta: Array) -> tuple[float, float]:
+def largest_rotations(case: Case, rocking: Rocking, theta: Array) -> tuple[float, float]:
     """Largest rotation of a wall outwards and inwards [rad], from its peaks and the rotations at the samples, (n,).
 
     The largest rotation may be that of the last sample, where a run ends on its way out. Against a side stop peaks are

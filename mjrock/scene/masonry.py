@@ -10,14 +10,14 @@ import numpy as np
 from ..problem.masonry.blocks.compound import AnyBlock
 from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import applied, laden, placed
+from ..problem.masonry.effects import applied, laden, place_in_world
 from ..problem.masonry.histories import motions_of_tilt
 from ..problem.masonry.limit.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.standing import MasonryStanding
 from ..problem.wall.effect import Effect
-from ..problem.wall.effects import links_of
+from ..problem.wall.effects import link_effects
 from ..quantities import GRAVITY, Array, Integers, named, require_kind
 from .checks import GROUND
 from .course import Course
@@ -92,7 +92,7 @@ def require_held(scene: Scene, pose: Array) -> None:
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
     """Raise ValueError with the names of the blocks that fall if rigid blocks cannot carry the weight without ties."""
     falls = falling(masonry, applied(masonry, effects))
-    if falls and not any(link.law.holds for link in links_of(effects).values()):
+    if falls and not any(link.law.holds for link in link_effects(effects).values()):
         lacking = friction_lacking(masonry, applied(masonry, effects))
         remedy = "" if lacking is None else f"; joints that need friction of {lacking[0]:g}: {named(lacking[1])}"
         if masonry.in_space and not any(abs(joint.direction[2]) > BED for joint in masonry.space_joints):
@@ -212,7 +212,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             area=masonry.areas_of(lines.k, lines.joint),
             bonds=masonry.bonds,
         ),
-        *attachments(effects, number, lambda effect: placed(masonry, effect), centroids[free]),
+        *attachments(effects, number, lambda effect: place_in_world(masonry, effect), centroids[free]),
         limits=limits,
         made_of=MasonryStanding(masonry, centroids),
         springs=JointSprings(

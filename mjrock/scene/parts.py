@@ -20,7 +20,7 @@ from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
 from ..problem.masonry.laws.pairs import Meets
 from ..problem.wall.effect import Effect, LinkLaw
-from ..problem.wall.effects import forces_of, links_of
+from ..problem.wall.effects import constant_forces_of, link_effects
 from ..quantities import Array, Flags, Integers, frozen
 from .checks import GROUND, keep_array, require_inertia, require_others
 from .masses import mass_diagonals, principal, products_of
@@ -343,7 +343,7 @@ def attachments(
         place: where an effect acts, from the origin of the world, at rest [m].
         centroids: of the bodies at rest [m], shape (bodies, d).
     """
-    links, forces, d = links_of(effects), forces_of(effects), centroids.shape[1]
+    links, forces, d = link_effects(effects), constant_forces_of(effects), centroids.shape[1]
 
     def on(some: Collection[Effect]) -> tuple[Integers, Array, Array]:
         bodies = number[[effect.block for effect in some]]

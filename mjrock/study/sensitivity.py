@@ -17,10 +17,10 @@ from ..files import aligned, csv_text
 from ..notebook import Drawn
 from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
 from .campaign.campaign import CampaignOptions, completed
-from .campaign.grid import label_of, labelled
+from .campaign.grid import axis_label, labelled
 from .campaign.task import Row, Task
 
-UNITS = {"peak_over_alpha": "alpha", "g": "g", "m": "m", "s": "s", "rad": "rad", "N": "N", "J": "J"}
+MEASURE_UNITS = {"peak_over_alpha": "alpha", "g": "g", "m": "m", "s": "s", "rad": "rad", "N": "N", "J": "J"}
 """Units of a measure, by the name of its column or by the end of that name."""
 
 
@@ -47,7 +47,7 @@ class Sensitivity(Drawn):
     @property
     def unit(self) -> str:
         """Unit of the measure, or nothing where the name of its column has none."""
-        return UNITS.get(self.measure, UNITS.get(self.measure.rpartition("_")[2], ""))
+        return MEASURE_UNITS.get(self.measure, MEASURE_UNITS.get(self.measure.rpartition("_")[2], ""))
 
     @property
     def base_value(self) -> float:
@@ -117,7 +117,7 @@ class Sensitivity(Drawn):
         rows = [["setting", "in the base", "lowest", "highest", "runs"]]
         for name, ends in self.swings.items():
             count = sum(names == (name,) for names in self.changed)
-            rows.append([name, shortened(self.base[name]), *map(self.written, ends), str(count)])
+            rows.append([name, setting_text(self.base[name]), *map(self.written, ends), str(count)])
         if together:
             rows.append(["together", "", *map(self.written, self.range), str(together)])
         what = f"{self.measure}{f' [{self.unit}]' if self.unit else ''}"
@@ -172,7 +172,7 @@ def sensitivity(
     points, changed = _points(build, base, vary, require_flag("together", together))
     tasks: list[Task] = []
     for point in points:
-        labels = {name: label_of(point[name]) for name in vary}
+        labels = {name: axis_label(point[name]) for name in vary}
         try:
             tasks.append(labelled(build(**point), labels))
         except Exception as error:
@@ -187,7 +187,7 @@ def sensitivity(
         if isinstance(row[column], str) or row[column] is None:
             raise ValueError(f"measure = {column!r} is {row[column]!r} in a row; it has to be a number")
     values = np.array([row[column] for row in rows], dtype=float)
-    given = {name: label_of(points[0][name]) for name in vary}
+    given = {name: axis_label(points[0][name]) for name in vary}
     return Sensitivity(column, tuple(vary), given, tuple(rows), values, changed)
 
 
@@ -212,7 +212,7 @@ def _points(
         given = [base[name], *values] if name in base else list(values)
         unlike: dict[object, object] = {}
         for value in given:
-            unlike.setdefault(label_of(value), value)
+            unlike.setdefault(axis_label(value), value)
         choices[name] = list(unlike.values())
     require_size("the number of runs", math.prod(map(len, choices.values())) if together else 1, "vary fewer settings")
     first = dict(base) | {name: values[0] for name, values in choices.items()}
@@ -251,6 +251,6 @@ def _column(task: Task, measure: str | None) -> str:
     return measure
 
 
-def shortened(value: object) -> str:
+def setting_text(value: object) -> str:
     """The value of a setting as a short text."""
     return f"{value:.4g}" if isinstance(value, float) else str(value)[:30]

@@ -15,7 +15,7 @@ from ..problem.damping.restitution import AnyRestitution, Restitution, Scattered
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still
-from ..problem.wall.ties_on_wall import lost, stored
+from ..problem.wall.ties_on_wall import broken_energy, tie_energy
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, Stopwatch, describe
 from ..result.motion import intervals, required_spacing
@@ -157,6 +157,6 @@ def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tup
         drawn, when = np.where(broken, pull.ultimate, elongation), float(times[broken].min(initial=math.inf))
         plastic[:, i], gone = np.where(t >= when, np.inf, np.interp(t, times, drawn)), float(drawn[-1])
         ends[f"tie_{i}"] = Plastic(
-            gone, gone * pull.strength if gone else 0.0, when, lost(pull) if broken.any() else 0.0
+            gone, gone * pull.strength if gone else 0.0, when, broken_energy(pull) if broken.any() else 0.0
         )
-    return stored(case.pulls, theta, plastic), ends
+    return tie_energy(case.pulls, theta, plastic), ends

@@ -79,7 +79,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         "processor [s]",
     ]
     for name, assumed in tqdm(list(VARIANTS.items())[: 1 if args.quick else None], disable=None, leave=False):
-        push, took = pushed(LOADS[WALL], (0.002 if args.quick else 0.04,), assumed)
+        push, took = pushed(LOADS[WALL], (0.0005 if args.quick else 0.04,), assumed)
         found = curve_of(push)
         top = found[:, 1].max()
         forces = [f"{at(found, place):.1f}" for place in PLACES]

@@ -22,7 +22,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.masonry.pile import Pile
-from mjrock.study.matching.masonry import STEP, excess, restitutions
+from mjrock.study.matching.masonry import SAMPLE_STEP, excess, restitutions
 from mjrock.theory.impact import as_one
 from scripts.shared import cli
 from scripts.shared.labels import beside
@@ -63,7 +63,7 @@ def lost(made: mr.Masonry, rotation: float = ROTATIONS[0], accuracy: float = 1e-
     pile = Pile.of(made)
     e, (velocity, swing) = as_one(pile), pile.rising(rotation)
     case = mr.MasonryCase(made, (impact + 0.75) * swing, velocity=velocity)
-    found = restitutions(mr.simulate(case, accuracy=accuracy, output_step=STEP * swing), pile)
+    found = restitutions(mr.simulate(case, accuracy=accuracy, output_step=SAMPLE_STEP * swing), pile)
     return 1 + excess(float(found[impact - 1]), abs(e.lumped) if pile.sides else e.base)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from mjrock import Restitution, Store, plotting
 from mjrock.problem.damping.forms import PowerLaw
-from mjrock.problem.damping.law import HIGHEST, LEAST
+from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI
 from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
 from mjrock.study.matching.match import K_N_RANGE, REFERENCE, Combination, Match
@@ -87,7 +87,7 @@ def summary(found: Calibration) -> str:
         reached = [(task, row["xi"]) for task, row in zip(tasks, rows, strict=True) if row["reached"]]
         xi = np.array([value for _, value in reached])
         predicted = [float(fit.form.xi(task.groups, task.loss)) for task, _ in reached]
-        whole = r_squared(np.clip(predicted, LEAST, HIGHEST) if part == "base" else np.array(predicted), xi)
+        whole = r_squared(np.clip(predicted, LEAST_XI, HIGHEST_XI) if part == "base" else np.array(predicted), xi)
         text += [
             f"{part}: {type(fit.form).__name__}({values})",
             f"  {len(rows)} searches of {sum(row['runs'] for row in rows)} simulations, {len(xi)} reached, "

@@ -49,9 +49,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         build,
         side_stop=[side_stop for side_stop, _ in SIDES],
         wall=range(1 if args.quick else len(WALLS)),
-        motion=suite.motions(args.records, 3 if args.quick else 8),
+        motion=suite.motions(args.records, 1 if args.quick else 8),
         polarity=(0, 1),
-        level=LEVELS[1:4] if args.quick else LEVELS,
+        level=LEVELS[1:3] if args.quick else LEVELS,
         k_n=(0.0, *STIFFNESSES),  # zero stands for the rigid base of theory
     )
     found = completed(grid, out / "agreement.sqlite", workers=args.workers)

@@ -25,7 +25,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     e = mr.Restitution.from_geometry(FIGURE_3)
     contacts = mr.Contacts.from_law(FIGURE_3, e, k_base=K_N, k_side=K_N)
-    duration = 0.06 if args.quick else 2.0
+    duration = 0.06 if args.quick else 1.4
     response = mr.simulate(mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, duration), contacts)
     title = "One-sided rocking, 4.2 x 0.6 m, released at half of alpha"
     path = plotting.animate(

@@ -32,7 +32,7 @@ SOIL = 0.8
 """Frequency of the soil under the record [Hz]."""
 OPEN = 0.002
 """Width of the head joints [m]."""
-REACH = 0.6
+REACH = 1.3
 """How far the ground goes on at either side, over the length of the wall [-]."""
 BEARING = 0.4
 """Length on which a lintel bears at either side [m]."""

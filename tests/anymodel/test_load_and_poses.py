@@ -217,6 +217,7 @@ TORUS = """<mujoco><option timestep="1e-4" gravity="0 0 0"/><extension><plugin p
 </body></worldbody></mujoco>"""
 
 
+@pytest.mark.slow
 def test_a_ring_of_signed_distances_is_right_on_a_plane_and_uneven_on_a_box():
     """MuJoCo's own torus: four points on a plane that share the mass, and some that come and go on a box."""
     mujoco.mj_loadPluginLibrary(next(map(str, Path(mujoco.__file__).parent.joinpath("plugin").glob("*sdf_plugin.*"))))

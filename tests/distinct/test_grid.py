@@ -53,7 +53,7 @@ def test_the_places_of_a_part_stand_for_its_area_and_its_mean(corners, points):
     places, areas, corner = places_of(corners, (points - 1, points - 1))
     assert areas.min() > 0
     assert areas.sum() == pytest.approx(convex.area(corners), rel=1e-12)
-    np.testing.assert_allclose(areas @ places / areas.sum(), convex.centroid(corners), rtol=1e-12)
+    np.testing.assert_allclose(areas @ places / areas.sum(), convex.polygon_centroid(corners), rtol=1e-12)
     assert corner.sum() == len(corners)
     np.testing.assert_allclose(sorted(map(tuple, places[corner])), sorted(map(tuple, corners)), atol=1e-14)
     expected, _ = convex.spread(corners, points)

@@ -85,7 +85,7 @@ def test_peaks_under_records(sides):
     side_stop = records_accuracy.SIDES[sides]
     most = 0.01 if side_stop else 0.07
     for k_n in records_accuracy.BASES:
-        runs = records_accuracy.references(k_n, side_stop, 16, 10.0)
+        runs = records_accuracy.references(k_n, side_stop, 8 if side_stop else 16, 10.0)
         row = records_accuracy.measured(sides, k_n, ("MuJoCo", "default"), mr.simulate, runs)
         assert records_accuracy.quantile(row.errors, 0.5) < 5e-3
         assert records_accuracy.quantile(row.errors, 0.9) < most

@@ -20,7 +20,7 @@ def circle(n):
 def test_clipping_of_squares():
     common = convex.clipped(SQUARE, SQUARE + np.array([0.25, -0.5]))
     assert convex.area(common) == pytest.approx(0.375)
-    assert convex.centroid(common) == pytest.approx([0.625, 0.25])
+    assert convex.polygon_centroid(common) == pytest.approx([0.625, 0.25])
     assert convex.width(common) == pytest.approx(0.5)
 
 
@@ -58,7 +58,7 @@ def test_areas_of_points_are_positive_and_have_the_area_and_its_centroid(polygon
     places, areas = convex.spread(polygon, points)
     assert (areas > 0).all()
     assert areas.sum() == pytest.approx(convex.area(polygon), rel=1e-12)
-    assert areas @ places / areas.sum() == pytest.approx(convex.centroid(polygon), abs=1e-12)
+    assert areas @ places / areas.sum() == pytest.approx(convex.polygon_centroid(polygon), abs=1e-12)
 
 
 def test_points_of_a_rectangle_are_those_of_lines_in_both_directions():

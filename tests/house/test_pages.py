@@ -241,6 +241,14 @@ def test_the_church_example_goes_from_records_to_a_report(capsys):
     assert "capacity over that as it is" in capsys.readouterr().out
 
 
+def weight_of(site: Path, text: str) -> int:
+    """Bytes that a browser loads for a page: its text, pictures, styles and scripts."""
+    named = set(
+        re.findall(r'<(?:img|script|link rel="(?:stylesheet|icon|preload)")[^>]*?(?:src|href)="([^"#?]+)', text)
+    )
+    return len(text.encode()) + sum((site / name).stat().st_size for name in named)
+
+
 @pytest.mark.slow
 def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_read(tmp_path):
     pytest.importorskip("sphinx_gallery", reason="the extra docs is not installed; make docs installs it")
@@ -260,6 +268,12 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     results = (tmp_path / "html" / "results.html").read_text(encoding="utf-8")
     assert '<iframe src="arch_view.html" loading="lazy"' in results
     assert (tmp_path / "html" / "theory.html").read_text(encoding="utf-8").count('display="block"') > 5
+    home = (tmp_path / "html" / "index.html").read_text(encoding="utf-8")
+    assert weight_of(tmp_path / "html", home) < 1.5e6
+    assert 'property="og:image"' in home
+    assert (tmp_path / "html" / "card.png").stat().st_size > 5e4
+    gallery = (tmp_path / "html" / "gallery.html").read_text(encoding="utf-8")
+    assert gallery.count("<img ") - gallery.count('<img loading="lazy"') <= 2  # the mark, and the first picture
     for page in pages:
         text = page.read_text(encoding="utf-8")
         assert not re.search(r"<(?:script|img)[^>]+src=.https?:|<link[^>]+href=.https?:", text), page

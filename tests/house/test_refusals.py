@@ -13,7 +13,7 @@ from offenders import not_refused
 import mjrock as mr
 from mjrock import plotting
 from mjrock.files import csv_text
-from mjrock.study.campaign.store import FIXED
+from mjrock.study.campaign.store import ROW_COLUMNS
 
 WALL = mr.Block(0.3, 2.1)
 E = mr.Restitution.from_geometry(WALL)
@@ -265,7 +265,7 @@ def test_no_cell_is_a_formula(tmp_path):
     }
     with mr.Store(tmp_path / "s.sqlite", writing=True) as store:
         store.add_columns(["=note"])
-        plain = dict.fromkeys(FIXED, 0) | {"seconds": -1.5}
+        plain = dict.fromkeys(ROW_COLUMNS, 0) | {"seconds": -1.5}
         store.add([plain | {"key": f"k{i}", "=note": text} for i, text in enumerate(FORMULAS)])
         head, *lines = store.csv().splitlines()
         assert head.split(",")[-1] == "'=note"

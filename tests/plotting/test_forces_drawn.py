@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from everyday import slow
 from masonry_blocks import GROUND, box
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -84,7 +83,8 @@ def test_bars_are_along_the_force_and_as_long():
         assert not any(coloured(figure, ax, [place + half + [0, 0.05], place - half - [0, 0.05], place + BESIDE]))
 
 
-@pytest.mark.parametrize("in_space", [slow(False), True])
+@pytest.mark.slow
+@pytest.mark.parametrize("in_space", [False, True])
 def test_a_film_shows_the_line_where_blocks_have_gone(in_space):
     """Magnified, the picture has the line where it has the blocks."""
     run = corbelled(in_space)

@@ -80,8 +80,8 @@ def in_film(run, folder):
 def in_space(run, folder):
     """A picture of space."""
     drawn = Solids.of(run)
-    numbers = drawn.shown[drawn.facets.body]
-    return {run.case.blocks[number]: colour for number, colour in zip(numbers, drawn.colours, strict=True)}
+    numbers, colours = drawn.facets.block, drawn.stage(0)[0].colour
+    return {run.case.blocks[number]: colour for number, colour in zip(numbers, colours, strict=True)}
 
 
 OUTPUTS = (in_gltf, in_vtk, in_browser, in_mujoco, in_plain_mujoco)

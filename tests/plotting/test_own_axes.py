@@ -38,7 +38,7 @@ def test_blocks_are_drawn_with_and_without_an_axes(masonry, tmp_path):
     assert isinstance(own, Axes)
     assert own is not given
     assert own.name == given.name
-    assert len(own.collections) + len(own.patches) > 0
+    assert len(own.collections) + len(own.patches) + len(own.artists) > 0
     assert plotting.save(own, tmp_path / "blocks").stat().st_size > 3000
 
 

@@ -122,7 +122,7 @@ def test_a_support_that_moves_is_drawn_where_it_is():
 def test_a_support_that_moves_in_space_is_drawn_where_it_is():
     run = on_a_jack(in_space=True)
     solids = Solids.of(run).at(run.t[[0, -1]])
-    slab = solids.shown[solids.facets.body] == 0
+    slab = solids.facets.block == 0
     for frame, raised in ((0, 0.0), (1, 0.3)):
         heights = solids.corners(frame)[slab][..., 2]
         assert (heights.min(), heights.max()) == pytest.approx((raised, 0.2 + raised), abs=1e-9)

@@ -1,17 +1,18 @@
 """Pictures of blocks in space: where blocks are drawn, which hide which, and what is refused."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 import mjrock as mr
 from mjrock import plotting
 from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation
-from mjrock.plotting.perspective import Faces
+from mjrock.plotting.depths import FLOOR, INK, SHADED, View
+from mjrock.plotting.perspective import Rendered
 from mjrock.plotting.solids import Solids
 from mjrock.result.bodies import Moving
 
@@ -30,9 +31,23 @@ def posed(masonry, pose, magnify=1.0, camera=None):
     return Solids(Moving(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose[None], magnify), camera)
 
 
-def faces_of(ax):
-    (faces,) = (child for child in ax.collections if isinstance(child, Faces))
-    return faces
+def drawn_on(ax):
+    (drawn,) = (child for child in ax.get_children() if isinstance(child, Rendered))
+    return drawn
+
+
+def shown(solids, size=(240, 240), frame=0):
+    """The view of a picture of blocks in space, and which of its surfaces each pixel shows, (height, width)."""
+    surfaces = solids.stage(frame)[0]
+    middle, pixel = surfaces.corners.mean(axis=(0, 1)), 1.1 * np.ptp(surfaces.corners, axis=(0, 1)).max() / min(size)
+    view = View(np.array([*solids.across, solids.eye]), middle, size, pixel)
+    return view, view.drawn(surfaces)[1]
+
+
+def pixels_at(view, points):
+    """Columns and rows of the pixels that show points [m]."""
+    column, row, _ = np.floor(view.seen(np.asarray(points))).astype(int).T
+    return column, row
 
 
 def moved(angle=math.pi / 2, place=(0.0, 0.0, 0.0)):
@@ -54,7 +69,7 @@ def test_blocks_are_drawn_where_a_pose_has_brought_them():
         at_rest + 2 * np.array([3.0, 1.0, 0.5]) + 2 * np.array([0, -1.0, 0]),
         atol=1e-12,
     )
-    corners = solids.corners(0)[solids.facets.body == 0].reshape(-1, 3)
+    corners = solids.corners(0)[solids.facets.block == 1].reshape(-1, 3)
     assert np.abs(corners - drawn).sum(axis=1).min() < 1e-12
     np.testing.assert_array_equal(moving.placed(None, at_rest[None])[0, 0], at_rest)
 
@@ -62,62 +77,41 @@ def test_blocks_are_drawn_where_a_pose_has_brought_them():
 def test_a_picture_has_the_faces_that_are_seen_and_the_same_scale_along_every_axis():
     ax = axes()
     assert plotting.blocks(ax, MASONRY) is ax
-    assert len(faces_of(ax).corners) == 6  # three of each box
     assert not ax.axison
     limits = [getattr(ax, f"get_{name}lim")() for name in "xyz"]
     aspect = ax._box_aspect / np.ptp(limits, axis=1)
     assert aspect.max() == pytest.approx(aspect.min())
-    colours = faces_of(ax).get_facecolor()
-    assert len(np.unique(colours.round(6), axis=0)) == 6  # lit by their direction, and tinted by their block
+    numbers = np.unique(shown(drawn_on(ax).bodies)[1])
+    assert len(numbers[numbers >= 0]) == 5  # three of the front box, of the other one its top and its side
 
 
-@pytest.mark.parametrize(("azimuth", "last"), [(35.0, 0), (-145.0, 1)])
-def test_the_nearer_of_two_blocks_hides_the_other(azimuth, last):
-    assert posed(MASONRY, REST, camera=(20.0, azimuth)).order(0)[-1] == last
+@pytest.mark.parametrize(("azimuth", "first"), [(35.0, 1), (-145.0, 2)])
+def test_the_nearer_of_two_blocks_hides_the_other(azimuth, first):
+    """Half of their common face is looked through at from either side."""
+    solids = posed(MASONRY, REST, camera=(20.0, azimuth))
+    view, numbers = shown(solids)
+    column, row = pixels_at(view, [[0.0, 0.0, 0.5]])
+    assert solids.facets.block[numbers[row, column]] == first
 
 
-def test_a_low_block_before_a_high_one_is_drawn_later_though_its_centroid_is_farther():
-    high = mr.Polyhedron.box((1, 1, 9), (-0.5, 0, 4.5))
-    low = mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5))
-    solids = posed(mr.Masonry((GROUND, low, high), xi=0), REST, camera=(60.0, 0.0))
-    depth = solids.case.centroids[solids.shown] @ solids.eye
-    assert depth[0] < depth[1]
-    assert solids.order(0).tolist() == [1, 0]
-
-
-def test_a_block_within_a_frame_hides_its_far_leg_and_is_hidden_by_the_near_one():
-    """Parts are drawn one by one: no order of whole bodies is right."""
-    legs = [mr.Polyhedron.box((1, 1, 1), (x, 0, 0.5)) for x in (-1.0, 1.0)]
-    frame = mr.Compound([*legs, mr.Polyhedron.box((3, 1, 1), (0, 0, 1.5))])
-    within = mr.Polyhedron.box((1, 0.8, 1), (0, 0, 0.5))
-    masonry = mr.Masonry((GROUND, frame, within), xi=0)
-    for azimuth, order in ((0.0, [0, 3, 1]), (180.0, [1, 3, 0])):
-        drawn = posed(masonry, REST, camera=(20.0, azimuth)).order(0).tolist()
-        assert [part for part in drawn if part != 2] == order
-    top = posed(masonry, REST, camera=(20.0, 0.0)).order(0)[-1]
-    assert top == 2
-
-
-def nearest(solids, point):
-    """The convex parts that a line of sight through a point meets, the nearest first."""
-    met, part = [], 0
+def nearest(solids, point, way):
+    """Number of the block that a line through a point [m] along a unit vector leaves last, -1 of none."""
+    met = [(1e-6, -1)]
     poses = dict(zip(solids.masonry.free, solids.moving.pose[0], strict=True))
     for number, rest in zip(solids.shown.tolist(), solids.case.centroids[solids.shown], strict=True):
         turn = rotations(poses[number][None])[0]
-        start, way = turn.T @ (point - rest - poses[number][:3]) + rest, turn.T @ solids.eye
+        start, along = turn.T @ (point - rest - poses[number][:3]) + rest, turn.T @ way
         for body in solids.masonry.polyhedra[number].parts:
             ends = [-np.inf, np.inf]
             for side in body.sides:
-                speed, off = side.normal @ way, side.normal @ (side.corners[0] - start)
+                speed, off = side.normal @ along, side.normal @ (side.corners[0] - start)
                 ends = [max(ends[0], off / speed), ends[1]] if speed < 0 else [ends[0], min(ends[1], off / speed)]
-            met += [(ends[1], part)] if ends[0] < ends[1] - 1e-6 else []
-            part += 1
-    return [part for _, part in sorted(met, reverse=True)]
+            met += [(ends[1], number)] if ends[0] < ends[1] else []
+    return max(met)[1]
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_what_a_line_of_sight_meets_first_is_drawn_last(seed):
-    """Bodies that lie as they fell, far from where they rested: no joint tells their order."""
+def heap(seed):
+    """Boxes, hulls and a body of two parts, as they may lie after a fall."""
     rng = np.random.default_rng(seed)
     cells = np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3)
     size = np.array([1.6, 0.3, 0.8])
@@ -127,29 +121,80 @@ def test_what_a_line_of_sight_meets_first_is_drawn_last(seed):
     spread *= 0.8 / np.linalg.norm(spread, axis=2, keepdims=True)
     hulls = [mr.Polyhedron(9.0 + cell + corners) for cell, corners in zip(cells[18:26], spread, strict=True)]
     legs = mr.Polyhedron.box((0.3, 0.3, 0.9), (-9, 0, 5)), mr.Polyhedron.box((0.6, 0.3, 0.3), (-8.55, 0, 4.7))
-    ground = mr.Polyhedron.box((9, 9, 1), (0, 0, -0.5), fixed=True)
+    ground = mr.Polyhedron.box((9, 9, 1), (0, 0, -1.5), fixed=True)
     masonry = mr.Masonry((ground, *boxes, *hulls, mr.Compound(legs)), xi=0)
     pose = rng.normal(size=(27, 7))
     pose[:, :3] = rng.permutation(cells) - [body.centroid for body in masonry.polyhedra[1:]]
     pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
-    camera = (rng.uniform(-90, 90), rng.uniform(-180, 180)) if seed else (0.0, 0.0)
-    solids = posed(masonry, pose, camera=camera)
-    place, lines = np.argsort(solids.order(0)), 0
-    for point in rng.uniform(-0.5, 4.2, (300, 3)):
-        met = nearest(solids, point)
-        assert all(place[before] > place[behind] for before, behind in pairwise(met))
-        lines += len(met) > 1
-    assert lines > 50
+    return posed(masonry, pose, camera=(rng.uniform(-90, 90), rng.uniform(-180, 180)))
 
 
-def test_what_has_sunk_below_the_gspreadis_left_out_and_fixed_blocks_are_grey():
-    ax = axes()
-    plotting.blocks(ax, MASONRY, moved(place=(0.0, 0.0, -3.0)))
-    assert len(faces_of(ax).corners) == 3
+@pytest.mark.parametrize("seed", range(6))
+def test_a_pixel_shows_what_its_line_of_sight_meets_first(seed):
+    """Against the lines through blocks as half spaces. At an outline a line may just miss."""
+    solids = heap(seed)
+    view, numbers = shown(solids)
+    block = np.append(solids.facets.block, -1)[np.maximum(numbers, -1)]
+    rng, wrong = np.random.default_rng(seed), 0
+    for row, column in rng.integers(0, 240, (300, 2)).tolist():
+        point = view.middle + view.pixel * ((column - 119.5) * view.axes[0] + (row - 119.5) * view.axes[1])
+        wrong += block[row, column] != nearest(solids, point - 50 * solids.eye, solids.eye)
+    assert wrong == 0
+    assert len(np.unique(block)) > 15
+
+
+def test_a_point_of_the_ground_lies_in_the_shade_where_a_block_is_between_it_and_the_sun():
+    """Against lines to the sun, but for those that pass within a few pixels of an edge."""
+    solids = posed(MASONRY, moved(angle=0.4, place=(0.2, 0.0, 0.7)), camera=(50.0, 35.0))
+    surfaces, sun, ground = solids.stage(0)
+    view = View(np.array([*solids.across, solids.eye]), np.zeros(3), (300, 300), 0.02)
+    colours, found = view.picture(surfaces, sun, ground, 1), {True: 0, False: 0}
+    for x, y in np.random.default_rng(0).uniform(-2, 2, (300, 2)).tolist():
+        column, row = (int(at[0]) for at in pixels_at(view, [[x, y, 0.0]]))
+        near = [
+            nearest(solids, np.array([x + 0.05 * i, y + 0.05 * j, 0.0]), sun) for i in (-1, 0, 1) for j in (-1, 0, 1)
+        ]
+        if nearest(solids, np.array([x, y, 0.0]), solids.eye) < 0 and len({one < 0 for one in near}) == 1:
+            shaded = near[0] >= 0
+            there = colours[row, column, :3]
+            if np.abs(there - INK).max() > 0.1 and colours[row, column, 3] > 0.0:
+                np.testing.assert_allclose(there, np.multiply(FLOOR, SHADED if shaded else 1.0), atol=1e-6)
+                found[shaded] += 1
+    assert min(found.values()) > 15
+
+
+def test_edges_lie_between_plane_pieces_and_not_where_a_body_is_cut_into_parts():
+    legs = [mr.Polyhedron.box((1, 1, 1), (x, 0, 0.5)) for x in (-1.0, 1.0)]
+    frame = mr.Compound([*legs, mr.Polyhedron.box((3, 1, 1), (0, 0, 1.5))])
+    solids = posed(mr.Masonry((GROUND, frame), xi=0), REST[:1], camera=(0.0, -90.0))
+    surfaces, sun, _ = solids.stage(0)
+    view = View(np.array([*solids.across, solids.eye]), np.array([0.0, 0.0, 1.0]), (400, 400), 0.01)
+    colours = view.picture(surfaces, sun, None, 1)
+    dark = np.abs(colours[..., :3] - INK).max(axis=2) < 1e-6
+    heights = [view.seen(np.array([x, -0.5, z])) for x, z in ((-1.0, 1.0), (-1.0, 2.0), (0.0, 1.0))]
+    along_cut, along_top, above_gap = (dark[round(y) - 2 : round(y) + 3, round(x)].any() for x, y, _ in heights)
+    assert (along_cut, along_top, above_gap) == (False, True, True)
+
+
+def test_what_has_sunk_below_the_ground_is_hidden_and_fixed_blocks_are_grey():
+    solids = posed(MASONRY, moved(place=(0.0, 0.0, -0.04)))  # by less than its height
+    surfaces, sun, ground = solids.stage(0)
+    view, _ = shown(solids)
+    colours = view.picture(surfaces, sun, ground, 1)
+    low, above = (
+        colours[row[0], column[0], :3] for column, row in (pixels_at(view, [[1.0, 0.0, z]]) for z in (-0.02, 0.5))
+    )
+    assert low.min() > 0.6
+    assert above[0] > 1.2 * above[2]
     pier = mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5), fixed=True)
-    plotting.blocks(ax := axes(), mr.Masonry((GROUND, pier, PAIR[1]), xi=0))
-    red, green, blue, _ = faces_of(ax).get_facecolor()[-1]
+    red, green, blue = posed(mr.Masonry((GROUND, pier, PAIR[1]), xi=0), REST[:1]).stage(0)[0].colour[0]
     assert red == green == blue
+
+
+def test_blocks_that_fall_past_the_edge_of_the_ground_leave_it_as_it_is():
+    solids = posed(MASONRY, moved(place=(9.0, 0.0, -3.0)))
+    assert solids.ground is None
+    assert len(solids.stage(0)[0].corners) == 3 * 6
 
 
 def test_a_response_is_drawn_as_it_ended_and_moves(tmp_path):
@@ -159,12 +204,13 @@ def test_a_response_is_drawn_as_it_ended_and_moves(tmp_path):
     response = mr.solve_explicit(case, output_step=1e-2)
     plotting.blocks(ax := axes(), response)
     plotting.blocks(same := axes(), masonry, response.pose[-1])
-    np.testing.assert_allclose(np.concatenate(faces_of(ax).corners), np.concatenate(faces_of(same).corners))
+    corners = [drawn_on(one).bodies.stage(0)[0].corners for one in (ax, same)]
+    np.testing.assert_allclose(*corners)
     solids = Solids.of(response)
     figure, update = animation.scene(solids, [], case)
-    before = np.concatenate(faces_of(figure.axes[0]).corners)
     update(len(response.t) - 1)
-    assert np.abs(np.concatenate(faces_of(figure.axes[0]).corners) - before).max() > 0.01
+    assert drawn_on(figure.axes[0]).frame == len(response.t) - 1
+    assert np.abs(solids.corners(len(response.t) - 1) - solids.corners(0)).max() > 0.01
     _, line = figure.axes[0].lines  # the scale bar, and the tie
     np.testing.assert_allclose(np.transpose(line.get_data_3d())[1], (-1.05, 0, 1.8))
     assert plotting.animate(response, tmp_path / "rock.gif", dpi=20, fps=20, camera=(30.0, 60.0)).exists()
@@ -207,14 +253,27 @@ def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
 
 
 def test_a_moving_picture_fills_its_figure_but_for_its_margin():
-    case = mr.MasonryCase(MASONRY, 1.0)
-    figure, _ = animation.scene(posed(MASONRY, REST), [], case)
-    ax = figure.axes[0]
-    seen = np.concatenate([path.vertices for path in faces_of(ax).get_paths()])
-    low, high = ax.transData.transform([seen.min(axis=0), seen.max(axis=0)]) / figure.bbox.size
+    figure, _ = animation.scene(posed(MASONRY, REST), [], mr.MasonryCase(MASONRY, 1.0))
+    figure.draw_without_rendering()
+    drawn = drawn_on(figure.axes[0])
+    seen = drawn.view().seen(drawn.bodies.corners(0).reshape(-1, 3))[:, :2] / drawn.box.size
+    low, high = seen.min(axis=0), seen.max(axis=0)
     room = 1 - np.array([0.2, 0.8]) / figure.get_size_inches()
     assert ((high - low) / room).max() == pytest.approx(1.0, abs=0.01)
     np.testing.assert_allclose(0.5 * (low + high), 0.5, atol=0.08)
+
+
+def test_blocks_are_drawn_where_an_axes_of_three_dimensions_has_them():
+    """Forces and ties are drawn on top of them by its projection."""
+    figure = Figure(figsize=(5, 4), dpi=100)
+    ax = plotting.blocks(figure.add_subplot(1, 2, 1, projection="3d"), MASONRY)
+    figure.draw_without_rendering()
+    drawn = drawn_on(ax)
+    points = drawn.bodies.corners(0).reshape(-1, 3)
+    x, y, _ = proj_transform(*points.T, ax.get_proj())
+    expected = ax.transData.transform(np.column_stack([x, y]))
+    found = drawn.view().seen(points)[:, :2] * drawn.box.size / drawn.view().size + drawn.box.min
+    np.testing.assert_allclose(found, expected, atol=0.6)
 
 
 def test_a_scale_bar_is_as_long_as_it_says_and_lies_across_the_line_of_sight():
@@ -232,10 +291,10 @@ def test_a_scale_bar_is_as_long_as_it_says_and_lies_across_the_line_of_sight():
 def test_the_ground_is_drawn_beyond_blocks_that_have_fallen_far():
     for far, corner in ((1.5, 2.5), (500.0, 3.0 + 3 * 4.0)):  # the front block reaches 1 m at rest
         solids = posed(MASONRY, moved(angle=0.0, place=(far, 0.0, 0.0)))
-        low, high = solids.floor
         size = max(np.ptp(solids.extent(), axis=0))
-        np.testing.assert_allclose(low, [-1.0 - 0.15 * size, -0.5 - 0.15 * size])
-        assert high[0] == pytest.approx(corner + 0.15 * size)
+        middle, radius = solids.ground.middle, solids.ground.radius
+        np.testing.assert_allclose(middle, [0.5 * (corner - 1.0), 0.0], atol=1e-12)
+        assert radius == pytest.approx(0.5 * math.hypot(corner + 1.0, 1.0) + 0.6 * size)
 
 
 def test_a_block_that_is_gone_leaves_the_place_where_it_stood():

@@ -9,7 +9,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
-from mjrock.plotting.perspective import Faces
+from mjrock.plotting.perspective import Rendered
 from mjrock.plotting.section import tie_texts
 from mjrock.result.bodies import bodies_of
 from mjrock.result.compare import paired, taken_by
@@ -66,7 +66,9 @@ def test_blocks_with_an_added_mass_turn_about_their_common_centroid(in_space):
     (block,) = (body for body in bodies_of(answer.moving, answer.velocity) if not body.fixed)
     expected, ax = block.placed(block.corners)[-1], plotting.blocks(answer)
     if in_space:
-        (drawn,) = (np.concatenate(child.corners) for child in ax.collections if isinstance(child, Faces))
+        (drawn,) = (
+            child.bodies.corners(0).reshape(-1, 3) for child in ax.get_children() if isinstance(child, Rendered)
+        )
     else:
         expected, drawn = expected[:, [0, 2]], ax.collections[0].get_paths()[0].vertices
     assert np.linalg.norm(drawn[:, None] - expected, axis=2).min(axis=1).max() < 1e-12
@@ -139,7 +141,7 @@ def test_a_frame_drawn_fast_is_the_frame(tmp_path):
     drawn = [lambda ax: plotting.rotation(ax, [response])]
     figure, update = animation.scene(bodies, drawn, response.case)
     stage = animation.Stage(figure, 50)
-    stage.picture()
+    stage.keep_colours(update, 2)
     update(1)
     fast = np.asarray(stage.picture().convert("RGB"), dtype=float)
     figure.savefig(tmp_path / "slow.png", dpi=50)

@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 
 import mjrock as mr
 from mjrock.geometry import convex
-from mjrock.problem.masonry.lines import masses_of, rates, slips
+from mjrock.problem.masonry.lines import masses_of, mean_slip_rates, rates
 
 GROUND = mr.Polyhedron.box((8, 8, 1), (0, 0, -0.5), fixed=True, name="ground")
 box = mr.Polyhedron.box
@@ -149,7 +149,7 @@ def test_rates_are_differences_of_a_small_motion():
 def test_slips_hold_sliding_and_twisting_and_nothing_else():
     """A block on the ground: the motions without slip are the lift and the two rotations that open the joint."""
     masonry = mr.Masonry([GROUND, box((0.6, 0.4, 2.0), (0, 0, 1.0))])
-    grip = slips(masonry.blocks, masonry.lines, 1).toarray()
+    grip = mean_slip_rates(masonry.blocks, masonry.lines, 1).toarray()
     assert grip.shape == (3, 6)
     assert np.linalg.matrix_rank(grip) == 3
     assert np.abs(grip @ [0, 0, 1, 0, 0, 0]).max() == 0
@@ -162,9 +162,9 @@ def test_points_of_a_joint_slide_in_the_same_directions_on_either_block():
     assert len(set(lines.body[lines.joint == 1].tolist())) == 2
     shift = np.zeros(12)
     shift[6:9] = 0.3, 0.4, 0.0  # the block above slides on the other
-    slip = slips(masonry.blocks, lines, 2) @ shift
+    slip = mean_slip_rates(masonry.blocks, lines, 2) @ shift
     assert np.hypot(slip[1], slip[3]) == pytest.approx(0.5)
-    assert slips(masonry.blocks, lines, 2)[5] @ np.array([0] * 11 + [2.0]) == pytest.approx(2.0)
+    assert mean_slip_rates(masonry.blocks, lines, 2)[5] @ np.array([0] * 11 + [2.0]) == pytest.approx(2.0)
 
 
 def test_a_prism_has_the_frequencies_of_its_section():
@@ -183,7 +183,7 @@ def test_a_prism_has_the_frequencies_of_its_section():
     frequencies = []
     for each in masonry:
         masses, axes = masses_of(each.blocks)
-        opening, grip = rates(each.blocks, each.lines, each.lines.normal), slips(each.blocks, each.lines, 2)
+        opening, grip = rates(each.blocks, each.lines, each.lines.normal), mean_slip_rates(each.blocks, each.lines, 2)
         if axes is not None:
             opening, grip = opening @ axes, grip @ axes
         free = null_space(grip.toarray() / np.sqrt(masses))

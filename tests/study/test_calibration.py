@@ -8,7 +8,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.problem.damping.forms import BedLaw, CornerLaw, PowerLaw, SideLaw
-from mjrock.problem.damping.law import CALIBRATED, HIGHEST
+from mjrock.problem.damping.law import CALIBRATED, HIGHEST_XI
 from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching import match
 from mjrock.study.matching.calibration import Plan
@@ -39,7 +39,7 @@ def test_what_cannot_be_reached_is_reported_with_the_range():
     low = highest_branch(lambda xi: 0.96 + 0.02 * math.exp(-xi / 0.05), 0.95, BOUNDS)
     assert not low.reached
     assert low.lowest > 0.95
-    assert low.xi == pytest.approx(HIGHEST)
+    assert low.xi == pytest.approx(HIGHEST_XI)
     high = highest_branch(lambda xi: 0.96 + 0.02 * math.exp(-xi / 0.05), 0.99, BOUNDS)
     assert not high.reached
     assert high.highest == pytest.approx(0.98, abs=1e-3)

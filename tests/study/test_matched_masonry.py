@@ -13,7 +13,7 @@ import mjrock as mr
 from mjrock.problem.masonry.laws.joint_table import ByKind, ByName
 from mjrock.problem.masonry.pile import Pile
 from mjrock.study.campaign.task import fingerprint
-from mjrock.study.matching.masonry import STRONG, excess, peaks, rebound, restitutions, strong
+from mjrock.study.matching.masonry import STRONG_ABOVE, excess, peaks, rebound, restitutions, strong
 from mjrock.theory.impact import as_one
 
 HOLDS = 10.0
@@ -203,7 +203,7 @@ def test_the_strong_dashpots_of_two_blocks():
     stiffness[1, 2] = stiffness[2, 1] = -turned
     rigid, lowest = np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)[:2]
     assert abs(rigid) < 1e-9 * lowest  # it turns about the edge
-    assert strong(Pile.of(stack(2))) == pytest.approx(2 * STRONG / math.sqrt(lowest), rel=1e-9)
+    assert strong(Pile.of(stack(2))) == pytest.approx(2 * STRONG_ABOVE / math.sqrt(lowest), rel=1e-9)
 
 
 def test_a_restitution_of_ones_own():

@@ -350,6 +350,18 @@ def test_what_is_wrong_is_named(given, said):
         mr.push(panel(0.9), *given)
 
 
+def test_steps_that_gain_energy_are_told_with_what_a_push_takes(monkeypatch):
+    """A push has no argument timestep."""
+
+    def gains(case, **options):
+        raise RuntimeError("0.4 J, 0.40% of the energy, appeared from nowhere by t = 2 s; take timestep = 1 s")
+
+    monkeypatch.setattr("mjrock.study.loading.push.solve_explicit", gains)
+    with pytest.raises(RuntimeError, match=r"from nowhere by t = 2 s, in a piece .* local_damping = 0\.1") as told:
+        mr.push(panel(0.9), 1, 0.1)
+    assert "timestep" not in str(told.value)
+
+
 def test_an_angle_is_for_a_direction_in_space():
     with pytest.raises(ValueError, match=r"angle = 0\.5.* is for a direction; an Actuator has one of its own"):
         mr.push(panel(0.9), JACK, 0.1, angle=0.5)

@@ -37,6 +37,19 @@ def test_virtual_work_and_limit_analysis(bearing, crack):
     assert found.moving == ("lower", "upper", "floor")
 
 
+@pytest.mark.parametrize("load", [1.0, 1e8])
+def test_a_load_that_no_floor_has_is_named_with_its_range(load):
+    """A floor 1.5 m long and twice the thickness wide, of 0.35 to 1.75 m and 100 to 30000 kg/m3."""
+    least, most = (mr.GRAVITY * 1.5 * 0.7 * mass for mass in (0.35 * 100, 1.75 * 30_000))
+    with pytest.raises(ValueError, match="load = ") as told:
+        mr.Masonry.between_floors(WALL, load)
+    assert f"{least:.6g} to {most:.6g} N" in str(told.value)
+    for within in (least, most):
+        strip = mr.Masonry.between_floors(WALL, within * (1 + 1e-9 * (least + most - 2 * within) / most))
+        floor = strip.polygons[strip.names.index("floor")]
+        assert floor.mass * mr.GRAVITY == pytest.approx(within, rel=1e-6)
+
+
 def test_the_crack_is_where_the_multiplier_is_least():
     bending = mr.VerticalBending(WALL, LOAD, 0.2)
     least = 2 * (math.sqrt((WALL.weight + LOAD) * 0.35) + math.sqrt(LOAD * 0.2)) ** 2 / (WALL.weight * 3.2)

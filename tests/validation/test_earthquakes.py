@@ -14,7 +14,9 @@ RECORDS = Path(__file__).parents[1] / "records"
 
 @pytest.mark.slow
 def test_pairs_of_runs(tmp_path, monkeypatch):
+    """One-sided, of three of the walls of the script."""
     monkeypatch.setattr(agreement, "SIDES", agreement.SIDES[:1])
+    monkeypatch.setattr(agreement, "WALLS", agreement.WALLS[:3])
     agreement.main(["--records", str(RECORDS), "--out", str(tmp_path)])
     with open(tmp_path / "agreement.csv") as file:
         rows = list(csv.DictReader(file))

@@ -122,6 +122,58 @@ def test_a_ladder_against_a_wall(degrees, on_wall):
         assert stands(masonry) is (share > 1)
 
 
+@pytest.mark.parametrize("degrees", [50, 65])
+def test_a_house_of_two_cards(degrees):
+    """Thin cards that lean on each other stand from a friction of 1 / (2 tan(angle)) on (a problem of statics of
+    long standing). These have a level foot and an upright ridge: the least friction is (x - x of the near end of the
+    foot) / (height of the ridge), x being that of the centroid, 0.40983 in place of 0.41955 at 50 degrees."""
+    angle, long, flat = math.radians(degrees), 2.0, 0.02
+    far, near = -long * math.cos(angle) - flat / 2, -long * math.cos(angle) + flat / 2
+    ridge, below = -far * math.tan(angle), -near * math.tan(angle)
+    left = mr.Polygon([(far, 0), (near, 0), (0, below), (0, ridge)], name="left")
+    right = mr.Polygon([(-x, z) for x, z in left.corners], name="right")
+    least = float(left.centroid[0] - near) / ridge
+    assert least == pytest.approx(0.5 / math.tan(angle), rel=0.05)
+    for share in (1.001, 0.999):
+        friction = {"ground": share * least, "left": 10.0}
+        masonry = mr.Masonry(
+            [GROUND, left, right], friction=lambda joint, friction=friction: friction[joint.name.split("|")[0]]
+        )
+        assert stands(masonry) is (share > 1)
+
+
+def test_the_least_and_the_largest_thrust_of_an_arch():
+    """Heyman (The Stone Skeleton, 1966): the thrust of an arch that stands lies between that of the line that is
+    steepest in it, through the extrados above and the intrados below, and that of the flattest one, through the
+    intrados above. A foot on smooth ground is pulled outwards and pushed inwards until the arch moves."""
+    radius, thickness, count, push = 5.0, 0.75, 20, 45e3
+    arch = mr.Masonry.arch(radius, thickness, voussoirs=count, friction=5.0)
+    stones = [block for block in arch.blocks if not block.fixed]
+    inner, outer = radius - thickness / 2, radius + thickness / 2
+    foot = box(inner - 1, outer + 1, -0.5, 0, name="foot")
+    rests = [box(-outer, -inner, -0.5, 0, fixed=True, name="left"), box(2, 9, -1, -0.5, fixed=True, name="floor")]
+    masonry = mr.Masonry([*rests, foot, *stones], friction=lambda joint: 0.0 if "floor" in joint.name else 5.0)
+    right = sorted((stone for stone in stones if stone.centroid[0] > 0), key=lambda stone: -stone.centroid[1])
+    mass = np.cumsum([0.0, *(stone.mass for stone in right)])
+    middle = np.cumsum([0.0, *(stone.mass * stone.centroid[0] for stone in right)])
+    angles = np.pi / count * np.arange(count // 2 + 1)
+
+    def thrusts(upper, lower):
+        """Of the lines through a joint at the radius `upper` and one below it at the radius `lower` [N]."""
+        arms = {face: mass * face * np.sin(angles) - middle for face in (upper, lower)}
+        for i in range(count // 2):
+            down = upper * np.cos(angles[i]) - lower * np.cos(angles[i + 1 :])
+            turns = arms[lower][i + 1 :] - arms[upper][i]
+            yield from G * turns[down > 0] / down[down > 0]
+
+    held = mr.Thrust(0.0, -push, block="foot")
+    pulled, pushed = (
+        mr.collapse_multiplier(masonry, None, loads={"foot": (way, 0.0)}, effects=held).multiplier for way in (1, -1)
+    )
+    assert push - pulled == pytest.approx(max(thrusts(outer, inner)), rel=1e-6)
+    assert push + pushed == pytest.approx(min(thrusts(inner, outer)), rel=1e-6)
+
+
 @pytest.mark.parametrize("degrees", [0, 20, 40, 58, 75, 90, 135])
 def test_a_block_that_is_pushed_any_way(degrees):
     """Livesley (Meccanica 27, 1992): it topples over the edge that it reaches first, or slides at mu."""

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 import mjrock as mr
-from scripts.studies.shaken_wall import COURSES, LOAD, K, shaken, wall_of
+from scripts.studies.shaken_wall import COURSES, LOAD, K, Way, shaken, wall_of
 
 MEASURED = 0.091
 """Period of the wall before the runs [s], Moshfeghi et al., Structures 66, 106815, 2024."""
@@ -50,7 +50,7 @@ def period_by_closed_form(masonry):
         mass[6 * i + 3 : 6 * i + 6, 6 * i + 3 : 6 * i + 6] = block.inertia
     top = names.index("beam")
     stiffness[6 * top, 6 * top] += HELD
-    chain = [top, *(names.index(f"course_{i}") for i in reversed(range(COURSES))), names.index("base")]
+    chain = [top, *(names.index(f"part_{i}") for i in reversed(range(COURSES))), names.index("base")]
     pressing = LOAD
     for above, below in pairwise(chain):
         pressing += blocks[above].mass * mr.GRAVITY
@@ -74,8 +74,8 @@ def test_the_wall_rings_with_the_period_of_its_closed_form():
     masonry = wall_of()
     closed = period_by_closed_form(masonry)
     pulse = mr.GroundMotion(0.3 * np.sin(2 * np.pi * np.arange(0.0, 0.1, 0.005) / 0.1), 0.005)
-    (one,) = shaken(masonry, [pulse], 0.0)
+    (one,), _ = shaken(masonry, [pulse], Way())
     assert one.cracked == 0
     assert one.period == pytest.approx(closed, rel=0.01)
     assert one.period / MEASURED == pytest.approx(1.18, abs=0.015)
-    assert 1e-5 < one.peak < 1e-3
+    assert 1e-5 < one.peaks[-1] < 1e-3

@@ -12,10 +12,10 @@ import scipy
 from ...compiled import compiled_at_once, inlined
 from ...geometry.convex import cleaned
 from ...geometry.frames import SPACE
-from ...geometry.graph import components
+from ...geometry.graph import connected_parts
 from ...geometry.hull import Convex, Side, area_vector
 from ...geometry.vectors import Vector, increase, put
-from ...problem.masonry.blocks.joints import CLOSE
+from ...problem.masonry.blocks.joints import PARTS_APART
 from ...problem.masonry.blocks.joints_in_space import axes_across
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
@@ -208,7 +208,7 @@ def sides_of(solids: Sequence[Solid]) -> Integers:
             ]
             same += pairwise(faces)
         first = int(begin[-1])
-    return components(same, first) if same else np.arange(first)
+    return connected_parts(same, first) if same else np.arange(first)
 
 
 def _is_flush(part: Convex, face: int, side: Side) -> bool:
@@ -217,7 +217,7 @@ def _is_flush(part: Convex, face: int, side: Side) -> bool:
     if len(side.normal) == 2:
         axes = (0, 2)
     off = (corners[:, axes] - side.corners[0]) @ side.normal
-    return bool(normal[list(axes)] @ side.normal > 0 and np.abs(off).max() <= 2 * CLOSE)
+    return bool(normal[list(axes)] @ side.normal > 0 and np.abs(off).max() <= 2 * PARTS_APART)
 
 
 def whole_outlines(outlines: Sequence[Integers], side: Integers, corners: Array, normals: Array) -> list[Integers]:
@@ -234,7 +234,7 @@ def whole_outlines(outlines: Sequence[Integers], side: Integers, corners: Array,
         faces = np.flatnonzero(side == number)
         points = np.unique(np.concatenate([outlines[face] for face in faces.tolist()]))
         flat = corners[points] @ axes_across(normals[faces[:1]])[0].T
-        ring = cleaned(flat[scipy.spatial.ConvexHull(flat).vertices], CLOSE)
+        ring = cleaned(flat[scipy.spatial.ConvexHull(flat).vertices], PARTS_APART)
         hull = points[np.array([np.hypot(*(flat - at).T).argmin() for at in ring])]
         for face in faces.tolist():
             around[face] = hull if area_vector(corners[hull]) @ normals[faces[0]] > 0 else hull[::-1]

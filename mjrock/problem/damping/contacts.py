@@ -22,11 +22,11 @@ from ...quantities import (
 )
 from ..wall.block import Block
 from ..wall.case import Case
-from .interface import Interface, Points, reference_frequency
+from .interface import Interface, PointCount, reference_frequency
 from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named, rebound_over_uplift
-from .restitution import UNLIKE, Restitution
+from .restitution import ANOTHER_WALL, Restitution
 
-HOLDS = 10.0
+HOLDS_NEARLY = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
 OfBase = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
 """Stiffness of the base of a wall."""
@@ -72,7 +72,7 @@ def _doubts(
             f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on the "
             "contacts of this one (docs/damping.md); CALIBRATED is made for them"
         )
-    if side_friction or (friction is not None and friction < HOLDS):
+    if side_friction or (friction is not None and friction < HOLDS_NEARLY):
         yield (
             f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
             f"side_friction = {side_friction}; matched_contacts finds the damping for them"
@@ -117,7 +117,7 @@ class Contacts:
         xi_base: float,
         k_side: OfSide = None,
         xi_side: float = 0.0,
-        points: Points = 2,
+        points: PointCount = 2,
         friction: Rubbing = None,
         side_friction: Rubbing = None,
         law: str = "given",
@@ -161,7 +161,7 @@ class Contacts:
         k_base: OfBase,
         k_side: OfSide = None,
         law: AnyLaw | str | None = None,
-        points: Points = 2,
+        points: PointCount = 2,
         amplitude: Annotated[float, Within(1e-3, 1, name="amplitude theta_0/alpha")] = 0.5,
         friction: Rubbing = None,
         side_friction: Rubbing = None,
@@ -234,7 +234,7 @@ class Contacts:
         Warns:
             Implausible: if the damping was chosen for a stop of another height.
         """
-        if self.stop_top is not None and not math.isclose(top, self.stop_top, rel_tol=UNLIKE):
+        if self.stop_top is not None and not math.isclose(top, self.stop_top, rel_tol=ANOTHER_WALL):
             warn_of(
                 f"the damping was chosen for a side stop up to {self.stop_top:.4g} m, and that of the case reaches "
                 f"{top:.4g} m; take Restitution.from_geometry(wall, stop_top={top:.4g}) and "

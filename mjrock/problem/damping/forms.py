@@ -12,9 +12,12 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...quantities import keep, require_real, short_repr
+from ...quantities import Array, keep, require_real, short_repr
 from ..wall.block import Block
 from .restitution import Restitution
+
+Numbers = float | Array
+"""A number, or one for each of many walls."""
 
 
 @dataclass(frozen=True)
@@ -38,14 +41,14 @@ class Groups:
         side_loss: -ln |e_side|, what is asked for [-].
     """
 
-    slenderness: Any
-    k_n: Any
-    softness: Any
-    work: Any
-    side_ratio: Any
-    housner: Any
-    base_loss: Any
-    side_loss: Any
+    slenderness: Numbers
+    k_n: Numbers
+    softness: Numbers
+    work: Numbers
+    side_ratio: Numbers
+    housner: Numbers
+    base_loss: Numbers
+    side_loss: Numbers
 
     @classmethod
     def of(cls, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5) -> Groups:
@@ -75,7 +78,7 @@ class Form(Protocol):
     def r_squared(self) -> float:
         """R2 of the damping ratio over the matched simulations that it was fitted to [-]."""
 
-    def xi(self, groups: Groups, loss: Any) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Any:
         """The damping ratio [-] that loses `loss` = -ln|e| in the impact of this formula; floats or arrays."""
 
 
@@ -99,7 +102,7 @@ class PowerLaw:
         factor = slenderness**self.slenderness_exponent * k_n**self.stiffness_exponent
         return float(-self.coefficient * factor * math.log(abs(e)))
 
-    def xi(self, groups: Groups, loss: Any) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Any:
         """As `Form.xi`."""
         factor = groups.slenderness**self.slenderness_exponent * groups.k_n**self.stiffness_exponent
         return self.coefficient * factor * loss
@@ -135,14 +138,14 @@ class CornerLaw:
         steepness = w**self.work_exponent * groups.slenderness**self.slenderness_exponent
         return most, least, self.scale * steepness * (1 + self.growth * w)
 
-    def xi(self, groups: Groups, loss: Any) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Any:
         """As `Form.xi`; infinite where no damping loses as much, zero or less where none loses as little."""
         most, least, scale = self._parts(groups)
         left = np.maximum(0.0, most - loss) / (most - least)
         with np.errstate(divide="ignore"):
             return -scale * np.log(left)
 
-    def loss(self, groups: Groups, xi: Any) -> Any:
+    def loss(self, groups: Groups, xi: Numbers) -> Any:
         """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
         most, least, scale = self._parts(groups)
         return most - (most - least) * np.exp(-xi / scale)
@@ -171,12 +174,12 @@ class BedLaw:
         w = groups.work
         return self.inertia * groups.housner + self.weight * w, self.scale * w**self.exponent
 
-    def xi(self, groups: Groups, loss: Any) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Any:
         """As `Form.xi`."""
         amplitude, scale = self._parts(groups)
         return scale * np.expm1(np.minimum(loss / amplitude, 50.0))
 
-    def loss(self, groups: Groups, xi: Any) -> Any:
+    def loss(self, groups: Groups, xi: Numbers) -> Any:
         """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
         amplitude, scale = self._parts(groups)
         return amplitude * np.log1p(xi / scale)
@@ -203,7 +206,7 @@ class SideLaw:
     softening: float
     r_squared: float = math.nan
 
-    def xi(self, groups: Groups, loss: Any) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Any:
         """As `Form.xi`."""
         total = loss + self.base_share * groups.base_loss
         factor = groups.slenderness**self.slenderness_exponent * groups.side_ratio**self.ratio_exponent

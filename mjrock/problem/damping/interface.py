@@ -17,12 +17,12 @@ LAWS_END = 0.3
 """Highest damping ratio that the laws predict and searches try [-], see `mjrock.problem.damping.law`."""
 
 
-Points = Annotated[int, Within(2, 1000, name="contact points", whole=True)]
+PointCount = Annotated[int, Within(2, 1000, name="contact points", whole=True)]
 """Contact lines of a face."""
 
 
 @within_ranges
-def contact_lines(face: float, points: Points) -> tuple[Array, Array]:
+def contact_lines(face: float, points: PointCount) -> tuple[Array, Array]:
     """Positions along a face of width `face` [m] from its centre [m], and the widths that are tributary to them [m].
 
     The lines are evenly spaced from edge to edge, so that the outer two have half the tributary width of the others.
@@ -86,7 +86,7 @@ class Interface:
     face: Annotated[float, Within(1e-3, 1000, "m")]
     length: Annotated[float, Within(1e-3, 1000, "m")]
     frequency: Annotated[float, Within(1e-3, 1e9, "rad/s", "reference frequency")]
-    points: Points = 2
+    points: PointCount = 2
     friction: Annotated[float | None, Within(0, 10)] = None
 
     def __post_init__(self) -> None:

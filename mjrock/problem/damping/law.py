@@ -16,9 +16,9 @@ from ..wall.block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
 from .restitution import Restitution
 
-LEAST, HIGHEST = 1e-3, 0.3
+LEAST_XI, HIGHEST_XI = 1e-3, 0.3
 """Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
-MARGIN = 0.03
+REACH_MARGIN = 0.03
 """Share of the reach of a base, at either end, in which hardly any change of damping changes the restitution [-]."""
 SIZE = 2.0
 """Rebound over the uplift rotation from which a law can be expected to give it [-]."""
@@ -120,7 +120,7 @@ class DampingLaw:
                     f"{self.name}: no damping of this base makes e_2s = {e.base:.4g}; it reaches {lowest:.4g} to "
                     f"{highest:.4g}, and gets the damping that comes closest"
                 )
-            xi_base = min(max(xi_base, LEAST), HIGHEST)
+            xi_base = min(max(xi_base, LEAST_XI), HIGHEST_XI)
         return xi_base, float(self.side.xi(groups, groups.side_loss))
 
     def reach(self, wall: Block, k_n: float, amplitude: float = 0.5) -> tuple[float, float]:
@@ -135,7 +135,7 @@ class DampingLaw:
         if loss is None:
             return 0.0, 1.0
         groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
-        return math.exp(-float(loss(groups, HIGHEST))), math.exp(-float(loss(groups, LEAST)))
+        return math.exp(-float(loss(groups, HIGHEST_XI))), math.exp(-float(loss(groups, LEAST_XI)))
 
     def covers(
         self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
@@ -151,7 +151,7 @@ class DampingLaw:
         k_side = None if k_side is None else require_stiffness("k_side", k_side)
         low, high = self.reach(wall, k_n, amplitude)
         k_n, amplitude = float(k_n), float(amplitude)
-        margin = MARGIN * (high - low)
+        margin = REACH_MARGIN * (high - low)
         return (
             not self._outside(wall, e, k_n, k_side)
             and low + margin <= e.base <= high - margin
@@ -265,13 +265,13 @@ CALIBRATED = DampingLaw.load(LAW_FILES / "calibrated.toml")
 CALIBRATED_BED = DampingLaw.load(LAW_FILES / "calibrated_bed.toml")
 """The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
-NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
+LAWS_BY_NAME = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
 """The laws that come with the package, by name."""
 
 
 def law_named(name: str) -> DampingLaw:
     """The law of that name in any case of letters, with a hyphen or blank for the underscore too, or a ValueError."""
     spelt = name.strip().upper().replace("-", "_").replace(" ", "_")
-    if spelt not in NAMED:
-        raise ValueError(f"law = {name!r} is not one of {', '.join(NAMED)}")
-    return NAMED[spelt]
+    if spelt not in LAWS_BY_NAME:
+        raise ValueError(f"law = {name!r} is not one of {', '.join(LAWS_BY_NAME)}")
+    return LAWS_BY_NAME[spelt]

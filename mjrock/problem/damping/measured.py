@@ -29,7 +29,7 @@ Ratio = Annotated[float, Within(-1, 0.5)]
 """Poisson's ratio."""
 HERTZ_DURATION = 2.9432
 """Time of a blow between elastic spheres, times the speed of approach over the largest indentation [-]."""
-LEAST = 1e-3
+LOWEST_RESTITUTION = 1e-3
 """The smallest restitution for which a damping ratio is given [-]."""
 
 
@@ -82,7 +82,7 @@ def measured_contact(
     ratios, release = _ratios(heights)
     e, low, high = _interval(ratios, confidence, 0.0, 1.0)
     if contact_times is None:
-        return MeasuredContact(e, (low, high), rebound_damping(max(e, LEAST)), None, None, len(ratios), 0)
+        return MeasuredContact(e, (low, high), rebound_damping(max(e, LOWEST_RESTITUTION)), None, None, len(ratios), 0)
     if mass is None:
         raise ValueError("contact_times are given without mass; the stiffness needs it")
     times = require_row("contact_times", contact_times, "time of contact")
@@ -92,7 +92,7 @@ def measured_contact(
     speed = math.sqrt(2 * gravity * release)
     k, softest, stiffest = (mass * _frequency(time, e, gravity, speed) ** 2 for time in (mean, long, short))
     omega = math.sqrt(k / mass)
-    xi = falling_damping(max(e, LEAST), min(gravity / (omega * speed), MOST_PULL))
+    xi = falling_damping(max(e, LOWEST_RESTITUTION), min(gravity / (omega * speed), MOST_PULL))
     return MeasuredContact(e, (low, high), xi, k, (softest, stiffest), len(ratios), len(times))
 
 
@@ -178,7 +178,7 @@ def _frequency(time: float, e: float, gravity: float, speed: float) -> float:
     omega = math.pi / time
     for _ in range(100):
         pull = min(gravity / (omega * speed), MOST_PULL)
-        new = falling_rebound(falling_damping(max(e, LEAST), pull), pull).duration / time
+        new = falling_rebound(falling_damping(max(e, LOWEST_RESTITUTION), pull), pull).duration / time
         if not new < math.inf or abs(new - omega) <= 1e-10 * omega:
             break
         omega = new

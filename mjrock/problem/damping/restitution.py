@@ -21,7 +21,7 @@ from ...quantities import (
 )
 from ..wall.block import Block
 
-UNLIKE = 1e-2
+ANOTHER_WALL = 1e-2
 """Relative difference of alpha, and of the share of the height, from which a restitution is that of another wall [-].
 Masses that a case adds, or a small inset, change alpha by less or are worth a word."""
 LARGEST_ANGLE = 0.4
@@ -66,12 +66,12 @@ class Restitution:
         if self.made_for is None:
             return None
         alpha, share = self.made_for
-        if not math.isclose(alpha, wall.alpha, rel_tol=UNLIKE):
+        if not math.isclose(alpha, wall.alpha, rel_tol=ANOTHER_WALL):
             return (
                 f"the restitution is that of a wall of alpha = {alpha:.4g} rad, and this one has {wall.alpha:.4g} rad"
             )
         asked = share if stop_top is None else min(stop_top / (2 * wall.h), 1.0)
-        if abs(asked - share) > UNLIKE:
+        if abs(asked - share) > ANOTHER_WALL:
             return (
                 f"the restitution is that of a side stop up to {share * 2 * wall.h:.4g} m, and this one reaches "
                 f"{asked * 2 * wall.h:.4g} m; take Restitution.from_geometry(wall, stop_top={asked * 2 * wall.h:.4g})"

@@ -12,7 +12,7 @@ from typing import Annotated
 
 from ...quantities import Within, require_kind, require_stiffness, within_ranges
 from ..wall.block import Block
-from .interface import Points, contact_lines, reference_frequency
+from .interface import PointCount, contact_lines, reference_frequency
 
 Modulus = Annotated[float, Within(1e5, 1e12, "Pa", "modulus E")]
 """Young's modulus of mortar, masonry or stone."""
@@ -39,7 +39,7 @@ def joint_stiffness(E: Modulus, thickness: Annotated[float, Within(1e-4, 1, "m")
 
 
 @within_ranges
-def wall_stiffness(E: Modulus, wall: Block, points: Points = 2) -> float:
+def wall_stiffness(E: Modulus, wall: Block, points: PointCount = 2) -> float:
     """k_n = E / H of a base that stands for the elasticity of the wall above it [N/m3].
 
     Two corner lines of E / H have the rotational stiffness 3 E I / H of a cantilever with a force at its top. On more
@@ -76,7 +76,9 @@ def layered_stiffness(*stiffnesses: float) -> float:
 
 
 @within_ranges
-def measured_stiffness(wall: Block, frequency: Annotated[float, Within(1e-3, 1e4, "Hz")], points: Points = 2) -> float:
+def measured_stiffness(
+    wall: Block, frequency: Annotated[float, Within(1e-3, 1e4, "Hz")], points: PointCount = 2
+) -> float:
     """k_n for which the wall, rocking in full contact on its base, has a measured natural frequency [N/m3].
 
     The frequency is the lowest out of plane of the detached wall with its top free, at small amplitude, by ambient

@@ -26,7 +26,7 @@ from ...quantities import (
     spelt,
     within_ranges,
 )
-from .oscillator import LONGEST, building_modes
+from .oscillator import LONGEST_PERIOD, building_modes
 
 LEAST_ETA = 0.55
 """Least correction for damping [-], NTC 2018 equation 3.2.4 and EN 1998-1 equation 3.6."""
@@ -61,7 +61,7 @@ SITE_EC8 = {
 given for type 1 alone."""
 FIRM = 10.0
 """T_F, beyond which the displacement is that of the ground [s]."""
-FAINT = 0.35
+PROBABLY_IN_G = 0.35
 """a_g below which it was probably given in g [m/s2]."""
 
 
@@ -210,7 +210,7 @@ class PointSpectrum:
 
     def __post_init__(self) -> None:
         keep_declared(self, "spectrum")
-        period = require_increasing("period", self.period, "period [s]", LONGEST, f"0 to {LONGEST:g} s")
+        period = require_increasing("period", self.period, "period [s]", LONGEST_PERIOD, f"0 to {LONGEST_PERIOD:g} s")
         acceleration = require_array("acceleration", self.acceleration, (len(period),))
         for value in acceleration.tolist():
             require_within("acceleration", value, 1e-6, 1e3, "m/s2")
@@ -297,7 +297,7 @@ def code_spectrum(
         raise ValueError(f"soil = {spelt(soil)} is not one of {', '.join(SITE_NTC)}")
     if not isinstance(topography, str) or topography not in TOPOGRAPHY_NTC:
         raise ValueError(f"topography = {spelt(topography)} is not one of {', '.join(TOPOGRAPHY_NTC)}")
-    if ag < FAINT:
+    if ag < PROBABLY_IN_G:
         warnings.warn(
             f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?",
             Implausible,
@@ -335,5 +335,5 @@ def periods_of(T: ArrayLike) -> Array:
     """Periods as an array [s], each 0 to 100."""
     periods = require_reals("T", T, "one or more periods [s]")
     for period in np.atleast_1d(periods).tolist():
-        require_within("T", period, 0.0, LONGEST, "s")
+        require_within("T", period, 0.0, LONGEST_PERIOD, "s")
     return np.asarray(periods)

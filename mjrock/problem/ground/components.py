@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 VERTICAL = re.compile(r"(?:[A-Z][GHLNJ])?[ZVU]|UP|DO?W?N|VERT?(?:ICAL)?|VRT|U-?D|VT", re.IGNORECASE)
-CHANNEL = re.compile(r"([A-Z][GHLNJ])([ENXYLTZVU123])", re.IGNORECASE)
+CHANNEL_CODE = re.compile(r"([A-Z][GHLNJ])([ENXYLTZVU123])", re.IGNORECASE)
 """A code such as HNE: band and instrument, then the direction."""
 AZIMUTH = re.compile(r"(\d{1,3}(?:\.\d*)?)(?: ?deg)?", re.IGNORECASE)
 BEARING = re.compile(r"([NS]) ?(\d{1,2}) ?([EW])", re.IGNORECASE)
@@ -19,14 +19,14 @@ FAMILIES = (
     ("FN", "FP"), ("1", "2"),
 )  # fmt: skip
 """The two horizontal directions of a record, as networks name them; 1 and 2 only in a channel such as HN1."""
-UPRIGHT = "VERT|VER|VRT|UP|DWN|DN|U-D|UD"
+UPRIGHT_CODES = "VERT|VER|VRT|UP|DWN|DN|U-D|UD"
 TOKENS = "|".join(sorted({token for family in FAMILIES[:-1] for token in family}, key=len, reverse=True))
-NAMED = (
-    re.compile(rf"(?<![A-Za-z])({UPRIGHT}|{TOKENS}|[ZVU])(?![A-Za-z])", re.IGNORECASE),
-    re.compile(rf"(?<![A-Za-z])({CHANNEL.pattern})(?![A-Za-z0-9])", re.IGNORECASE),
+DIRECTION_IN_NAME = (
+    re.compile(rf"(?<![A-Za-z])({UPRIGHT_CODES}|{TOKENS}|[ZVU])(?![A-Za-z])", re.IGNORECASE),
+    re.compile(rf"(?<![A-Za-z])({CHANNEL_CODE.pattern})(?![A-Za-z0-9])", re.IGNORECASE),
     re.compile(r"(?<=\d)([xyz])(?=[a-z]\.)", re.IGNORECASE),
     re.compile(r"(?<=[A-Za-z\d-])(\d{3})(?=(?:\.\w*)?$)"),
-    re.compile(rf"({UPRIGHT})(?=(?:\.\w*)?$)"),
+    re.compile(rf"({UPRIGHT_CODES})(?=(?:\.\w*)?$)"),
 )
 """Where the name of a file has a direction: between what are no letters, as a channel, after a number as REXEL has it,
 as three digits at the end, and as up or down at the end."""
@@ -36,7 +36,7 @@ IDENTITY = ("NETWORK", "STATION_CODE", "STATION_NAME", "LOCATION", "EVENT_ID", "
 """Fields of a header that are the same for all components of a record."""
 
 
-class Group(NamedTuple):
+class RecordFiles(NamedTuple):
     """Files of one record.
 
     Args:
@@ -77,7 +77,7 @@ def order(token: str) -> tuple[bool, float, str]:
     return is_vertical(token), rank if rank is not None else angle if angle is not None else 0.0, token
 
 
-def together(tokens: Sequence[str]) -> bool:
+def of_one_record(tokens: Sequence[str]) -> bool:
     """Whether directions are those of one record: one or two horizontal ones of a kind, and at most one vertical."""
     level = [token for token in tokens if not is_vertical(token)]
     if len(set(tokens)) < len(tokens) or not 1 <= len(level) <= 2 or not 2 <= len(tokens) <= len(level) + 1:
@@ -87,7 +87,7 @@ def together(tokens: Sequence[str]) -> bool:
     return len(level) == 1 or square or any({_bare(token) for token in level} == set(family) for family in FAMILIES)
 
 
-def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[Group]:
+def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     """Which files are components of one record, by their names and the headers of what is in them.
 
     Raises:
@@ -99,32 +99,32 @@ def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[Group]:
     taken = {name for group in groups for name in group.tokens}
     for name, header in headers.items():
         if name not in taken:
-            upright = [token for token, _ in _candidates(name) if re.fullmatch(UPRIGHT, token)]
-            groups.append(Group(name, {name: (upright or [header.get("STREAM", "")])[-1]}, "alone"))
+            upright = [token for token, _ in _candidates(name) if re.fullmatch(UPRIGHT_CODES, token)]
+            groups.append(RecordFiles(name, {name: (upright or [header.get("STREAM", "")])[-1]}, "alone"))
     return sorted(groups)
 
 
-def _by_header(headers: Mapping[str, Mapping[str, str]]) -> Iterator[Group]:
+def _by_header(headers: Mapping[str, Mapping[str, str]]) -> Iterator[RecordFiles]:
     """Files whose headers state one station and event, and directions that go together."""
     sets: dict[tuple[str, ...], dict[str, str]] = {}
     for name, header in headers.items():
         stream = header.get("STREAM", "")
         if is_direction(stream) and {"STATION_CODE", "STATION_NAME"} & header.keys():
-            code = CHANNEL.fullmatch(stream)
+            code = CHANNEL_CODE.fullmatch(stream)
             sets.setdefault((*_identity(name, header), code[1] if code else ""), {})[name] = stream
     for tokens in sets.values():
-        if together(list(tokens.values())):
+        if of_one_record(list(tokens.values())):
             yield _group(tokens, "header")
 
 
-def _by_names(headers: Mapping[str, Mapping[str, str]]) -> list[Group]:
+def _by_names(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     """Files whose names differ in their direction alone, and whose headers do not tell them apart."""
     sets: dict[str, dict[str, str]] = {}
     for name in headers:
         for token, key in _candidates(name):
             sets.setdefault(key, {})[name] = token
     same = {key: len({_identity(name, headers[name]) for name in tokens}) == 1 for key, tokens in sets.items()}
-    groups = {key: tokens for key, tokens in sets.items() if same[key] and together(list(tokens.values()))}
+    groups = {key: tokens for key, tokens in sets.items() if same[key] and of_one_record(list(tokens.values()))}
     for name in headers:
         if len(keys := [key for key, tokens in groups.items() if name in tokens]) > 1:
             raise ValueError(f"{name} goes with other files in more than one way: {', '.join(keys)}; give a pattern")
@@ -139,23 +139,23 @@ def _identity(name: str, header: Mapping[str, str]) -> tuple[str, ...]:
 
 def _candidates(name: str) -> Iterator[tuple[str, str]]:
     """Directions that the name of a file may have, each with the name that has ? in its place."""
-    for pattern in NAMED:
+    for pattern in DIRECTION_IN_NAME:
         for found in pattern.finditer(name):
             token = found[1]
-            first = found.end() - 1 if CHANNEL.fullmatch(token) else found.start()
+            first = found.end() - 1 if CHANNEL_CODE.fullmatch(token) else found.start()
             if not token.isdigit() or int(token) <= 360:
                 yield token, f"{name[:first].removesuffix('-')}?{name[found.end() :]}"
 
 
-def _group(tokens: dict[str, str], by: str) -> Group:
+def _group(tokens: dict[str, str], by: str) -> RecordFiles:
     """The components of a record in their order, under the name that their files have in common."""
     names = sorted(tokens, key=lambda name: order(tokens[name]))
     common = [{key for _, key in _candidates(name)} for name in names]
     shared = sorted(set.intersection(*common))
-    return Group(shared[0] if shared else ", ".join(names), {name: tokens[name] for name in names}, by)
+    return RecordFiles(shared[0] if shared else ", ".join(names), {name: tokens[name] for name in names}, by)
 
 
 def _bare(token: str) -> str:
     """A direction without the band and instrument of its channel, in capitals."""
-    code = CHANNEL.fullmatch(token)
+    code = CHANNEL_CODE.fullmatch(token)
     return code[2].upper() if code else token.upper()

@@ -17,22 +17,22 @@ import numpy as np
 
 from ...quantities import GRAVITY, Array, require_within
 from .records import (
+    ACCELERATION_UNITS,
     AS_ASCII,
     BINARY,
     BREAK,
     COARSEST,
     COUNT,
+    DECIMAL,
     FINEST,
-    STEP,
-    UNITS,
     Parse,
     Trace,
     binary_kind,
     factor_of,
+    in_message,
     number,
     numbers,
     samples,
-    short,
     stated_units,
     step,
     value_of,
@@ -42,36 +42,38 @@ from .tables import SPREADSHEETS, Wanted, parse_table, table_lines
 AT2_UNIT = re.compile(
     r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
 )
-FILTERS = rf"(?:[\s.,;]*(?:[-+]?\d+\s*pole\s*@|[hl]p\s*[=:]?|filter\s+points\s*:?)\s*(?:{STEP}\s*(?:hz)?)?)*[\s.,]*"
+FILTERS = rf"(?:[\s.,;]*(?:[-+]?\d+\s*pole\s*@|[hl]p\s*[=:]?|filter\s+points\s*:?)\s*(?:{DECIMAL}\s*(?:hz)?)?)*[\s.,]*"
 """What may follow the time step of an AT2 file: the filters that the record went through."""
-AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*(?>{STEP})(?:\s*(?:s|sec|seconds)\b)?{FILTERS}", AS_ASCII)
-AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
+AT2_HEAD = re.compile(
+    rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*(?>{DECIMAL})(?:\s*(?:s|sec|seconds)\b)?{FILTERS}", AS_ASCII
+)
+AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{DECIMAL}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
 AT2_PLACE = re.compile(r"([^,]*)(?:,\s*\d[\d/ -]*)?,\s*(.*?),\s*(?:-(?=[A-Z]))?([^,(]*?)\s*(?:\(.*)?", AS_ASCII)
 """Event, date, station and component, the last of them an azimuth or UP."""
-TITLE = 200
+EVENT_LINE = 200
 """Characters of a line with the names of event and station that are looked at."""
 ESM_FIELD = re.compile(r"([A-Z0-9_/^]+):[ \t]*(.*)", AS_ASCII)
 ESM_LINES = 64
 """Lines of the header of an ESM or ITACA file, one field in each."""
 ESM_UNITS = {"cm/s^2": 1e-2, "m/s^2": 1.0, "g": GRAVITY}
-SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
+SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{DECIMAL}(?:[ \t]+(.*))?", AS_ASCII)
 
 KNET = {
     "Station Code": r"(?P<STATION_CODE>\S+)", "Origin Time": "(?P<EVENT_ID>.+)", "Dir.": "(?P<dir>[NEU]-[SWD]|[1-6])",
-    "Sampling Freq(Hz)": rf"(?P<rate>{STEP[1:-1]})\s*Hz", "Duration Time(s)": rf"(?P<span>{STEP[1:-1]})",
-    "Scale Factor": rf"(?P<gal>{STEP[1:-1]})\(gal\)/(?P<counts>{STEP[1:-1]})",
+    "Sampling Freq(Hz)": rf"(?P<rate>{DECIMAL[1:-1]})\s*Hz", "Duration Time(s)": rf"(?P<span>{DECIMAL[1:-1]})",
+    "Scale Factor": rf"(?P<gal>{DECIMAL[1:-1]})\(gal\)/(?P<counts>{DECIMAL[1:-1]})",
 }  # fmt: skip
 """Fields of the header of a K-NET file, and how each is written."""
 KNET_STREAMS = "NS", "EW", "UD"
 KNET_HEAD = 17
-POINTS = re.compile(rf"\s*{COUNT}\s+(?:points\s+of\s+)?accel(?:eration|erogram)?\b.*", AS_ASCII)
+SAMPLE_COUNT = re.compile(rf"\s*{COUNT}\s+(?:points\s+of\s+)?accel(?:eration|erogram)?\b.*", AS_ASCII)
 """What stands before the samples of a channel in files of CSMIP and COSMOS, with their number."""
-EVERY = re.compile(rf"\bat\s+{STEP}\s*(sec|pts/sec)", AS_ASCII)
+SAMPLING_LINE = re.compile(rf"\bat\s+{DECIMAL}\s*(sec|pts/sec)", AS_ASCII)
 WIDTH = re.compile(r"\(\s*+\d*+\s*+[efg](\d{1,3})\.\d{1,3}\s*\)", AS_ASCII)
-CHANNEL = re.compile(r"(?:Sta )?Cha[n:]?\s*[\d?]+:\s*(H\d|[\d.]+(?=\s*deg)|[a-z]+)", AS_ASCII)
+CHANNEL_LINE = re.compile(r"(?:Sta )?Cha[n:]?\s*[\d?]+:\s*(H\d|[\d.]+(?=\s*deg)|[a-z]+)", AS_ASCII)
 STATION = re.compile(r"Stat?n?(?:ion)? (?:No\.?|Id\.?)[ :.]*([\w-]+)(?:\s+Code: ?(?:(\w+)-)?(\w+))?", AS_ASCII)
 SCNL = re.compile(r"<SCNL>(\w+)\.(\w+)\.(\w+)", AS_ASCII)
-GEONET_STEP = re.compile(rf"(?:.*\bat\s+{STEP}\s*s(?:ec)?\s+intervals|.*intervals\s+of\s+{STEP}\s*s).*", AS_ASCII)
+GEONET_STEP = re.compile(rf"(?:.*\bat\s+{DECIMAL}\s*s(?:ec)?\s+intervals|.*intervals\s+of\s+{DECIMAL}\s*s).*", AS_ASCII)
 GEONET_COUNT = re.compile(rf"Number of points\s+{COUNT}\b.*", AS_ASCII)
 GEONET_HEAD = 26
 """Lines of the header of a component of GeoNet: 16 of text and 10 of numbers."""
@@ -85,8 +87,8 @@ def esm_header(lines: Sequence[str]) -> dict[str, str]:
     for place, field in enumerate(fields, 1):
         if field is None:
             raise ValueError(
-                f"line {place} is {short(lines[place - 1])}: not an ESM or ITACA file, whose first {ESM_LINES} lines "
-                "are fields such as STATION_CODE: AMT"
+                f"line {place} is {in_message(lines[place - 1])}: not an ESM or ITACA file, whose first {ESM_LINES} "
+                "lines are fields such as STATION_CODE: AMT"
             )
     return {field[1].upper(): field[2] for field in fields if field is not None}
 
@@ -98,11 +100,11 @@ def parse_esm(lines: list[str]) -> list[Trace]:
         if not head.get(name):
             raise ValueError(f"the header has no {name}; an ESM or ITACA file of accelerations states it")
     if (kind := head.get("DATA_TYPE", "ACCELERATION").upper()) != "ACCELERATION":
-        raise ValueError(f"DATA_TYPE is {short(kind)}; the record has to be one of ACCELERATION")
+        raise ValueError(f"DATA_TYPE is {in_message(kind)}; the record has to be one of ACCELERATION")
     if (unit := head["UNITS"].lower()) not in ESM_UNITS:
-        raise ValueError(f"UNITS is {short(head['UNITS'])}; the valid ones are {', '.join(ESM_UNITS)}")
+        raise ValueError(f"UNITS is {in_message(head['UNITS'])}; the valid ones are {', '.join(ESM_UNITS)}")
     if not re.fullmatch(COUNT, head["NDATA"]):
-        raise ValueError(f"NDATA is {short(head['NDATA'])}; it has to be the number of samples")
+        raise ValueError(f"NDATA is {in_message(head['NDATA'])}; it has to be the number of samples")
     place = list(head).index("SAMPLING_INTERVAL_S") + 1
     dt = require_within(
         f"line {place}: time step dt", number(head["SAMPLING_INTERVAL_S"], place), FINEST, COARSEST, "s"
@@ -130,19 +132,21 @@ def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
     lines = [f"{name}: {value}" for name, value in fields.items()]
     fit = all(ESM_FIELD.fullmatch(line) and not BREAK.search(line) for line in lines)
     if len(lines) != ESM_LINES or not fit or any(name != name.upper() for name in fields):
-        raise ValueError(f"header = {short(str(dict(header)))}: at most 58 fields of one line, named as in an ESM file")
+        raise ValueError(
+            f"header = {in_message(str(dict(header)))}: at most 58 fields of one line, named as in an ESM file"
+        )
     return "\n".join([*lines, *(repr(value) for value in (accel / ESM_UNITS["cm/s^2"]).tolist())]) + "\n"
 
 
 def parse_at2(lines: list[str]) -> list[Trace]:
     """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g."""
     if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
-        instead = f"line 3 is {short(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
+        instead = f"line 3 is {in_message(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
         raise ValueError(f"{instead}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
     head = AT2_HEAD.fullmatch(lines[3]) or AT2_OLD_HEAD.fullmatch(lines[3])
     if head is None:
-        raise ValueError(f"line 4 states no NPTS and DT as in NPTS= 4000, DT= .0100 SEC alone: {short(lines[3])}")
-    place = AT2_PLACE.fullmatch(BREAK.sub(" ", lines[1])[:TITLE].strip())
+        raise ValueError(f"line 4 states no NPTS and DT as in NPTS= 4000, DT= .0100 SEC alone: {in_message(lines[3])}")
+    place = AT2_PLACE.fullmatch(BREAK.sub(" ", lines[1])[:EVENT_LINE].strip())
     said = dict(zip(("EVENT_NAME", "STATION_NAME", "STREAM"), place.groups(), strict=True)) if place else {}
     return [Trace(GRAVITY * samples(lines, 4, int(head[1])), step(head[2], 4), said)]
 
@@ -151,7 +155,7 @@ def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
     """The record of a text with a title line, a line that begins with count and time step [s], then its values."""
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
-        instead = f"line 2 is {short(lines[1])}" if len(lines) > 1 else "1 line"
+        instead = f"line 2 is {in_message(lines[1])}" if len(lines) > 1 else "1 line"
         raise ValueError(
             f"{instead}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
         )
@@ -171,7 +175,7 @@ def parse_knet(lines: list[str]) -> list[Trace]:
             if line.startswith(name):
                 found = re.fullmatch(written, line[len(name) :].strip(), AS_ASCII)
                 if found is None:
-                    raise ValueError(f"line {place} is {short(line)}: not as in a K-NET or KiK-net file")
+                    raise ValueError(f"line {place} is {in_message(line)}: not as in a K-NET or KiK-net file")
                 said |= found.groupdict()
     if missing := [name for name, written in KNET.items() if re.findall(r"P<(\w+)>", written)[0] not in said]:
         raise ValueError(f"the first {KNET_HEAD} lines have no {missing[0]}: not a K-NET or KiK-net file")
@@ -185,7 +189,7 @@ def parse_knet(lines: list[str]) -> list[Trace]:
         header |= {"STREAM": KNET_STREAMS[number_of % 3], "LOCATION": str(1 + number_of // 3)}
     else:
         header["STREAM"] = said["dir"].replace("-", "")
-    return [Trace(UNITS["cm/s2"] * gal / full * (counts - counts.mean()), 1 / rate, header)]
+    return [Trace(ACCELERATION_UNITS["cm/s2"] * gal / full * (counts - counts.mean()), 1 / rate, header)]
 
 
 class Channel(NamedTuple):
@@ -213,7 +217,7 @@ def channels(lines: Sequence[str]) -> Iterator[Channel]:
     while i < len(lines):
         if hidden := BREAK.search(lines[i]):
             raise ValueError(f"line {i + 1} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
-        head = POINTS.fullmatch(lines[i])
+        head = SAMPLE_COUNT.fullmatch(lines[i])
         text += [lines[i]] if re.search("[a-zA-Z]{2}", lines[i]) else []
         i += 1
         if head is None:
@@ -245,12 +249,12 @@ def parse_channels(lines: list[str]) -> list[Trace]:
         announced = lines[channel.place - 1]
         units = stated_units(announced)
         if len(units) != 1:
-            raise ValueError(f"line {channel.place} names no unit of accelerations: {short(announced)}")
-        if every := EVERY.search(announced):
+            raise ValueError(f"line {channel.place} names no unit of accelerations: {in_message(announced)}")
+        if every := SAMPLING_LINE.search(announced):
             dt = value_of(every[1]) if every[2].lower() == "sec" else 1 / max(value_of(every[1]), 1 / COARSEST)
         else:
             dt = _cosmos_step(lines, channel.place)
-        found.append(Trace(UNITS[units[0]] * channel.values, dt, _channel_header(channel.text)))
+        found.append(Trace(ACCELERATION_UNITS[units[0]] * channel.values, dt, _channel_header(channel.text)))
     if not found:
         raise ValueError("no line such as 7500 points of accel data at .010 sec: not a file of CSMIP or COSMOS")
     return found
@@ -275,7 +279,7 @@ def _channel_header(text: str) -> dict[str, str]:
     if station := STATION.search(text):
         named = {"NETWORK": station[2], "STATION_CODE": station[3] or station[1]}
         header = {name: value for name, value in named.items() if value}
-    if channel := CHANNEL.findall(text):
+    if channel := CHANNEL_LINE.findall(text):
         header["STREAM"] = channel[-1].upper()
     if scnl := SCNL.search(text):
         header |= {"STATION_CODE": scnl[1], "STREAM": scnl[2], "NETWORK": scnl[3]}
@@ -290,7 +294,7 @@ def parse_geonet(lines: list[str]) -> list[Trace]:
     heads = [i for i, line in enumerate(lines) if re.match("(Unc|C)orrected accelerogram .*GNS", line)]
     if not heads or heads[0] != 0:
         raise ValueError(
-            f"line 1 is {short(lines[0])}: not a GeoNet file, which begins Corrected accelerogram, GNS Science"
+            f"line 1 is {in_message(lines[0])}: not a GeoNet file, which begins Corrected accelerogram, GNS Science"
         )
     return [_geonet_component(lines[: heads[k + 1]] if k + 1 < len(heads) else lines, i) for k, i in enumerate(heads)]
 
@@ -318,13 +322,13 @@ def _geonet_component(lines: list[str], first: int) -> Trace:
             "alone or of velocities and displacements too"
         )
     header = {name: said[name][1][1] for name in ("STATION_CODE", "STREAM", "EVENT_ID")}
-    return Trace(UNITS["mm/s2"] * values[:count], step(every[1] or every[2], place), header)
+    return Trace(ACCELERATION_UNITS["mm/s2"] * values[:count], step(every[1] or every[2], place), header)
 
 
 def parse_smc(lines: list[str]) -> list[Trace]:
     """The record of an SMC file of the USGS: a corrected accelerogram at a stated rate, in cm/s2."""
     if len(lines) < SMC_HEAD or not re.match(r"\s*2 CORRECTED ACCELEROGRAM", lines[0], AS_ASCII):
-        raise ValueError(f"line 1 is {short(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
+        raise ValueError(f"line 1 is {in_message(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
     whole = [x for i in range(11, 17) for x in numbers(lines[i], i + 1)]
     real = [x for i in range(17, SMC_HEAD) for x in numbers(lines[i], i + 1)]
     if len(whole) != 48 or len(real) != 50:
@@ -335,7 +339,7 @@ def parse_smc(lines: list[str]) -> list[Trace]:
     header = {"STREAM": "UP" if whole[12] in (0, 180) else f"{whole[13]:03g}"}
     if station := re.match(r"station =(.*?)\s*component=", lines[5]):
         header["STATION_NAME"] = station[1].strip()
-    return [Trace(UNITS["cm/s2"] * values, 1 / rate, header)]
+    return [Trace(ACCELERATION_UNITS["cm/s2"] * values, 1 / rate, header)]
 
 
 def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
@@ -352,11 +356,11 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     try:
         stream = obspy.read(str(path))
     except Exception as error:
-        raise ValueError(f"ObsPy does not read it: {short(str(error))}") from error
+        raise ValueError(f"ObsPy does not read it: {in_message(str(error))}") from error
     if unit is None:
         raise ValueError(
-            f"a file of {stream[0].stats._format} states no unit: give unit=, one of {', '.join(UNITS)}, or as a "
-            "number how many m/s2 a count is"
+            f"a file of {stream[0].stats._format} states no unit: give unit=, one of "
+            f"{', '.join(ACCELERATION_UNITS)}, or as a number how many m/s2 a count is"
         )
     ids = [trace.id for trace in stream]
     if broken := [name for name in ids if ids.count(name) > 1]:

@@ -34,19 +34,19 @@ from ...quantities import (
 )
 from .correction import integral, within_band, without_baseline
 from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
-from .oscillator import acceleration, building_modes, steps_of
-from .records import COARSEST, FINEST, Parse, Trace, checked, read, text_lines
+from .oscillator import building_modes, oscillator_steps, total_acceleration
+from .records import COARSEST, FINEST, Parse, Trace, checked_record, read, text_lines
 from .tables import Wanted, parse_table, table_lines
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
-FAINT = 1e-3 * GRAVITY
+FAINT_FILE = 1e-3 * GRAVITY
 """A file whose peak acceleration is below this is probably in another unit [m/s2]."""
 DRIFT = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
 """Fields of a header that name its record."""
-LARGEST = 1e4
+LARGEST_PULSE = 1e4
 """Bound of the amplitude of a pulse [m/s2]."""
 
 
@@ -81,7 +81,7 @@ class GroundMotion:
     ) -> None:
         require_kind("name", name, str)
         require_kind("header", header, Mapping, type(None))
-        values, step = checked(accel, dt)
+        values, step = checked_record(accel, dt)
         keep(self, accel=values, dt=step, name=name, header=dict(header or {}))
         if self.peak > SUSPICIOUS:
             warnings.warn(
@@ -291,7 +291,7 @@ class GroundMotion:
             TypeError, ValueError: for a value outside its range, or shapes that differ.
         """
         periods, xi, motions = building_modes(period, damping, participation, height)
-        parts = steps_of(self.dt, float(periods.min()))
+        parts = oscillator_steps(self.dt, float(periods.min()))
         h, rings = self.dt / parts, math.log(100.0) * float(periods.max()) / (2 * math.pi * xi)
         steps = parts * (len(self.accel) - 1 + math.ceil(rings / self.dt))
         require_size(
@@ -300,7 +300,7 @@ class GroundMotion:
         ground = self(h * np.arange(steps + 1, dtype=float))
         floor = (1 - motions.sum()) * ground
         for Tk, motion in zip(periods.tolist(), motions.tolist(), strict=True):
-            floor = floor + motion * acceleration(ground, h, Tk, xi)
+            floor = floor + motion * total_acceleration(ground, h, Tk, xi)
         return GroundMotion(floor, h, f"{self.name} on a floor", self.header)
 
     @classmethod
@@ -567,7 +567,7 @@ def motion_of(trace: Trace, path: str | PathLike[str], stacklevel: int = 3) -> G
     named += [] if named else [Path(path).stem, *(header.values() if list(header) == ["STREAM"] else ())]
     motion = GroundMotion(trace.accel, trace.dt, name := " ".join(named), header)
     peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
-    if peak < FAINT:
+    if peak < FAINT_FILE:
         doubt = "" if "UNITS" in header else "; is its unit right?"
         warnings.warn(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only{doubt}", stacklevel=stacklevel)
     if abs(final) > DRIFT * fastest:
@@ -587,7 +587,7 @@ def _instants(t: ArrayLike) -> Array:
 
 
 def _amplitude(value: float) -> float:
-    return require_within("amplitude", value, -LARGEST, LARGEST, "m/s2")
+    return require_within("amplitude", value, -LARGEST_PULSE, LARGEST_PULSE, "m/s2")
 
 
 def _span(name: str, value: float) -> float:

@@ -12,22 +12,22 @@ from ...quantities import Array, require_reals, require_row, require_within
 
 FINENESS = 20
 """Steps to a period at least, between which the peak of a sine is missed by at most 1.2 %."""
-SHORTEST, LONGEST = 0.01, 100.0
+SHORTEST_PERIOD, LONGEST_PERIOD = 0.01, 100.0
 """Bounds of a period [s]."""
 
 
-def steps_of(dt: float, period: float) -> int:
+def oscillator_steps(dt: float, period: float) -> int:
     """Steps of an oscillator to one of the ground, whose length is dt [s]."""
     return math.ceil(FINENESS * dt / period)
 
 
-def displacement(accel: Array, h: float, period: float, damping: float) -> Array:
+def relative_displacement(accel: Array, h: float, period: float, damping: float) -> Array:
     """Displacement of an oscillator relative to the ground [m], shape (n,), from the acceleration of the ground every
     h seconds [m/s2], shape (n,)."""
     return _answer(accel, h, period, damping, (1.0, 0.0))
 
 
-def acceleration(accel: Array, h: float, period: float, damping: float) -> Array:
+def total_acceleration(accel: Array, h: float, period: float, damping: float) -> Array:
     """Acceleration of an oscillator, that of the ground included [m/s2], shape (n,)."""
     omega = 2 * math.pi / period
     return _answer(accel, h, period, damping, (-(omega**2), -2 * damping * omega))
@@ -59,7 +59,7 @@ def building_modes(
     """
     rows = []
     for name, values, low, high, unit in (
-        ("period", period, SHORTEST, LONGEST, "s"),
+        ("period", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s"),
         ("participation", participation, -3.0, 3.0, ""),
         ("height", height, -1.0, 1.0, ""),
     ):

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ...quantities import Array, keep, named, require_kind, require_path, require_text, shown, spelt
 from .code_spectrum import SpectrumOfCode
-from .components import grouped, is_vertical, order, together
+from .components import grouped, is_vertical, of_one_record, order
 from .formats import recognised
 from .motion import GroundMotion, motion_of
 from .records import read
@@ -162,7 +162,7 @@ def records_in(
         motions = read(files[name])
         if isinstance(motions, GroundMotion) or len(motions) == 1:
             single[name] = motions if isinstance(motions, GroundMotion) else motions[0]
-        elif together([motion.header.get("STREAM", "") for motion in motions]):
+        elif of_one_record([motion.header.get("STREAM", "") for motion in motions]):
             found[name], found.by[name] = tuple(motions), "one file"
         else:
             single |= {f"{name}, {i} {motion.header.get('STREAM', '')}": motion for i, motion in enumerate(motions)}

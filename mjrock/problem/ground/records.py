@@ -22,14 +22,14 @@ from ...quantities import GRAVITY, Array, require_path, require_reals, require_w
 
 FINEST, COARSEST = 1e-5, 1.0
 """Bounds of the time step of a motion [s]."""
-UNITS = {"m/s2": 1.0, "cm/s2": 1e-2, "mm/s2": 1e-3, "g": GRAVITY, "ft/s2": 0.3048}
+ACCELERATION_UNITS = {"m/s2": 1.0, "cm/s2": 1e-2, "mm/s2": 1e-3, "g": GRAVITY, "ft/s2": 0.3048}
 TIME_UNITS = {"s": 1.0, "ms": 1e-3}
 
 AS_ASCII = re.ASCII | re.IGNORECASE
 EXPONENT = r"(?:[ed][-+]?\d+)?"
-COUNT, STEP = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
+COUNT, DECIMAL = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
 """No run of digits or blanks can be parted in two ways, so that the time of a search goes with the length of a line."""
-NUMBER = re.compile(rf"[-+]?{STEP}", AS_ASCII)
+DECIMAL_NUMBER = re.compile(rf"[-+]?{DECIMAL}", AS_ASCII)
 POINTED = rf"[-+]?(?:\d+\.\d*|\.\d+){EXPONENT}"
 GLUED = re.compile(rf"{POINTED}(?:(?=[-+]){POINTED})+", AS_ASCII)
 """Columns of fixed width that a sign sets apart. Each has its decimal point: 1.5-102 is an exponent in Fortran."""
@@ -67,7 +67,7 @@ class Trace(NamedTuple):
 Parse = Callable[[list[str]], list[Trace]]
 
 
-def checked(accel: ArrayLike, dt: float) -> tuple[Array, float]:
+def checked_record(accel: ArrayLike, dt: float) -> tuple[Array, float]:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
     A TypeError or ValueError says unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
@@ -87,7 +87,7 @@ def read(path: str | PathLike[str], traces: Callable[[Path], list[Trace]]) -> li
     path = require_path("path", path)
     try:
         with np.errstate(over="ignore"):  # a number that is too large in m/s2 is named
-            return [Trace(*checked(trace.accel, trace.dt), trace.header) for trace in traces(require_file(path))]
+            return [Trace(*checked_record(trace.accel, trace.dt), trace.header) for trace in traces(require_file(path))]
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 
@@ -127,7 +127,7 @@ def factor_of(unit: str | float) -> float:
     """How many m/s2 a unit is: one of UNITS, or that number itself, as of the counts of an instrument."""
     if isinstance(unit, int | float) and not isinstance(unit, bool):
         return require_within("unit", unit, 1e-15, 1e3, "m/s2")
-    return named_factor("unit", unit, UNITS)
+    return named_factor("unit", unit, ACCELERATION_UNITS)
 
 
 def named_factor(name: str, unit: object, units: Mapping[str, float]) -> float:
@@ -158,7 +158,7 @@ def step(text: str, place: int) -> float:
 
 def numbers(line: str, place: int) -> list[float]:
     """The numbers of a line, those of glued columns too."""
-    return [number(part, place) for word in words(line) for part in parted(word)]
+    return [number(part, place) for word in words(line) for part in split_columns(word)]
 
 
 def words(line: str) -> list[str]:
@@ -166,15 +166,15 @@ def words(line: str) -> list[str]:
     return [word for word in re.split("[ \t]+", line) if word]
 
 
-def parted(word: str) -> list[str]:
+def split_columns(word: str) -> list[str]:
     """The numbers of a word of glued columns; any other word as it is."""
-    return [part[0] for part in NUMBER.finditer(word)] if GLUED.fullmatch(word) else [word]
+    return [part[0] for part in DECIMAL_NUMBER.finditer(word)] if GLUED.fullmatch(word) else [word]
 
 
 def number(word: str, place: int) -> float:
     """A finite number; a ValueError with the line and the word for anything else."""
-    if not NUMBER.fullmatch(word) or not math.isfinite(value := value_of(word)):
-        raise ValueError(f"line {place}: {short(word)} is not a finite number such as -0.015, 1.5E-02 or 1.5D-02")
+    if not DECIMAL_NUMBER.fullmatch(word) or not math.isfinite(value := value_of(word)):
+        raise ValueError(f"line {place}: {in_message(word)} is not a finite number such as -0.015, 1.5E-02 or 1.5D-02")
     return value
 
 
@@ -183,6 +183,6 @@ def value_of(text: str) -> float:
     return float(text.lower().replace("d", "e"))
 
 
-def short(text: str) -> str:
+def in_message(text: str) -> str:
     """A text as it stands in a message: what cannot be seen or is not ASCII is escaped."""
     return ascii(text if len(text) <= 60 else f"{text[:57]}...")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ...quantities import Array, require_kind, require_reals, require_row, require_within, short_repr
 from .code_spectrum import SpectrumOfCode
 from .motion import GroundMotion
-from .oscillator import LONGEST, SHORTEST, displacement, steps_of
+from .oscillator import LONGEST_PERIOD, SHORTEST_PERIOD, oscillator_steps, relative_displacement
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,17 +64,17 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     damping = require_within("damping", damping, 0.0, 0.9)
     T = require_row("periods", np.atleast_1d(require_reals("periods", periods, "periods [s]")), "period [s]")
     for period in T:
-        require_within("periods", period, SHORTEST, LONGEST, "s")
+        require_within("periods", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
     largest = np.array([_largest(motion, float(period), damping) for period in T])
     return ResponseSpectrum(T, largest, damping)
 
 
 def _largest(motion: GroundMotion, period: float, damping: float) -> float:
     """The largest displacement of an oscillator relative to the ground [m]."""
-    parts = steps_of(motion.dt, period)
+    parts = oscillator_steps(motion.dt, period)
     h = motion.dt / parts
     steps = parts * (len(motion.accel) - 1) + math.ceil(period / h)
-    return float(np.abs(displacement(motion(h * np.arange(steps + 1, dtype=float)), h, period, damping)).max())
+    return float(np.abs(relative_displacement(motion(h * np.arange(steps + 1, dtype=float)), h, period, damping)).max())
 
 
 def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float = 0.05) -> GroundMotion:
@@ -89,7 +89,7 @@ def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float 
     Raises:
         TypeError, ValueError: for a value outside its range, or a motion at rest.
     """
-    period = require_within("period", period, SHORTEST, LONGEST, "s")
+    period = require_within("period", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
     return scaled_to_spectrum(motion, [period], [require_within("sa", sa, 1e-6, 1e4, "m/s2")], damping)
 
 

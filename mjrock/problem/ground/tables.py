@@ -19,32 +19,32 @@ import numpy as np
 
 from ...quantities import Array, require_whole, require_within
 from .records import (
+    ACCELERATION_UNITS,
     AS_ASCII,
     BREAK,
     COARSEST,
     COUNT,
+    DECIMAL,
     EXPONENT,
     FINEST,
-    STEP,
     TIME_UNITS,
-    UNITS,
     Trace,
     factor_of,
+    in_message,
     named_factor,
     number,
-    parted,
-    short,
+    split_columns,
     stated_units,
     text_lines,
     value_of,
     words,
 )
 
-UNEVEN = 0.01
+UNEVEN_TIME = 0.01
 """How far a printed time may lie from the even grid, as a share of the time step."""
-ROUNDED = 0.1
+UNEVEN_ROUNDED = 0.1
 """The same where the time has so few decimals that it cannot lie closer."""
-SLOW = 0.1
+SLOW_SAMPLING = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
 ALONE = 5.0
 """A first number that is the largest, and so many times as large as those soon after it, is doubted: it may be one of
@@ -53,9 +53,9 @@ SOON = 10
 """How many numbers those are."""
 ROWS = "rows"
 """What `columns` is where the samples stand in rows, one after the other."""
-SMOOTH = 0.7
+SMOOTH_ROWS = 0.7
 """Samples stand in rows where they jump less along the rows than this share of what they jump down the columns."""
-TITLE = 1000
+HEADER_LINE = 1000
 """Characters of a line of the header that are looked at."""
 MOST_HEADS = 4
 """Most numbers of a header that may stand before the samples."""
@@ -68,13 +68,13 @@ DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
 PROSE = re.compile(r"(?!\b(?:nan|inf|infinity)\b)[a-z]{3}", re.IGNORECASE)
 HEAD_STEP = re.compile(
     r"(?:(?<![a-z])dt|time[ _]step|(?:sampling|time|sample)[ _](?:interval|period|step))"
-    rf"[ _]*(?:[(\[]s(?:ec)?[)\]])?[ :=]*{STEP} *(ms|msec)?(?![\w.])",
+    rf"[ _]*(?:[(\[]s(?:ec)?[)\]])?[ :=]*{DECIMAL} *(ms|msec)?(?![\w.])",
     AS_ASCII,
 )
 HEAD_RATE = re.compile(
-    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{STEP} *(?:hz|sps|samples)?", AS_ASCII
+    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{DECIMAL} *(?:hz|sps|samples)?", AS_ASCII
 )
-HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{STEP}(?![\w.])", AS_ASCII)
+HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{DECIMAL}(?![\w.])", AS_ASCII)
 HEAD_COUNT = re.compile(
     rf"(?:npts|ndata|(?:n[ou]\.?|number) of (?:data|points|samples|pts))[ :=]*{COUNT}(?![\w.])", AS_ASCII
 )
@@ -107,7 +107,7 @@ class Stated(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Table:
+class RecordTable:
     """The rows of numbers of a file, and what its header says.
 
     Args:
@@ -129,7 +129,7 @@ class Table:
         """The number of columns that most rows have."""
         return Counter(map(len, self.values)).most_common(1)[0][0]
 
-    def without(self, rows: int) -> Table:
+    def without(self, rows: int) -> RecordTable:
         """The table after its first rows, which are some of the header."""
         return replace(self, values=self.values[rows:], places=self.places[rows:])
 
@@ -137,7 +137,7 @@ class Table:
         """The number that the header states in one of these forms; a rate is turned into a step."""
         for place, line in self.head.items():
             for pattern in patterns:
-                if found := pattern.search(line[:TITLE]):
+                if found := pattern.search(line[:HEADER_LINE]):
                     value = value_of(found[1]) * (1e-3 if pattern is HEAD_STEP and found[2] else 1)
                     return Stated(1 / value if pattern is HEAD_RATE and value else value, place)
         return None
@@ -156,7 +156,7 @@ class Table:
 
     def choice(self, timed: bool) -> str:
         """The columns and how one chooses among them, in words."""
-        named = f": {', '.join(f'{i} {short(name)}' for i, name in enumerate(self.names))}" if self.names else ""
+        named = f": {', '.join(f'{i} {in_message(name)}' for i, name in enumerate(self.names))}" if self.names else ""
         such = "(0, 1) for times and accelerations" if timed else "0 for one of accelerations"
         return f"{self.width} columns{named}; choose with columns=, such as columns={such}"
 
@@ -177,11 +177,13 @@ def table_lines(path: Path) -> list[str]:
     except ImportError as error:
         raise ImportError(f"{error}; pandas reads spreadsheets: pip install pandas openpyxl") from error
     except Exception as error:
-        raise ValueError(f"pandas does not read it as a spreadsheet: {short(str(error))}") from error
+        raise ValueError(f"pandas does not read it as a spreadsheet: {in_message(str(error))}") from error
     texts = {name: ["\t".join(map(_cell, row)).rstrip() for row in sheet.to_numpy()] for name, sheet in sheets.items()}
     full = [name for name, lines in texts.items() if sum(bool(DATA.match(line)) for line in lines) > 1]
     if len(full) != 1:
-        raise ValueError(f"{len(full)} of its sheets have rows of numbers, {short(', '.join(full))}; save one as CSV")
+        raise ValueError(
+            f"{len(full)} of its sheets have rows of numbers, {in_message(', '.join(full))}; save one as CSV"
+        )
     return texts[full[0]]
 
 
@@ -207,8 +209,8 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
     found = _table_of(lines, wanted.skip)
     if len(found.values) < 2:
         raise ValueError(
-            f"{len(found.values)} rows of numbers in {len(lines)} lines, the first of them {short(lines[0])}; at least "
-            "2 rows are needed, of time and acceleration or with dt of accelerations alone"
+            f"{len(found.values)} rows of numbers in {len(lines)} lines, the first of them {in_message(lines[0])}; at "
+            "least 2 rows are needed, of time and acceleration or with dt of accelerations alone"
         )
     stated, scaled = found.stated(HEAD_STEP, HEAD_RATE), found.stated(HEAD_SCALE)
     if scaled and scaled.value != 1:
@@ -240,7 +242,7 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
     ]
 
 
-def _table_of(lines: Sequence[str], skip: int | None) -> Table:
+def _table_of(lines: Sequence[str], skip: int | None) -> RecordTable:
     """The header and the rows of a file; a ValueError names the first word of a row that is no number."""
     first = 0 if skip is None else require_whole("skip", skip, 0, max(len(lines) - 1, 0))
     head: dict[int, str] = {}
@@ -262,7 +264,7 @@ def _table_of(lines: Sequence[str], skip: int | None) -> Table:
         except ValueError as error:
             raise ValueError(f"{error}; skip={place} leaves out what is above" if not rows else str(error)) from error
         decimals = max(decimals, len(words_of[0].partition(".")[2]))
-    return Table({} if skip is not None else head, _names(list(head.values()), rows), rows, list(texts), decimals)
+    return RecordTable({} if skip is not None else head, _names(list(head.values()), rows), rows, list(texts), decimals)
 
 
 def _is_row(lines: Sequence[str], place: int) -> bool:
@@ -293,7 +295,7 @@ def _cells(line: str, commas: bool) -> list[str]:
         line = line.replace(",", ".")
     mark = next((mark for mark in ";," if mark in line), None)
     if mark is None:
-        return [part for word in words(line) for part in parted(word)]
+        return [part for word in words(line) for part in split_columns(word)]
     return [word.strip(" \t") for word in line.strip(" \t").removesuffix(mark).split(mark)]
 
 
@@ -309,7 +311,7 @@ def _names(head: Sequence[str], rows: Sequence[Sequence[float]]) -> list[str]:
     return []
 
 
-def _without_header(found: Table, dt: float | None, stated: Stated | None) -> tuple[Table, Stated | None]:
+def _without_header(found: RecordTable, dt: float | None, stated: Stated | None) -> tuple[RecordTable, Stated | None]:
     """The table without rows that are numbers of a header, and the step that they state.
 
     They are some where one of them is the number of rows or samples that follow. A ValueError names both readings where
@@ -346,7 +348,7 @@ def _without_header(found: Table, dt: float | None, stated: Stated | None) -> tu
     return found, stated
 
 
-def _columns_of(found: Table, wanted: Wanted, dt: float | None) -> tuple[dict[int, Array], float]:
+def _columns_of(found: RecordTable, wanted: Wanted, dt: float | None) -> tuple[dict[int, Array], float]:
     """The accelerations by the number of their column, in the unit of the file, and their time step [s]."""
     if wanted.columns is not None:
         given = [wanted.columns] if isinstance(wanted.columns, int | str) else list(wanted.columns)
@@ -373,7 +375,7 @@ def _columns_of(found: Table, wanted: Wanted, dt: float | None) -> tuple[dict[in
     return {i: found.column(i) for i in picked[1:]}, _step_of(time, found, scale, dt)
 
 
-def _number_of(found: Table, column: object) -> int:
+def _number_of(found: RecordTable, column: object) -> int:
     """The number of a column that is given by it or by its name, with or without what stands there in brackets."""
     if not isinstance(column, str):
         return require_whole("a number in columns", column, 0, found.width - 1)
@@ -381,8 +383,8 @@ def _number_of(found: Table, column: object) -> int:
         fit = [i for i, name in enumerate(names) if name.casefold() == column.strip().casefold()]
         if len(fit) == 1:
             return fit[0]
-    valid = ", ".join(map(short, found.names)) or "not in the file"
-    raise ValueError(f"columns has {short(column)}; the names are {valid}")
+    valid = ", ".join(map(in_message, found.names)) or "not in the file"
+    raise ValueError(f"columns has {in_message(column)}; the names are {valid}")
 
 
 def _grid(time: Array) -> tuple[float, float]:
@@ -395,7 +397,7 @@ def _grid(time: Array) -> tuple[float, float]:
 def _is_even(time: Array, decimals: int, scale: float) -> bool:
     """Whether times lie on an even grid within 1 % of its step, or what their decimals round, up to a tenth of it."""
     dt, off = _grid(time)
-    return 0 <= off <= max(UNEVEN * dt, min(0.51 * scale * 10.0**-decimals, ROUNDED * dt))
+    return 0 <= off <= max(UNEVEN_TIME * dt, min(0.51 * scale * 10.0**-decimals, UNEVEN_ROUNDED * dt))
 
 
 def _is_grid(time: Array, decimals: int, scale: float) -> bool:
@@ -403,7 +405,7 @@ def _is_grid(time: Array, decimals: int, scale: float) -> bool:
     return len(time) > 2 and bool((np.diff(time) > 0).all()) and _is_even(time, decimals, scale)
 
 
-def _step_of(time: Array, found: Table, scale: float, given: float | None) -> float:
+def _step_of(time: Array, found: RecordTable, scale: float, given: float | None) -> float:
     """The step of a column of times [s], or the given one, against which the column is held."""
     steps, places = np.diff(time), found.places
     back = np.flatnonzero(steps <= 0)
@@ -419,10 +421,10 @@ def _step_of(time: Array, found: Table, scale: float, given: float | None) -> fl
         )
     if given is not None:
         numbered = found.decimals == 0 and math.isclose(dt, scale)
-        if abs(given - dt) > max(UNEVEN * given, 10.0**-found.decimals * scale / len(steps)) and not numbered:
+        if abs(given - dt) > max(UNEVEN_TIME * given, 10.0**-found.decimals * scale / len(steps)) and not numbered:
             raise ValueError(f"dt = {given:g} s was given, and the times from line {places[0]} on step by {dt:g} s")
         return given
-    if SLOW <= dt <= COARSEST:
+    if SLOW_SAMPLING <= dt <= COARSEST:
         raise ValueError(
             f"line {places[0]}: the first column steps by {dt:g} s: times so far apart, or the numbers of the rows? "
             f"dt= gives the time step, and dt={dt / scale:g} takes it as times"
@@ -432,13 +434,13 @@ def _step_of(time: Array, found: Table, scale: float, given: float | None) -> fl
 
 def _agree(name: str, given: float | None, stated: Stated | None) -> None:
     """Raise a ValueError with both readings where a step is another than the one that a header states."""
-    if given is not None and stated is not None and abs(given - stated.value) > UNEVEN * stated.value:
+    if given is not None and stated is not None and abs(given - stated.value) > UNEVEN_TIME * stated.value:
         raise ValueError(
             f"{name} is {given:g} s, and line {stated.place} states {stated.value:g} s; skip= leaves it out"
         )
 
 
-def _in_rows(found: Table) -> bool:
+def _in_rows(found: RecordTable) -> bool:
     """Whether samples stand in rows.
 
     They do where the last row is shorter. They also do where at least four jump less along the rows than down the
@@ -452,21 +454,21 @@ def _in_rows(found: Table) -> bool:
     values = np.array(found.values)
     down, within = (float(np.abs(np.diff(values, axis=axis)).mean()) for axis in (0, 1))
     on = float(np.abs(values[1:, 0] - values[:-1, -1]).mean())
-    return found.width > 3 and within < SMOOTH * down and on < 2 * within
+    return found.width > 3 and within < SMOOTH_ROWS * down and on < 2 * within
 
 
-def _factor(found: Table, unit: str | float | None, column: int) -> float:
+def _factor(found: RecordTable, unit: str | float | None, column: int) -> float:
     """The unit of a column [m/s2], held against that of its name, or against the only one that the header names."""
     name = found.names[column] if column < len(found.names) else ""
     of_name = stated_units(name)
-    of_head = {unit: place for place, line in found.head.items() for unit in stated_units(line[:TITLE])}
+    of_head = {unit: place for place, line in found.head.items() for unit in stated_units(line[:HEADER_LINE])}
     stated = of_name or list(of_head)
     if unit is None:
         if len(stated) != 1:
             said = " and ".join(stated) or "no unit"
-            raise ValueError(f"the header names {said}; give unit=, one of {', '.join(UNITS)}")
-        return UNITS[stated[0]]
+            raise ValueError(f"the header names {said}; give unit=, one of {', '.join(ACCELERATION_UNITS)}")
+        return ACCELERATION_UNITS[stated[0]]
     if isinstance(unit, str) and found.head and len(stated) == 1 and stated != [unit]:
-        where = f"the name {short(name)} of the column" if of_name else f"line {of_head[stated[0]]}"
+        where = f"the name {in_message(name)} of the column" if of_name else f"line {of_head[stated[0]]}"
         raise ValueError(f"unit = {unit!r} was given, and {where} says {stated[0]}; skip= leaves it out")
     return factor_of(unit)

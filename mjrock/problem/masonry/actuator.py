@@ -9,10 +9,10 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from ...quantities import Array, keep, require_array, require_reals, require_whole, require_within, shown
-from ..wall.effect import BLOCKS, FARTHEST, Effect
+from ..wall.effect import BLOCKS, FARTHEST_POINT, Effect
 from .histories import history_of
 
-LARGEST = 10.0
+LARGEST_STROKE = 10.0
 """Largest displacement of an actuator [m]: a larger one is in mm."""
 
 
@@ -74,7 +74,7 @@ class Actuator(Effect):
         else:
             at = require_reals("at of the actuator", self.at, "x, z or x, y, z")
             at = require_array("at of the actuator", at, (3,) if at.shape == (3,) else (2,))
-            require_within("at of the actuator", float(at[np.abs(at).argmax()]), -FARTHEST, FARTHEST, "m")
+            require_within("at of the actuator", float(at[np.abs(at).argmax()]), -FARTHEST_POINT, FARTHEST_POINT, "m")
             keep(self, at=tuple(at.tolist()))
         if not isinstance(self.guided, str | None) or self.guided not in GUIDES:
             names = "None, 'upright' and 'translation'"
@@ -87,7 +87,9 @@ class Actuator(Effect):
         keep(
             self,
             direction=_unit(self.direction, 3 if np.shape(shaped) == (3,) else 2),
-            displacement=history_of("displacement of the actuator", self.displacement, LARGEST, "m", from_zero=True),
+            displacement=history_of(
+                "displacement of the actuator", self.displacement, LARGEST_STROKE, "m", from_zero=True
+            ),
             stiffness=require_within("stiffness of the actuator", self.stiffness, 1.0, 1e12, "N/m"),
             damping=require_within("damping of the actuator", self.damping, 0.0, 1e12, "N s/m"),
         )

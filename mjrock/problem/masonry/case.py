@@ -32,8 +32,8 @@ from ..wall.effects import EFFECT_KINDS, Carrying, Load
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
-from .effects import laden, numbered, placed, require_anchored, require_placed, require_pushing
-from .histories import Support, supports_of, tilt_of
+from .effects import laden, place_in_world, require_anchored, require_placed, require_pushing, with_block_numbers
+from .histories import Support, supports_of, tilt_history
 from .laws.bond import Bond
 from .masonry import Masonry
 from .plausible import doubts
@@ -41,7 +41,7 @@ from .standing import MasonryStanding
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
-HELD = 1e-3
+HELD_BY_GUIDE = 1e-3
 """Largest speed that the guide of an actuator takes from a block at a start, over sqrt(g size) [-]."""
 COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled", "tilt")
 """What two equal cases share, beside the velocity."""
@@ -114,7 +114,7 @@ class MasonryCase(Carrying):
             raise ValueError(
                 "transverse is for masonry in space; blocks in the plane are shaken by motion and vertical"
             )
-        keep(self, tilt=tilt_of(self.tilt))
+        keep(self, tilt=tilt_history(self.tilt))
         if self.tilt is not None and (self.motion is not None or self.vertical is not None):
             raise ValueError("tilt does not go with motion and vertical: a table either tilts or shakes; leave one out")
         if self.velocity is not None:
@@ -138,7 +138,7 @@ class MasonryCase(Carrying):
         for i, effect in enumerate(self.effects):
             if not (isinstance(effect, Effect) and effect.only):
                 require_kind(f"effects[{i}]", effect, *EFFECT_KINDS, Actuator)
-            effect = numbered(f"effects[{i}]", effect, self.masonry)
+            effect = with_block_numbers(f"effects[{i}]", effect, self.masonry)
             numbers.append(effect)
             if effect.block is None:
                 require_pushing(f"effects[{i}]", effect, self.masonry)
@@ -239,7 +239,7 @@ class MasonryCase(Carrying):
 
     def held_by(self, link: Anchored) -> Array:
         """The point that a link holds, at rest [m], shape (d,)."""
-        return np.array(placed(self.masonry, link))
+        return np.array(place_in_world(self.masonry, link))
 
     def body_of(self, block: int | None) -> int | None:
         """Number of the body of a block among those that are not fixed; None of what is fixed, or of no block."""
@@ -260,7 +260,7 @@ class MasonryCase(Carrying):
         if not guiding:
             return velocity
         smallest = min(self.masonry.blocks[block].size for block in guiding)
-        self.require_guided("start, velocity", velocity, HELD * math.sqrt(GRAVITY * smallest))
+        self.require_guided("start, velocity", velocity, HELD_BY_GUIDE * math.sqrt(GRAVITY * smallest))
         return np.where(self.guided, 0.0, velocity)
 
     @property

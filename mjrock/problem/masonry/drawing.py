@@ -13,32 +13,32 @@ import numpy as np
 from ...geometry.hull import Convex
 from ...quantities import Array, Integers, named
 from .blocks.compound import AnyBlock
-from .blocks.joints import SHORTEST, Joint, neighbours
+from .blocks.joints import SHORTEST_JOINT, Joint, neighbours
 from .blocks.joints_in_space import BLUNT, SpaceJoint
-from .files.bodies import UNITS
+from .files.bodies import LENGTH_UNITS
 
-LARGEST, SMALLEST = 50.0, 2e-3
+LARGEST_BLOCK, SMALLEST_BLOCK = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
-LARGE, MANY = 5.0, 5
+LARGE_BLOCKS, MANY = 5.0, 5
 """Size that half of the free blocks of masonry exceed which are probably not in m, where there are so many [m, -]."""
-USUAL, STONE = (0.04, 3.0), 0.35
+USUAL, COMMON_SIZE = (0.04, 3.0), 0.35
 """Sizes of blocks that a unit is named for, and that of which the nearest is named first [m]."""
 NEARLY = 20.0
 """Gap over the tolerance up to which faces of a file that have no joint are doubted [-]."""
 LIES, ON_GROUND, ALONG = 0.25, 0.5, 2.0
 """Free blocks of a file lie along y from fixed ones by this share of the extent, and half of them lie on the ground
 while joints across y have twice the area of all others, where y may be the axis that points upwards [-]."""
-WIDEST = 0.1
+WIDEST_TOLERANCE = 0.1
 """Largest tolerance of masonry [m]."""
-FINE = 1.05
+TOLERANCE_FACTOR = 1.05
 """Factor to which the tolerance that joints need is found [-]."""
-FAR = 30.0
+FAR_BELOW_LOWEST = 30.0
 """How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
 OVERDAMPED = 30.0
 """Damping ratio of the lowest mode above which the frequency that xi refers to is doubted [-]."""
 UNDAMPED = 1e-4
 """The same below which it is doubted [-], where xi is a hundred times as much."""
-Finder = Callable[[float], Sequence[Joint | SpaceJoint]]
+JointFinder = Callable[[float], Sequence[Joint | SpaceJoint]]
 """The joints that a tolerance gives [m]."""
 ALIKE = 0.99
 """Cosine of the angle between the normals of two joints of the same two blocks, which convex blocks cannot have [-]."""
@@ -64,7 +64,7 @@ def odd_frequency(xi: float, frequency: float, lowest: float) -> str:
     With the lowest one it makes of xi the damping ratio of that mode, which says whether c/k is odd.
     """
     found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
-    overdamped = found > OVERDAMPED and lowest > FAR * frequency
+    overdamped = found > OVERDAMPED and lowest > FAR_BELOW_LOWEST * frequency
     if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
         return ""
     return (
@@ -80,17 +80,17 @@ def odd_sizes(sizes: Mapping[str, float]) -> str:
         return ""
     ordered = sorted(sizes, key=sizes.__getitem__)
     median = sizes[ordered[len(ordered) // 2]]
-    if sizes[ordered[0]] > LARGEST:
+    if sizes[ordered[0]] > LARGEST_BLOCK:
         name = ordered[0]
-    elif sizes[ordered[-1]] < SMALLEST:
+    elif sizes[ordered[-1]] < SMALLEST_BLOCK:
         return f"{ordered[-1]} is {sizes[ordered[-1]]:.4g} m across: is the unit too small? A file takes unit='m'"
-    elif len(sizes) >= MANY and median > LARGE:
+    elif len(sizes) >= MANY and median > LARGE_BLOCKS:
         name = ordered[len(ordered) // 2]
     else:
         return ""
-    found = {unit: sizes[name] * scale for unit, scale in UNITS.items()}
+    found = {unit: sizes[name] * scale for unit, scale in LENGTH_UNITS.items()}
     likely = [unit for unit, size in found.items() if unit != "m" and USUAL[0] <= size <= USUAL[1]] or ["mm"]
-    likely.sort(key=lambda unit: abs(math.log(found[unit] / STONE)))
+    likely.sort(key=lambda unit: abs(math.log(found[unit] / COMMON_SIZE)))
     asked = " or ".join(f"{unit}, {found[unit]:.2g} m" for unit in likely)
     return (
         f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in {asked}? A file takes unit={likely[0]!r}"
@@ -141,11 +141,11 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
     return ""
 
 
-def remedy(deepest: float, joints_within: Finder, blocks: Sequence[AnyBlock]) -> str:
+def remedy(deepest: float, joints_within: JointFinder, blocks: Sequence[AnyBlock]) -> str:
     """The tolerance that takes blocks which overlap by at most so much [m], and the joints that it finds."""
     tolerance = rounded_up(deepest)
-    if tolerance > WIDEST:
-        return f"no tolerance up to {WIDEST:g} m takes them"
+    if tolerance > WIDEST_TOLERANCE:
+        return f"no tolerance up to {WIDEST_TOLERANCE:g} m takes them"
     joints = joints_within(tolerance)
     touching = {i for joint in joints for i in (joint.below, joint.above)}
     if loose := sum(i not in touching and not block.fixed for i, block in enumerate(blocks)):
@@ -200,7 +200,7 @@ def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     apart = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
     if abs(apart.max()) > tolerance:
         return ""
-    between = ways[apart > -SHORTEST * tolerance]
+    between = ways[apart > -SHORTEST_JOINT * tolerance]
     if np.abs(between @ between[0]).min() < ALIKE:
         return ""
     way = int(apart.argmax())
@@ -210,14 +210,14 @@ def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     return "at a corner" if in_space and fewest == 1 else "along a line"
 
 
-def said_of(touches: Sequence[Touch], names: Sequence[str]) -> str:
+def touches_told(touches: Sequence[Touch], names: Sequence[str]) -> str:
     """Blocks that touch without a joint, in words."""
     pairs = named([f"{names[touch.block]} and {names[touch.other]} touch {touch.where}" for touch in touches])
     return f"{pairs}; a joint takes faces: cut the edge or the corner back to a small face"
 
 
-def gaps(
-    blocks: Sequence[AnyBlock], names: Sequence[str], loose: Sequence[int], joints_within: Finder, tolerance: float
+def smallest_gap(
+    blocks: Sequence[AnyBlock], names: Sequence[str], loose: Sequence[int], joints_within: JointFinder, tolerance: float
 ) -> str:
     """The smallest gap of blocks that touch no other within a tolerance [m], and the one with which all would.
 
@@ -233,17 +233,17 @@ def gaps(
     one, other = divmod(int(apart.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
     touches = [touch for touch in along_lines(blocks, (), tolerance) if {touch.block, touch.other} & set(loose)]
-    said = f"{said_of(touches, names)}; " if touches else ""
+    said = f"{touches_told(touches, names)}; " if touches else ""
     if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
         return said.removesuffix("; ")
     said += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
     needed = needed_tolerance(loose, joints_within, tolerance)
     if needed is None:
-        return f"{said}, and no tolerance up to {WIDEST:g} m joins all of them"
+        return f"{said}, and no tolerance up to {WIDEST_TOLERANCE:g} m joins all of them"
     return f"{said}; tolerance = {needed:.2g} m joins all of them"
 
 
-def needed_tolerance(loose: Sequence[int], joints_within: Finder, given: float) -> float | None:
+def needed_tolerance(loose: Sequence[int], joints_within: JointFinder, given: float) -> float | None:
     """A tolerance of two digits with which blocks have a joint each [m], near the least one; None where none has."""
 
     def joins(tolerance: float) -> bool:
@@ -251,13 +251,13 @@ def needed_tolerance(loose: Sequence[int], joints_within: Finder, given: float) 
 
     low = high = given
     while not joins(high):
-        if high >= WIDEST:
+        if high >= WIDEST_TOLERANCE:
             return None
-        low, high = high, min(2 * high, WIDEST)
-    while high > FINE * low:
+        low, high = high, min(2 * high, WIDEST_TOLERANCE)
+    while high > TOLERANCE_FACTOR * low:
         middle = math.sqrt(low * high)
         low, high = (low, middle) if joins(middle) else (middle, high)
-    rounded = min(rounded_up(high), WIDEST)
+    rounded = min(rounded_up(high), WIDEST_TOLERANCE)
     return rounded if joins(rounded) else high
 
 

@@ -17,7 +17,7 @@ BESIDE = 1e-3
 """How far outside its block a point of an effect may lie [m]: coordinates are rounded."""
 
 
-def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
+def place_in_world(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
     """Where an effect acts on its block, from the origin of the world [m]."""
     if effect.at is not None:
         return tuple(held_at(effect).tolist())
@@ -34,7 +34,7 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
     total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
         force = effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added)
-        arm = placed(masonry, effect) - masonry.centroids[effect.block]
+        arm = place_in_world(masonry, effect) - masonry.centroids[effect.block]
         total[masonry.free.index(effect.block)] += acting(arm, np.array(force)[_axes(masonry)])
     return total
 
@@ -43,7 +43,7 @@ def dragged(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Array:
     """The same of the weight of added masses along a unit vector, shape (2,), in space (3,)."""
     total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
-        arm = placed(masonry, effect) - masonry.centroids[effect.block]
+        arm = place_in_world(masonry, effect) - masonry.centroids[effect.block]
         total[masonry.free.index(effect.block)] += acting(arm, GRAVITY * effect.mass_added * way)
     return total
 
@@ -53,7 +53,7 @@ def pulls_of(masonry: Masonry, ties: Sequence[Anchored]) -> Array:
     (t, free, 6)."""
     pulls = np.zeros((len(ties), len(masonry.free), 6 if masonry.in_space else 3))
     for pull, tie in zip(pulls, ties, strict=True):
-        held = np.array(placed(masonry, tie))
+        held = np.array(place_in_world(masonry, tie))
         anchor = tie.anchor_of(held)
         way = (anchor - held) / np.linalg.norm(anchor - held)
         for block, point, force in ((tie.block, held, way), (tie.anchor_block, anchor, -way)):
@@ -81,7 +81,7 @@ def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, 
         added = effect.mass_added
         if added > 0:
             i = effect.block
-            apart, total = np.array(placed(masonry, effect)) - centroids[i], mass[i] + added
+            apart, total = np.array(place_in_world(masonry, effect)) - centroids[i], mass[i] + added
             square = float(apart @ apart)
             second = square * np.eye(3) - np.outer(apart, apart) if masonry.in_space else square
             inertia[i] += mass[i] * added / total * second
@@ -90,7 +90,7 @@ def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, 
     return mass, centroids, inertia
 
 
-def numbered(name: str, effect: Effect, masonry: Masonry) -> Effect:
+def with_block_numbers(name: str, effect: Effect, masonry: Masonry) -> Effect:
     """An effect with the number of each block that it names.
 
     Raises:
@@ -158,7 +158,7 @@ def require_anchored(name: str, effect: Effect, masonry: Masonry) -> None:
         raise ValueError(f"{name}, anchor_block = {number} is the block itself; give another, or None")
     if masonry.in_space and effect.anchor is None:
         raise ValueError(f"{name}, anchor_block = {number} needs anchor=(x, y, z)")
-    anchor = tuple(effect.anchor_of(np.array(placed(masonry, effect))).tolist())
+    anchor = tuple(effect.anchor_of(np.array(place_in_world(masonry, effect))).tolist())
     _require_on(f"{name}, anchor", anchor, masonry.blocks[number])
 
 

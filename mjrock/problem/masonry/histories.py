@@ -21,7 +21,7 @@ from ...quantities import GRAVITY, Array, require_increasing, require_kind, requ
 from ..ground.motion import GroundMotion
 from .masonry import Masonry
 
-LONGEST = 1e6
+LATEST_TIME = 1e6
 """Latest time of a history [s]."""
 
 History = tuple[tuple[float, ...], tuple[float, ...]]
@@ -36,7 +36,7 @@ def require_as_many(name: str, rows: Mapping[str, Array]) -> None:
         raise ValueError(f"{name}: {', '.join(rows)} have {counts} values; give as many")
 
 
-def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: bool = False) -> History:
+def history_of(name: str, given: object, largest: float, unit: str, *, from_zero: bool = False) -> History:
     """A history from (t, values).
 
     Args:
@@ -52,7 +52,7 @@ def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: b
     """
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise TypeError(f"{name} = {shown(given)} is not (t, values), two rows of numbers")
-    t = require_increasing(f"{name}, t", given[0], "time", LONGEST, f"0 to {LONGEST:g} s")
+    t = require_increasing(f"{name}, t", given[0], "time", LATEST_TIME, f"0 to {LATEST_TIME:g} s")
     values = require_row(f"{name}, values", given[1], "number")
     require_as_many(name, {"t": t, "values": values})
     if t[0] != 0:
@@ -63,7 +63,7 @@ def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: b
     return tuple(t.tolist()), tuple(values.tolist())
 
 
-FARTHEST = 100.0
+FARTHEST_SUPPORT = 100.0
 """Largest displacement of a support [m]."""
 
 
@@ -123,9 +123,9 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
         if not (np.diff(rows["t"]) > 0).all():
             raise ValueError(f"supports, {name}: t does not increase")
         far = max(float(np.abs(rows[label]).max()) for label in labels[1:])
-        if far > FARTHEST:
+        if far > FARTHEST_SUPPORT:
             raise ValueError(
-                f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST:g} m"
+                f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST_SUPPORT:g} m"
             )
         supports.append(Support(name, **{label: tuple(row.tolist()) for label, row in rows.items()}))
     return tuple(supports)
@@ -133,13 +133,13 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
 
 STEEPEST = math.pi
 """Largest angle of a table [rad]."""
-SAMPLES, MOST = 2000, 1_000_000
+MOTION_SAMPLES, MOST_MOTION_SAMPLES = 2000, 1_000_000
 """Samples of the equivalent ground motion over a run, and most where the angle changes faster [-]."""
-COARSEST = 1.0
+LARGEST_STEP = 1.0
 """Largest step of a ground motion [s]."""
 
 
-def tilt_of(given: Any) -> History | None:
+def tilt_history(given: object) -> History | None:
     """The history of the angle of a table from (t, angle), or None.
 
     Raises:
@@ -156,7 +156,7 @@ def motions_of_tilt(tilt: History, duration: float) -> tuple[GroundMotion, Groun
     """
     t, angle = (np.array(row) for row in tilt)
     closest = 0.25 * float(np.diff(t).min()) if len(t) > 1 else math.inf
-    step = min(max(min(duration / SAMPLES, closest), duration / MOST), COARSEST)
+    step = min(max(min(duration / MOTION_SAMPLES, closest), duration / MOST_MOTION_SAMPLES), LARGEST_STEP)
     count = math.ceil(duration / step) + 1
     turned = np.interp(duration * np.arange(count + 1) / (count - 1), t, angle)
     accel, dt = (-GRAVITY * np.sin(turned), -2 * GRAVITY * np.sin(0.5 * turned) ** 2), duration / (count - 1)

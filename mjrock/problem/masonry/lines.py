@@ -18,9 +18,9 @@ from .blocks.joints import LEVEL, Joint
 from .blocks.joints_in_space import SpaceJoint, axes_across
 from .blocks.polygon import Polygon
 
-RIGID = 1e-12
+UNRESISTED = 1e-12
 """Square of a frequency, over that of the highest, below which a mode is a motion that no joint resists [-]."""
-EDGE = 1e-5
+EDGE_WITHIN = 1e-5
 """Distance from an edge of a face up to which a point is on it [m]."""
 
 
@@ -127,12 +127,12 @@ def _outer(above: AnyBlock, below: AnyBlock, middle: Array) -> tuple[bool, ...]:
     """Whether the point of a joint is on the block below, as that is farther from the middle of the masonry, apart from
     heights. Both ways where the two blocks are as far."""
     own, other = (float(np.linalg.norm((block.centroid - middle)[:-1])) for block in (above, below))
-    return (False, True) if abs(other - own) <= EDGE else (other > own,)
+    return (False, True) if abs(other - own) <= EDGE_WITHIN else (other > own,)
 
 
 def _has_corner(block: AnyBlock, place: Array) -> bool:
     """Whether a corner of a block is at a place."""
-    return bool(np.abs(block.corners - place).max(axis=1).min() < EDGE)
+    return bool(np.abs(block.corners - place).max(axis=1).min() < EDGE_WITHIN)
 
 
 def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spot]:
@@ -152,7 +152,10 @@ def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -
     at its corners may be of the block below alone, and those on an edge of the face below that lies within the face
     above are."""
     below, above = ((face - joint.outline[0]) @ joint.axes.T for face in faces)
-    of_below, of_above = (within(below, flat) < EDGE).tolist(), (within(above[::-1], flat) < EDGE).tolist()
+    of_below, of_above = (
+        (within(below, flat) < EDGE_WITHIN).tolist(),
+        (within(above[::-1], flat) < EDGE_WITHIN).tolist(),
+    )
     places = joint.outline[0] + flat @ joint.axes
     for place, stiffness, on_below, on_above in zip(places, k, of_below, of_above, strict=True):
         apart = np.abs(joint.outline - place).max(axis=1)
@@ -178,7 +181,7 @@ def free_numbers(blocks: Sequence[AnyBlock]) -> Integers:
     return np.where(free, np.cumsum(free) - 1, -1)
 
 
-def slips(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
+def mean_slip_rates(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
     """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies).
 
     In space a joint has three: along the two directions of `Lines.across`, and the rate at which it twists about its
@@ -207,16 +210,16 @@ def lowest_frequency(
     """
     masses, axes = masses_of(blocks)
     axes = csr_array(eye_array(len(masses))) if axes is None else axes
-    moves = rates(blocks, lines, lines.normal), slips(blocks, lines, len(friction))
+    moves = rates(blocks, lines, lines.normal), mean_slip_rates(blocks, lines, len(friction))
     opening, sliding = (csr_array(part @ axes) for part in moves)
     held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
     grip, stiffness = sliding[np.tile(held, sliding.shape[0] // len(held))], sprung(opening, lines.k)
-    square = lowest_square(stiffness, masses, grip, RIGID)
+    square = lowest_square(stiffness, masses, grip, UNRESISTED)
     if square == 0:
         springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
         for way in lines.across:
             stiffness = stiffness + sprung(csr_array(rates(blocks, lines, way) @ axes), springs)
-        square = lowest_square(stiffness, masses, grip[:0], RIGID)
+        square = lowest_square(stiffness, masses, grip[:0], UNRESISTED)
     return math.sqrt(square)
 
 

@@ -43,8 +43,8 @@ from .blocks.joints_in_space import SpaceJoint, joints_in_space
 from .blocks.polygon import Polygon
 from .blocks.polyhedron import Polyhedron
 from .builders.in_plane import (
-    MOST_BLOCKS,
-    Ends,
+    MOST_BODIES,
+    Taper,
     arch_of,
     bending_between_floors,
     between_beams,
@@ -57,19 +57,18 @@ from .builders.in_plane import (
 from .builders.in_space import (
     box_on_ground,
     column_of,
-    corner_of,
     dome_of,
     facade_of,
     ground_below,
+    wall_corner,
     wallette_of,
     walls_of,
 )
 from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import (
     NEARLY,
-    WIDEST,
+    WIDEST_TOLERANCE,
     along_lines,
-    gaps,
     nearly,
     not_joined,
     odd_axis,
@@ -77,8 +76,9 @@ from .drawing import (
     odd_frequency,
     odd_sizes,
     remedy,
-    said_of,
+    smallest_gap,
     split_faces,
+    touches_told,
     with_sizes,
 )
 from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
@@ -205,7 +205,7 @@ class Masonry(Drawn):
         xi: OfJoint | None = None,
         frequency: OfJoint | None = None,
         points: OfCount | None = None,
-        tolerance: Annotated[float, Within(1e-9, WIDEST, "m")] = 1e-5,
+        tolerance: Annotated[float, Within(1e-9, WIDEST_TOLERANCE, "m")] = 1e-5,
         law: AnyLaw | str | None = None,
         k_s: OfJoint | None = None,
         *,
@@ -220,7 +220,7 @@ class Masonry(Drawn):
             side = "a face" if self.in_space else "an edge"
             raise ValueError(
                 f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
-                f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
+                f"{smallest_gap(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
             )
         if law is not None:
             keep(self, law=required_law(law))
@@ -395,7 +395,7 @@ class Masonry(Drawn):
             odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
         sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
-        alone = f"without a joint {said_of(touches, self.names)}" if touches else ""
+        alone = f"without a joint {touches_told(touches, self.names)}" if touches else ""
         return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
 
     @classmethod
@@ -449,7 +449,7 @@ class Masonry(Drawn):
     def arch(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
@@ -494,7 +494,7 @@ class Masonry(Drawn):
     def bridge(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
@@ -529,7 +529,7 @@ class Masonry(Drawn):
     def barrel_vault(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         length: Annotated[float, Within(0.01, 1000, "m")],
         unit: float,
         span_angle: float = math.pi,
@@ -557,7 +557,7 @@ class Masonry(Drawn):
     def groin_vault(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         length: float,
         unit: float,
         span_angle: float = math.pi,
@@ -745,7 +745,7 @@ class Masonry(Drawn):
     @classmethod
     def column(
         cls,
-        width: Ends,
+        width: Taper,
         height: Annotated[float, Within(0.01, 1000, "m")],
         drums: Annotated[int, Within(1, 1000, whole=True)],
         *,
@@ -774,7 +774,7 @@ class Masonry(Drawn):
     def dome(
         cls,
         radius: float,
-        thickness: Ends,
+        thickness: Taper,
         lunes: Annotated[int, Within(4, 360, whole=True)],
         hoops: Annotated[int, Within(1, 360, whole=True)],
         *,
@@ -879,7 +879,7 @@ class Masonry(Drawn):
             >>> round(float(mr.collapse_multiplier(corner, angle=-math.pi / 4).multiplier), 4)
             0.3714
         """
-        return cls(corner_of(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
+        return cls(wall_corner(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
 
     @classmethod
     def from_obj(
@@ -1154,9 +1154,10 @@ class Masonry(Drawn):
         if loose:
             raise ValueError(
                 f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
-                f"{self.tolerance:g} m; {gaps(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
+                f"{self.tolerance:g} m; "
+                f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
             )
-        wider = min(NEARLY * self.tolerance, WIDEST)
+        wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
         apart = not_joined(self.blocks, self.joints, wider)
         if odd := nearly([joint.name for joint in self._joints_within(wider, apart)], wider):
             warnings.warn(odd, Implausible, stacklevel=6)
@@ -1178,9 +1179,9 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
             which = [f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}" for b in (block, blocks[0])]
             raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
     free = sum(not block.fixed for block in blocks)
-    if not 0 < free < len(blocks) <= MOST_BLOCKS:
+    if not 0 < free < len(blocks) <= MOST_BODIES:
         raise ValueError(
-            f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BLOCKS} are "
+            f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BODIES} are "
             "needed"
         )
     for name, number in Counter(names_of(blocks)).items():

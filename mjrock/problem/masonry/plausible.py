@@ -10,13 +10,13 @@ import numpy as np
 
 from ...quantities import GRAVITY, Array
 from ..wall.effect import Anchored
-from ..wall.plausible import IN_G, NEGLIGIBLE, Whole, of_effects, of_motion
+from ..wall.plausible import IN_G, NEGLIGIBLE_SHARE, Whole, of_effects, of_motion
 from .actuator import Actuator
 from .effects import held_at
 from .limit.collapse import limit_of, pushed
 from .masonry import Masonry
 
-FEW = 40
+JUDGED_BLOCKS = 40
 """Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
 BORNE = 3.0
 """Force of an actuator at its full displacement over the weight, up to which its spring may be a force that is given,
@@ -34,7 +34,7 @@ def doubts(case: Any) -> list[str]:
 
 def stood(case: Any) -> float:
     """Acceleration over g that the masonry of a case stands from rest, for a record that may be in g, or infinity."""
-    weak = case.motion is not None and case.motion.peak <= IN_G and len(case.masonry.free) <= FEW
+    weak = case.motion is not None and case.motion.peak <= IN_G and len(case.masonry.free) <= JUDGED_BLOCKS
     at_rest = case.velocity is None and case.vertical is None and not case.effects
     return _multiplier(case.masonry) if weak and at_rest else math.inf
 
@@ -65,7 +65,7 @@ def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
     far, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
     if far > extent and jack.stiffness * far > BORNE * mass * GRAVITY:
         return f"{name}: displacement reaches {far:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
-    if 0 < jack.stiffness * far < NEGLIGIBLE * mass * GRAVITY:
+    if 0 < jack.stiffness * far < NEGLIGIBLE_SHARE * mass * GRAVITY:
         return (
             f"{name}: stiffness = {jack.stiffness:g} N/m pushes with at most {jack.stiffness * far:.3g} N, and the "
             f"masonry weighs {mass * GRAVITY:.3g} N: is it in N/m?"

@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, get_args
 
 import numpy as np
 
-from ...quantities import GRAVITY, Array, Within, keep, keep_declared, require_kind, require_within, short_repr
+from ...quantities import GRAVITY, Array, Density, Within, keep, keep_declared, require_kind, require_within, short_repr
 from .block import Block
 
-FINE = 20_001
+CURVE_POINTS = 20_001
 """Rotations at which the curve is looked at."""
+DEEPEST, TYPICAL, DENSITIES = 5.0, 2500.0, get_args(Density)[1]
+"""Largest depth of a floor, over the thickness of the wall [-], its density where it has one of between one and as many
+thicknesses, and those that a block may have [kg/m3]."""
 
 
 class BendingCurve(NamedTuple):
@@ -107,7 +110,7 @@ class VerticalBending:
         """
         t, a, z = 2 * self.wall.b, self.lever, self.crack_height
         above, reach = 2 * self.wall.h - z, math.hypot(self.lever, 2 * self.wall.h - z)
-        theta = np.linspace(0.0, 0.5 * math.pi, FINE)
+        theta = np.linspace(0.0, 0.5 * math.pi, CURVE_POINTS)
         x = t * (1 - np.cos(theta)) + z * np.sin(theta)  # of the inner edge of the crack
         theta, x = theta[x - a < reach], x[x - a < reach]
         psi = math.atan2(a, above) + np.arcsin((x - a) / reach)  # where the floor bears stays in place sideways
@@ -130,10 +133,25 @@ class VerticalBending:
     @property
     def floor_depth(self) -> float:
         """Depth of a floor with the mass of the load at some 2500 kg/m3 [m], once to five times the thickness."""
-        wide = self.floor_ends[1] - self.floor_ends[0]
         thickness = 2 * self.wall.b
-        depth = self.load / (GRAVITY * self.wall.length * wide * 2500.0)
-        return min(max(depth, thickness), 5 * thickness)
+        return min(max(self.load / (self._specific * TYPICAL), thickness), DEEPEST * thickness)
+
+    @property
+    def floor_density(self) -> float:
+        """Density of a floor of that depth with the mass of the load [kg/m3].
+
+        Raises:
+            ValueError: for a load that is too small or too large for a block.
+        """
+        thickness = 2 * self.wall.b
+        least, most = self._specific * thickness * DENSITIES.low, self._specific * DEEPEST * thickness * DENSITIES.high
+        load = require_within("load", self.load, least, most, "N")
+        return min(max(load / (self._specific * self.floor_depth), DENSITIES.low), DENSITIES.high)
+
+    @property
+    def _specific(self) -> float:
+        """Weight of a floor over its depth and density [m3/s2]."""
+        return GRAVITY * self.wall.length * (self.floor_ends[1] - self.floor_ends[0])
 
     @property
     def floor_ends(self) -> tuple[float, float]:

@@ -26,11 +26,11 @@ from ...quantities import (
 from ..ground.motion import GroundMotion
 from .block import Block
 from .effect import Anchored, Effect, require_only
-from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, forces_of
+from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, constant_forces_of
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
 from .standing import WallStanding
-from .ties_on_wall import TiePull, limits, stored, taken, yielded
+from .ties_on_wall import TiePull, taken, tie_energy, tie_limits, yielded
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ class Case(Carrying):
         """Restoring moments of loads and thrusts about two edges at a height and a distance from the middle [m]."""
         return [
             of_force(force.offset, force.height - level, across, -up, half_base)
-            for force, (across, _, up) in forces_of(self.effects).values()
+            for force, (across, _, up) in constant_forces_of(self.effects).values()
         ]
 
     @cached_property
@@ -234,12 +234,12 @@ class Case(Carrying):
     def limits_of_ties(self, rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
         """Rotations [rad] at which ties yield, and at which they break, by name, within increasing `rotations` (n,)."""
         names = (name for name, tie in self.springs.items() if tie.law.holds)
-        return limits(dict(zip(names, self.pulls, strict=True)), rotations)
+        return tie_limits(dict(zip(names, self.pulls, strict=True)), rotations)
 
     @property
     def pressing(self) -> float:
         """Weight and loads that press on the base [N]."""
-        return self.wall.weight - sum(up for _, (_, _, up) in forces_of(self.effects).values())
+        return self.wall.weight - sum(up for _, (_, _, up) in constant_forces_of(self.effects).values())
 
     @property
     def shaken(self) -> bool:
@@ -283,7 +283,7 @@ class Case(Carrying):
         if not self.pulls:
             return energy, energy
         plastic = yielded(self.pulls, peaks)
-        energy = energy + stored(self.pulls, peaks, plastic)
+        energy = energy + tie_energy(self.pulls, peaks, plastic)
         return energy, energy + np.diff(taken(self.pulls, plastic), prepend=0.0)
 
     @cached_property

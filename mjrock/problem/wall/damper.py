@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, Literal
 
 from ...quantities import Within, keep_declared
-from .effect import OF_MASONRY, Anchored, LinkLaw, Place, keep_place
+from .effect import OF_MASONRY, Anchored, LinkLaw, PointOf, keep_place
 
 
 @dataclass(frozen=True, repr=False)
@@ -42,8 +42,8 @@ class Damper(Anchored):
     c: Annotated[float, Within(0, 1e9, "N s/m", "coefficient c of the damper")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     block: int = 0
-    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-    anchor: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:
@@ -94,8 +94,8 @@ class FrictionDamper(Anchored):
     slip_force: Annotated[float, Within(1e-3, 1e9, "N")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     block: int = 0
-    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-    anchor: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:

@@ -16,19 +16,19 @@ import numpy as np
 from ...quantities import Array, keep, require_array, require_whole, require_within, short_repr
 
 Point = tuple[float, float, float]
-Place = tuple[float, ...]
+PointOf = tuple[float, ...]
 """A point x, z of the plane or x, y, z of space [m]."""
-HIGHEST = 200.0
+HIGHEST_WALL = 200.0
 """Largest height of a wall, and so of an effect [m]."""
 BLOCKS = 100_000
 """Largest number of a block."""
-FARTHEST = 1e4
+FARTHEST_POINT = 1e4
 """Largest coordinate of a point [m]."""
 OF_MASONRY, IN_SPACE = {"of": "masonry"}, {"of": "masonry in space"}
 """Metadata of a field of an effect that only masonry takes, and of one that only masonry in space takes."""
 
 
-def place_or_none(name: str, value: Any, least: int = 2) -> Place | None:
+def place_or_none(name: str, value: Any, least: int = 2) -> PointOf | None:
     """A point as a tuple, or None.
 
     Raises:
@@ -39,7 +39,10 @@ def place_or_none(name: str, value: Any, least: int = 2) -> Place | None:
         return None
     shape = np.shape(value)
     count = 2 if shape == (2,) and least == 2 else 3
-    return tuple(require_within(name, each, -FARTHEST, FARTHEST, "m") for each in require_array(name, value, (count,)))
+    return tuple(
+        require_within(name, each, -FARTHEST_POINT, FARTHEST_POINT, "m")
+        for each in require_array(name, value, (count,))
+    )
 
 
 def keep_place(effect: Any, kind: str) -> None:
@@ -62,16 +65,19 @@ def keep_place(effect: Any, kind: str) -> None:
     )
 
 
-def _block(name: str, given: Any) -> Any:
+def _block(name: str, given: object) -> str | int:
     """A block as it is named, of which a case of masonry knows the number, or its number."""
     return given if isinstance(given, str) else require_whole(name, given, 0, BLOCKS)
 
 
-def _height(kind: str, height: float | None, at: Place | None) -> float:
+def _height(kind: str, height: float | None, at: PointOf | None) -> float:
     """The height of an effect, that of its point where it has one [m]."""
     if at is None:
-        return require_within(f"height of the {kind}", height, 0.0, HIGHEST, "m")
-    if height is not None and require_within(f"height of the {kind}", height, -FARTHEST, FARTHEST, "m") != at[-1]:
+        return require_within(f"height of the {kind}", height, 0.0, HIGHEST_WALL, "m")
+    if (
+        height is not None
+        and require_within(f"height of the {kind}", height, -FARTHEST_POINT, FARTHEST_POINT, "m") != at[-1]
+    ):
         raise ValueError(f"height of the {kind} = {height} m is given with at = {at} m; leave it out")
     return at[-1]
 
@@ -164,7 +170,7 @@ class Effect:
     on_block: ClassVar[bool] = True
     height: float
     block: int
-    at: Place | None
+    at: PointOf | None
     offset: float = 0.0
 
     __repr__ = short_repr
@@ -212,7 +218,7 @@ class Anchored(Effect):
     dashes: ClassVar[Literal["-", "--", "-."]] = "-"
     limit: ClassVar[str] = "strength"
     length: float
-    anchor: Place | None
+    anchor: PointOf | None
     anchor_block: int | None
 
     @property

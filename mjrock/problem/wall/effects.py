@@ -16,7 +16,7 @@ from ...notebook import Drawn
 from ...quantities import Within, keep, keep_declared, short_repr, shown
 from ..ground.motion import GroundMotion
 from .damper import Damper, FrictionDamper
-from .effect import HIGHEST, IN_SPACE, OF_MASONRY, Anchored, Effect, Place, Point, keep_place, place_or_none
+from .effect import HIGHEST_WALL, IN_SPACE, OF_MASONRY, Anchored, Effect, Point, PointOf, keep_place, place_or_none
 from .tie import Tie
 
 
@@ -45,7 +45,7 @@ class Thrust(Effect):
     height: float = None  # type: ignore[assignment]
     force: Annotated[float, Within(-1e9, 1e9, "N")] = None  # type: ignore[assignment]
     block: int = 0
-    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     direction: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
@@ -98,7 +98,7 @@ class Load(Effect):
     height: float = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-10, 10, "m")] = 0.0
     block: int = 0
-    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:
         keep_place(self, "load")
@@ -137,7 +137,7 @@ class AddedMass(Effect):
     height: float = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-13, 13, "m")] = 0.0
     block: int = 0
-    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     def __post_init__(self) -> None:
         keep_place(self, "added mass")
@@ -165,7 +165,7 @@ class SideStop:
         ValueError: for a value outside its range.
     """
 
-    top: Annotated[float, Within(0.01, HIGHEST, "m")]
+    top: Annotated[float, Within(0.01, HIGHEST_WALL, "m")]
 
     __repr__ = short_repr
 
@@ -187,12 +187,12 @@ def named_effects(effects: Sequence[Effect]) -> dict[str, Effect]:
     }
 
 
-def links_of(effects: Sequence[Effect]) -> dict[str, Anchored]:
+def link_effects(effects: Sequence[Effect]) -> dict[str, Anchored]:
     """The effects that are links, by name."""
     return {name: effect for name, effect in named_effects(effects).items() if isinstance(effect, Anchored)}
 
 
-def forces_of(effects: Sequence[Effect]) -> dict[str, tuple[Effect, Point]]:
+def constant_forces_of(effects: Sequence[Effect]) -> dict[str, tuple[Effect, Point]]:
     """The effects that bring a constant force, by name, and the force [N]."""
     named = ((name, effect, effect.force_vector) for name, effect in named_effects(effects).items())
     return {name: (effect, force) for name, effect, force in named if force is not None}
@@ -221,7 +221,7 @@ class Carrying(Drawn):
     @property
     def links(self) -> dict[str, Anchored]:
         """The effects that are links, by name."""
-        return links_of(self.effects)
+        return link_effects(self.effects)
 
     @property
     def springs(self) -> dict[str, Anchored]:

@@ -16,7 +16,7 @@ from .effects import AddedMass, Load, Thrust
 from .tie import Tie
 from .ties_on_wall import TiePull, moment_at_strength, pulled
 
-NEGLIGIBLE = 1e-4
+NEGLIGIBLE_SHARE = 1e-4
 """Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
 EXCESSIVE = 1000.0
 """Force of a tie, damper, load or thrust over the weight above which it is taken for one in another unit [-]: a jack
@@ -27,9 +27,9 @@ CUT_OFF = 0.2
 """Share of the Arias intensity of a record that a run may leave out [-]."""
 IN_G = 1.0
 """Peak up to which a record may be one in g that was read as m/s2 [m/s2]."""
-FAINT = 0.6
+FAINT_RECORD = 0.6
 """Peak of a record over the acceleration at which the wall starts to rock, up to which it is odd to run it [-]."""
-BEYOND = 1.1
+RELEASE_BEYOND = 1.1
 """Rotation of release over that which overturns the wall, up to which it may be a study of the limit [-]."""
 TOO_FAST = 3.0
 """The same of the velocity of release [-]."""
@@ -83,7 +83,7 @@ def doubts(case: Any) -> list[str]:
 
 def _of_release(case: Any) -> list[str]:
     limit = case.overturning_rotation
-    if abs(case.theta0) > BEYOND * limit > 0 and (case.theta0 > 0 or not case.lopsided):
+    if abs(case.theta0) > RELEASE_BEYOND * limit > 0 and (case.theta0 > 0 or not case.lopsided):
         return [
             f"theta0 = {case.theta0:g} rad is {abs(case.theta0) / case.wall.alpha:.3g} alpha: the wall overturns from "
             f"{limit / case.wall.alpha:.3g} alpha; rotations are radians"
@@ -116,7 +116,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
     if motion is None:
         return []
     found, peak = [], motion.peak / GRAVITY
-    if 0 < peak < FAINT * start and start <= motion.peak <= IN_G:
+    if 0 < peak < FAINT_RECORD * start and start <= motion.peak <= IN_G:
         found.append(
             f"the record peaks at {peak:.3g} g; this {called} starts to rock at {start:.3g} g: is the record in g? "
             "Accelerations are in m/s2"
@@ -160,11 +160,11 @@ def of_effects(effects: Sequence[Effect], whole: Whole, room: Room) -> list[str]
     for i, effect in enumerate(effects):
         name = f"effects[{i}], {type(effect).__name__}"
         if isinstance(effect, Thrust | Load):
-            if 0 < abs(effect.force) < NEGLIGIBLE * weight:
+            if 0 < abs(effect.force) < NEGLIGIBLE_SHARE * weight:
                 found.append(_against_weight(name, "force", effect.force, whole, "kN"))
             elif abs(effect.force) > EXCESSIVE * weight:
                 found.append(_against_weight(name, "force", effect.force, whole, "N"))
-        elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE * whole.mass:
+        elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE_SHARE * whole.mass:
             found.append(
                 f"{name}: mass = {effect.mass:g} kg, that of the {whole.called} {whole.mass:.3g} kg: is it in t?"
             )
@@ -197,7 +197,7 @@ def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     law, limit, weight = link.law, link.limit, whole.mass * GRAVITY
     if not law.k > 0:
         return ""
-    if law.strength < NEGLIGIBLE * weight:
+    if law.strength < NEGLIGIBLE_SHARE * weight:
         return _against_weight(name, limit, law.strength, whole, "kN")
     if law.k > STIFFEST:
         return f"{name}: stiffness = {law.k:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"
@@ -224,7 +224,7 @@ def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
         return ""
     speed, weight = math.sqrt(GRAVITY * room(link)[0]), whole.mass * GRAVITY
     force = link.law.c * speed
-    if NEGLIGIBLE * weight <= force <= EXCESSIVE * weight:
+    if NEGLIGIBLE_SHARE * weight <= force <= EXCESSIVE * weight:
         return ""
     unit = "kN s/m" if force < weight else "N s/m"
     return (

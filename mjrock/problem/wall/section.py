@@ -19,7 +19,7 @@ from ...quantities import Array, Within, keep_declared, require_flag, require_wi
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""
-LOOKS = 201
+HEIGHTS_TRIED = 201
 """Heights at which it is made sure that something is left beside the openings."""
 Profile = tuple[tuple[float, float], ...]
 """Height [m] and thickness [m] from the base to the top, linear in between. Two at one height are a step."""
@@ -199,7 +199,7 @@ class Front(NamedTuple):
                 )
         edge = 1e-9 * self.height
         ends = [z for opening in self.openings for z in (opening.sill + edge, opening.head - edge)]
-        places = {*ends, *np.linspace(min(ends), max(ends), LOOKS).tolist()} if ends else set()
+        places = {*ends, *np.linspace(min(ends), max(ends), HEIGHTS_TRIED).tolist()} if ends else set()
         for z in sorted(places):
             at = np.array(z)
             across, length = sum(float(opening.across(at)) for opening in self.openings), float(self.long(at))

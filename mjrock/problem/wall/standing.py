@@ -17,7 +17,7 @@ from .block import Block
 
 ROUND = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 13))
 """Heights between which a round opening has straight sides, over its height [-]."""
-THIN = 1e-9
+NOTHING_LEFT = 1e-9
 """Width of what is left of a wall beside an opening, over the length of the wall, that is nothing [-]."""
 
 
@@ -282,7 +282,7 @@ def _beside_openings(wall: Block, low: float, high: float) -> list[tuple[Array, 
             pieces.append((left, np.clip(place - across, left, half)))
             left = np.clip(place + across, left, half)
     pieces.append((left, half))
-    return [piece for piece in pieces if (piece[1] - piece[0]).max() > THIN * wall.length]
+    return [piece for piece in pieces if (piece[1] - piece[0]).max() > NOTHING_LEFT * wall.length]
 
 
 def _slab(

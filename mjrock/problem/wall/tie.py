@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
 from ...quantities import Within, keep, keep_declared, require_array, require_real, require_within, within_ranges
-from .effect import HIGHEST, OF_MASONRY, Anchored, LinkLaw, Place, keep_place
+from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, LinkLaw, PointOf, keep_place
 
 GOVERNING = ("bar", "punching", "bearing")
 """What the strength of a tie with an anchor plate may be that of."""
@@ -64,11 +64,11 @@ class Tie(Anchored):
     slack: Annotated[float, Within(0, 10, "m")] = 0.0
     strength: float = math.inf
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
-    anchor_height: Annotated[float | None, Within(-HIGHEST, HIGHEST, "m", "height of the anchor")] = None
+    anchor_height: Annotated[float | None, Within(-HIGHEST_WALL, HIGHEST_WALL, "m", "height of the anchor")] = None
     block: int = 0
     ultimate: Annotated[float | None, Within(0, 10, "m")] = None
-    at: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-    anchor: Place | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     governed_by: str | None = field(default=None, kw_only=True)
     prestress: Annotated[float, Within(0, 1e9, "N")] = field(default=0.0, kw_only=True)

@@ -72,7 +72,7 @@ def moment_at_strength(pulls: Sequence[TiePull]) -> float:
     return sum(pull.strength * float(pulled(pull, 0.0, 1.0)[1]) for pull in pulls)
 
 
-def limits(pulls: Mapping[str, TiePull], rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
+def tie_limits(pulls: Mapping[str, TiePull], rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
     """Rotations [rad] at which ties yield, and at which they break, of those that do at increasing rotations (n,)."""
     yielding: dict[str, float] = {}
     breaking: dict[str, float] = {}
@@ -97,7 +97,7 @@ def yielded(pulls: Sequence[TiePull], theta: Array) -> Array:
     return plastic
 
 
-def stored(pulls: Sequence[TiePull], theta: Array, plastic: Array) -> Array:
+def tie_energy(pulls: Sequence[TiePull], theta: Array, plastic: Array) -> Array:
     """Elastic energy of the ties [J], shape (n,), at rotations and plastic elongations of shapes (n,), (n, ties)."""
     energy = np.zeros(len(theta))
     for pull, gone in zip(pulls, plastic.T, strict=True):
@@ -113,11 +113,11 @@ def taken(pulls: Sequence[TiePull], plastic: Array) -> Array:
         if gone.any():
             broken = np.isinf(gone)
             total = total + pull.strength * np.where(broken, pull.ultimate, gone)
-            total[broken] += lost(pull)
+            total[broken] += broken_energy(pull)
     return total
 
 
-def lost(pull: TiePull) -> float:
+def broken_energy(pull: TiePull) -> float:
     """Elastic energy that a tie loses as it breaks [J]."""
     return 0.5 * pull.strength**2 / pull.stiffness
 

@@ -73,7 +73,7 @@ class Grid(Sequence[Task]):
 
     @staticmethod
     def _labels(point: Mapping[str, object]) -> dict[str, object]:
-        return {name: label_of(value) for name, value in point.items()}
+        return {name: axis_label(value) for name, value in point.items()}
 
 
 def _listed(name: str, values: object) -> list[object]:
@@ -99,7 +99,7 @@ def labelled(task: Task, labels: Mapping[str, object]) -> Task:
     return cast(Task, replace(cast(Any, task), labels=labels))
 
 
-def label_of(value: object) -> object:
+def axis_label(value: object) -> object:
     """What a table says of the value of an axis, see `Grid`."""
     if isinstance(value, np.generic):
         value = value.item()

@@ -16,7 +16,7 @@ from typing import Any
 from ...bars import OF_ALL, PLAIN, shown_bar
 from .store import Store
 
-NUMBER = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
+NUMBER_IN_TEXT = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
 
 
 class WarningCounter:
@@ -28,7 +28,7 @@ class WarningCounter:
 
     def add(self, text: str, kind: str = "") -> bool:
         """Count a warning, and say whether it is the first of its kind, by default its text without numbers."""
-        kind = kind or NUMBER.sub("#", text)
+        kind = kind or NUMBER_IN_TEXT.sub("#", text)
         self.counts[kind] += 1
         return self.texts.setdefault(kind, text) is text
 
@@ -60,7 +60,7 @@ ERRORS = 3
 """Most different errors that are shown."""
 
 
-def counted(outcomes: Mapping[str, int]) -> str:
+def counts_told(outcomes: Mapping[str, int]) -> str:
     """How many cases ended in each way, the most frequent first."""
     ordered = sorted(outcomes.items(), key=lambda pair: (-pair[1], pair[0]))
     return ", ".join(f"{number} {name}" for name, number in ordered)
@@ -78,7 +78,7 @@ def closing(
     of = "" if total is None else f" of {total}"
     left = "" if total is None or rows >= total else f", {total - rows} left; the same call carries on"
     done = f"{statuses.get('done', 0)} done, {statuses.get('failed', 0)} failed"
-    ended = f" ({counted(outcomes)})" if outcomes else ""
+    ended = f" ({counts_told(outcomes)})" if outcomes else ""
     before = f", {kept} had a row before" if kept else ""
     return f"{rows}{of} tasks have a row: {done}{ended} in {seconds:.3g} s{before}{left}"
 
@@ -98,14 +98,16 @@ def status(path: str | Path) -> str:
     lines = [f"{path}: {len(rows)} rows, {len(done)} done, {len(failed)} failed"]
     outcomes = Counter(str(row["outcome"]) for row in done if row.get("outcome") is not None)
     if outcomes:
-        lines.append(f"outcomes: {counted(outcomes)}")
+        lines.append(f"outcomes: {counts_told(outcomes)}")
     seconds = sum(row["seconds"] or 0.0 for row in rows)
     lines.append(f"time of all cases together: {seconds:.3g} s, {seconds / max(len(rows), 1):.3g} s a case")
-    lines.append(f"made by: {counted(Counter(str(row['version']) for row in rows))}" if rows else "made by: nobody yet")
+    lines.append(
+        f"made by: {counts_told(Counter(str(row['version']) for row in rows))}" if rows else "made by: nobody yet"
+    )
     errors = WarningCounter()
     for row in failed:
         said = str(row["error"]).splitlines()[0]
-        errors.add(said[:160], NUMBER.sub("#", said.partition(" (at ")[0]))  # a grid says at which point
+        errors.add(said[:160], NUMBER_IN_TEXT.sub("#", said.partition(" (at ")[0]))  # a grid says at which point
     return "\n".join([*lines, *errors.lines("failed", ERRORS)])
 
 
@@ -116,7 +118,7 @@ def answer(argv: Sequence[str]) -> str:
     return status(parser.parse_args(argv).store)
 
 
-EVERY = 30.0
+LINE_EVERY = 30.0
 """Time between two lines of a campaign without a terminal [s]."""
 FEWEST = 10
 """Fewest cases of which a rate is said."""
@@ -151,7 +153,7 @@ class CampaignProgress:
         if not self.bar.disable:
             self.bar.set_postfix_str(", ".join(parts), refresh=False)
             self.bar.update(skipped + finished - self.bar.n)
-        elif now - self.spoken >= EVERY:
+        elif now - self.spoken >= LINE_EVERY:
             self.spoken = now
             of = "" if self.total is None else f" of {self.total}"
             self._say(", ".join([f"{skipped + finished}{of} cases", *parts]))

@@ -24,7 +24,7 @@ from .task import VERSION, Refused, Row, Task, carry_out, column_names, failed_r
 
 DEATHS = 2
 """A task during which this many worker processes have died is run alone."""
-LOOK = 0.1
+LOOK_EVERY = 0.1
 """Time between two looks for the row of a task that runs in this process [s]."""
 
 Submit = Callable[[list[tuple[Task, Path | None]]], Future[list[Row]]]
@@ -124,7 +124,7 @@ class Runner:
         Thread(target=lambda: rows.put(carry_out(job.task, job.history)), daemon=True).start()
         while True:
             with contextlib.suppress(Empty):
-                return self.write([job], [rows.get(timeout=LOOK)])
+                return self.write([job], [rows.get(timeout=LOOK_EVERY)])
 
     def across(self, pending: Iterator[Job], width: int, submit: Submit) -> None:
         """Run jobs in other processes, with twice as many chunks in flight as there are processes.

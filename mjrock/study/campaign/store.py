@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...files import require_file, written
 from ...quantities import require_path, spelt
-from .task import Row, checksum, plain, table_text
+from .task import Row, checksum, table_text, table_value
 
 if TYPE_CHECKING:
     import pandas
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 APPLICATION = 0x6D6A726B
 """SQLite's application_id of a campaign, "mjrk"."""
-FIXED = ("key", "position", "status", "error", "version", "seconds")
+ROW_COLUMNS = ("key", "position", "status", "error", "version", "seconds")
 """Columns of every row. `position` is the place in the list of tasks. `seconds` is the only column that is a timing."""
 CHECKSUM = "checksum"
 """The column with the checksum of a row, which is verified and left out when the row is read. SQLite checks the
@@ -95,7 +95,7 @@ class Store:
             raise FileExistsError(f"{path} exists already; rows are rescued into a new file")
         rows = readable(damaged)
         with cls(path, writing=True) as store:
-            store.add_columns(dict.fromkeys(name for row in rows for name in row if name not in FIXED))
+            store.add_columns(dict.fromkeys(name for row in rows for name in row if name not in ROW_COLUMNS))
             store.add(rows)
         return len(rows)
 
@@ -108,7 +108,7 @@ class Store:
             (verdict,) = self._rows.execute("PRAGMA integrity_check(1)").fetchone()
             if verdict != "ok":
                 raise sqlite3.DatabaseError(verdict)
-            missing = {*FIXED, CHECKSUM} - {row[1] for row in self._rows.execute("PRAGMA table_info(cases)")}
+            missing = {*ROW_COLUMNS, CHECKSUM} - {row[1] for row in self._rows.execute("PRAGMA table_info(cases)")}
             if missing:
                 names = ", ".join(sorted(missing))
                 raise sqlite3.DatabaseError(f"it has no column {names}, or an earlier version of mjrock wrote it")
@@ -116,7 +116,7 @@ class Store:
             self._rows.execute("PRAGMA journal_mode = WAL")
             self._rows.execute("PRAGMA synchronous = NORMAL")
         if writing and not tables:
-            columns = ", ".join((*FIXED, CHECKSUM))
+            columns = ", ".join((*ROW_COLUMNS, CHECKSUM))
             self._rows.execute("BEGIN")
             self._rows.execute(f"PRAGMA application_id = {APPLICATION}")
             self._rows.execute(f"CREATE TABLE cases ({columns}, PRIMARY KEY (key))")
@@ -174,12 +174,12 @@ class Store:
         """
         names = list(names)
         known = {name.lower(): name for name in self._known}
-        reserved = (*FIXED, CHECKSUM)
+        reserved = (*ROW_COLUMNS, CHECKSUM)
         seen: set[str] = set()
         for name in names:
             if not isinstance(name, str) or not name or '"' in name or "\0" in name or name.lower() in reserved:
                 raise ValueError(f"{spelt(name)} cannot name a column; reserved are {', '.join(reserved)}")
-            plain(name)
+            table_value(name)
             if name.lower() in seen or known.get(name.lower(), name) != name:
                 other = known.get(name.lower(), name)
                 raise ValueError(f"{name!r} cannot name a column beside {other!r}; upper and lower case do not count")
@@ -199,7 +199,7 @@ class Store:
         """
         inserts = []
         for row in rows:
-            values = {name: plain(value) for name, value in row.items()}
+            values = {name: table_value(value) for name, value in row.items()}
             unknown = values.keys() - set(self._known)
             if unknown:
                 raise ValueError(f"there is no column {', '.join(sorted(unknown))}; there are {', '.join(self._known)}")
@@ -252,7 +252,7 @@ class Store:
         unknown = where.keys() - set(self.columns)
         if unknown:
             raise ValueError(f"there is no column {', '.join(sorted(unknown))}; there are {', '.join(self.columns)}")
-        wanted = {name: plain(value) for name, value in where.items()}
+        wanted = {name: table_value(value) for name, value in where.items()}
         return [row for row in self._verified() if all(row[name] == value for name, value in wanted.items())]
 
     def csv(self, *, timings: bool = True) -> str:
@@ -280,7 +280,7 @@ def readable(path: Path) -> list[Row]:
             names = [column[0] for column in cursor.description]
             for values in cursor:
                 row = dict(zip(names, values, strict=True))
-                if row.pop(CHECKSUM, None) == checksum(row) and set(FIXED) <= row.keys():
+                if row.pop(CHECKSUM, None) == checksum(row) and set(ROW_COLUMNS) <= row.keys():
                     kept[row["key"]] = row
     return sorted(kept.values(), key=lambda row: (row["position"] or 0, row["key"]))
 

@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import time
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -21,7 +21,7 @@ from ...quantities import spelt
 Value = str | int | float | None
 
 
-def plain(value: object) -> Value:
+def table_value(value: object) -> Value:
     """A value as a table holds it: text, a 64-bit integer, a float or None; NaN becomes None, a truth value 0 or 1.
     ValueError for anything else."""
     if isinstance(value, np.generic):
@@ -62,41 +62,37 @@ def fingerprint(*contents: object) -> str:
         TypeError: for a value whose content is not known, such as a function.
     """
     digest = hashlib.sha256()
-    _add(digest, contents)
+    _hand_on(contents, lambda piece: digest.update(b"%d:" % len(piece) + piece))
     return digest.hexdigest()[:32]
 
 
-def _add(digest: Any, value: object) -> None:
-    """Add the content of a value to a hash, as pieces of bytes that tell it from any other."""
+def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
+    """Hand on the content of a value, as pieces of bytes that tell it from any other."""
     if isinstance(value, np.generic):
-        _add(digest, value.item())
+        _hand_on(value.item(), add)
     elif value is None or isinstance(value, bool | str):
-        _add_piece(digest, repr(value).encode())
+        add(repr(value).encode())
     elif isinstance(value, int | float):
-        _add_piece(digest, repr(float(value)).encode())  # 1 and 1.0 are the same thickness
+        add(repr(float(value)).encode())  # 1 and 1.0 are the same thickness
     elif isinstance(value, tuple | list):
-        _add_piece(digest, b"[%d" % len(value))
+        add(b"[%d" % len(value))
         for item in value:
-            _add(digest, item)
+            _hand_on(item, add)
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
-        _add_piece(digest, type(value).__name__.encode())
+        add(type(value).__name__.encode())
         for name in _compared(type(value)):
-            _add_piece(digest, name.encode())
-            _add(digest, getattr(value, name))
+            add(name.encode())
+            _hand_on(getattr(value, name), add)
     elif isinstance(value, np.ndarray):
-        _add_piece(digest, f"{value.dtype.str}{value.shape}".encode())
-        _add_piece(digest, np.ascontiguousarray(value).tobytes())
+        add(f"{value.dtype.str}{value.shape}".encode())
+        add(np.ascontiguousarray(value).tobytes())
     elif isinstance(value, Mapping):
-        _add_piece(digest, b"{%d" % len(value))
+        add(b"{%d" % len(value))
         for name in sorted(value):
-            _add(digest, name)
-            _add(digest, value[name])
+            _hand_on(name, add)
+            _hand_on(value[name], add)
     else:
         raise TypeError(f"{spelt(value)} is of no type whose content can be hashed")
-
-
-def _add_piece(digest: Any, piece: bytes) -> None:
-    digest.update(b"%d:" % len(piece) + piece)
 
 
 @cache
@@ -144,7 +140,7 @@ class Refused:
         held: dict[str, object] = {}
         for name, value in labels.items():
             try:
-                held[name] = plain(value)
+                held[name] = table_value(value)
             except ValueError:
                 held[name] = table_text(value)
         return cls(failed_row(error)["error"], held)
@@ -195,7 +191,7 @@ def carry_out(task: Task, history: Path | None) -> Row:
 
 def _named(what: str, value: object) -> Any:
     try:
-        return plain(value)
+        return table_value(value)
     except ValueError as error:
         raise ValueError(f"{what}: {error}") from None
 

@@ -13,7 +13,7 @@ from scipy.special import stdtrit
 from ...quantities import Array, Flags, is_iterable, require_real, require_row, require_within, short_repr, shown
 from ...result.ending import Outcome
 from ..campaign.task import Row
-from .fragility import Fragility, drawn, labels_for, numbered
+from .fragility import Fragility, drawn, group_numbers, labels_for
 
 OUTCOMES = frozenset(outcome.value for outcome in Outcome)
 """How a row says that a run ended."""
@@ -80,7 +80,7 @@ def fit_capacities(
     engineering, Earthquake Spectra 23(2), method A; the standard deviation with n - 1.
     """
     log_c = _logarithms("capacities", capacities)
-    names, group = numbered(labels_for(groups, len(log_c)))
+    names, group = group_numbers(labels_for(groups, len(log_c)))
     if not log_c.std() > 0:
         raise ValueError("capacities are all equal; a fragility curve needs a spread")
     weights = drawn(names, resamples, seed)[:, group].astype(float)
@@ -154,7 +154,7 @@ def paired_ratio(
     if log_c.shape != log_o.shape:
         raise ValueError(f"over has {len(log_o)} values and capacities {len(log_c)}; they have to be pairs")
     confidence = require_within("confidence", confidence, 0.0, 1.0)
-    names, group = numbered(labels_for(groups, len(log_c)), 2)
+    names, group = group_numbers(labels_for(groups, len(log_c)), 2)
     ratios = log_c - log_o
     means = np.bincount(group, ratios) / np.bincount(group)
     reach = float(stdtrit(names - 1, 0.5 + 0.5 * confidence)) * means.std(ddof=1) / math.sqrt(names)

@@ -16,7 +16,7 @@ from ..campaign.task import Row
 GROWTH = 1.25
 """Ratio of neighbouring scales while a bracket is searched [-]. A wall may stand again above a scale that overturns it:
 a finer ratio misses fewer of such islands."""
-LARGEST, LEAST = 1e3, 1e-6
+LARGEST_SCALE, LEAST_SCALE = 1e3, 1e-6
 """Scales beyond which the search for a bracket gives up, over the scale it starts at [-]."""
 
 NAMES = (
@@ -35,12 +35,12 @@ def bracket(falls: Callable[[float], bool], start: float = 1.0, growth: float = 
     low = high = start
     if falls(start):
         while falls(low := high / growth):
-            if low < LEAST * start:
+            if low < LEAST_SCALE * start:
                 raise ValueError(f"the wall overturns at every scale from {start:g} down to {low:g}")
             high = low
         return low, high
     while not falls(high := low * growth):
-        if high > LARGEST * start:
+        if high > LARGEST_SCALE * start:
             raise ValueError(f"the wall stands at every scale from {start:g} up to {high:g}; no capacity is found")
         low = high
     return low, high
@@ -61,7 +61,7 @@ def lowest(falls: Callable[[float], bool], low: float, high: float, below: int, 
     From `low` the scale goes down by `spacing` [-] at a time. Where the wall falls, that scale is the upper one of the
     two, and the count begins again. ValueError if it falls at LEAST times `low` or less.
     """
-    scale, stood, least = low, 0, LEAST * low
+    scale, stood, least = low, 0, LEAST_SCALE * low
     while stood < below:
         scale /= 1 + spacing
         if falls(scale):

@@ -31,11 +31,13 @@ MOST_WITHOUT = 0.05
 """Share of resamples without a curve from which the user is told [-]."""
 MOST_VALUES = 4_000_000
 """Most values of resamples that are fitted at once."""
-ITERATIONS = 100
+NEWTON_STEPS = 100
 """Most steps of Newton's method; a fit takes five to ten."""
-FARTHEST = 8.0
+SURE_SCORE = 8.0
 """Score beyond which a share counts as 0 or 1 in a penalised fit [-]."""
-HELD = "90% intervals of 5 to 40 groups held the median in 88 to 96 and the dispersion in 89 to 98 of 100 simulations"
+COVERAGE = (
+    "90% intervals of 5 to 40 groups held the median in 88 to 96 and the dispersion in 89 to 98 of 100 simulations"
+)
 """How often the intervals hold the truth (`scripts/studies/fragility_coverage.py`)."""
 SPREAD = 0.9
 """Confidence at which the dispersions of a band have the interval of the dispersion."""
@@ -161,7 +163,7 @@ class Fragility(Drawn):
         ]
         if self.groups is None:
             return "\n".join([*lines, f"{self.count} runs taken as independent"])
-        return "\n".join([*lines, f"{self.count} runs of {self.groups} groups", HELD])
+        return "\n".join([*lines, f"{self.count} runs of {self.groups} groups", COVERAGE])
 
     def csv(
         self, path: str | Path | None = None, *, intensity: ArrayLike | None = None, confidence: float = 0.9
@@ -246,7 +248,7 @@ def fit_fragility(
         raise ValueError(
             f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
         )
-    names, group = numbered(labels)
+    names, group = group_numbers(labels)
     draws = drawn(names, resamples, seed)
     count, at_once = len(draws), max(1, MOST_VALUES // len(x))
     fits = [resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
@@ -289,7 +291,7 @@ def _flags(overturned: ArrayLike) -> Flags:
     return np.asarray(values, dtype=bool)
 
 
-def numbered(labels: NDArray[np.generic], least: int = FEWEST_GROUPS) -> tuple[int, Integers]:
+def group_numbers(labels: NDArray[np.generic], least: int = FEWEST_GROUPS) -> tuple[int, Integers]:
     """How many groups there are, and the number of that of each value; ValueError for too few for an interval."""
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < least:
@@ -389,7 +391,7 @@ def probit(log_x: Array, fell: Flags, weights: Array) -> Array:
     sign = np.where(fell, 1.0, -1.0)
     fits = np.zeros((len(weights), 2))
     fits[:, 0] = ndtri((weights @ fell) / weights.sum(axis=1))
-    for _ in range(ITERATIONS):
+    for _ in range(NEWTON_STEPS):
         ratio, slant = _derivatives(sign * (fits[:, :1] + fits[:, 1:] * u))
         g, h = weights * sign * ratio, weights * slant
         gradient = np.stack([g.sum(axis=1), g @ u], axis=1)
@@ -424,8 +426,8 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
     u = (log_x - middle) / width
     design = np.stack([np.ones_like(u), u], axis=1)
     fits = np.tile([0.0, 1.0], (len(weights), 1))
-    for _ in range(ITERATIONS):
-        eta = np.clip(fits[:, :1] + fits[:, 1:] * u, -FARTHEST, FARTHEST)
+    for _ in range(NEWTON_STEPS):
+        eta = np.clip(fits[:, :1] + fits[:, 1:] * u, -SURE_SCORE, SURE_SCORE)
         share, density = ndtr(eta), np.exp(-0.5 * eta * eta) / math.sqrt(2 * math.pi)
         spread = share * ndtr(-eta)
         w = weights * density**2 / spread

@@ -15,10 +15,10 @@ from ...problem.masonry.effects import applied, dragged, pulls_of
 from ...problem.masonry.limit.collapse import Collapse, limit_of, pushed
 from ...problem.masonry.limit.pose import posed
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
-from ...problem.masonry.lines import slips
+from ...problem.masonry.lines import mean_slip_rates
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effect import Effect
-from ...problem.wall.effects import links_of
+from ...problem.wall.effects import link_effects
 from ...quantities import (
     Array,
     Implausible,
@@ -122,7 +122,7 @@ def collapse_multiplier(
     grown = _loads(masonry, {} if loads is None else loads) + pushed(masonry, push) + dragged(masonry, given, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
-    links = tuple(links_of(given).values())
+    links = tuple(link_effects(given).values())
     strength, constant = np.array([tie.law.strength for tie in links]), applied(masonry, given)
     ties = Pulls.of(masonry, pulls_of(masonry, links), strength)
     if pose is not None:
@@ -155,7 +155,7 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Eff
     """Effects as a case of the masonry takes them. An error names one whose force the motion alone decides."""
     given = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
     for i, effect in enumerate(given):
-        links = links_of([effect]).values()
+        links = link_effects([effect]).values()
         if effect.force_vector is None and not effect.mass_added and not any(link.law.holds for link in links):
             raise TypeError(
                 f"effects[{i}] is a {type(effect).__name__}, whose force depends on the motion; limit analysis takes "
@@ -180,7 +180,7 @@ def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tup
     if limit_of(masonry, found.direction, grown, constant, ties=ties).multiplier < BORNE:
         return ()
     count, lines = len(masonry.joints), masonry.lines
-    rates = np.abs(slips(masonry.blocks, lines, count) @ found.motion.ravel()).reshape(3, count)
+    rates = np.abs(mean_slip_rates(masonry.blocks, lines, count) @ found.motion.ravel()).reshape(3, count)
     widths = np.array([joint.width for joint in masonry.joints])
     twists = (found.forces.normal > 0) & (masonry.joint_friction > 0) & (rates[2] * widths > MOVES * rates.max())
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)

@@ -18,7 +18,7 @@ from ...files import aligned
 from ...notebook import html_of
 from ...problem.ground.code_spectrum import SpectrumOfCode
 from ...problem.ground.motion import GroundMotion
-from ...problem.ground.oscillator import SHORTEST
+from ...problem.ground.oscillator import SHORTEST_PERIOD
 from ...problem.ground.spectrum import response_spectrum
 from ...problem.masonry.case import require_wall
 from ...problem.wall.bending import VerticalBending
@@ -472,7 +472,7 @@ def _masses(case: Case) -> tuple[Array, Array]:
 def _asked(demand: Demand, period: float, damping: float, shortest: float) -> float:
     """The displacement that is asked for at a period [m], by a record the largest from the shortest period on [s]."""
     if isinstance(demand, GroundMotion):
-        periods = np.geomspace(max(min(shortest, period), SHORTEST), max(period, SHORTEST), PERIODS)
+        periods = np.geomspace(max(min(shortest, period), SHORTEST_PERIOD), max(period, SHORTEST_PERIOD), PERIODS)
         return float(response_spectrum(demand, periods, damping).Sd.max())
     if isinstance(demand, SpectrumOfCode):
         return float(demand.displacement(period, damping))

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ...bars import Bar
 from ...distinct.explicit import solve_explicit
 from ...notebook import Drawn
-from ...problem.masonry.actuator import LARGEST, Actuator
+from ...problem.masonry.actuator import LARGEST_STROKE, Actuator
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import laden
 from ...problem.masonry.masonry import Masonry
@@ -168,6 +168,7 @@ def push(
 
     Raises:
         TypeError, ValueError: for a value outside its range, or masonry that does not stand.
+        RuntimeError: where undamped masonry swings so long that its steps gain energy.
 
     Warns:
         UserWarning: where the motion was not slow: where the work under the curve is not the energy that was gained, or
@@ -177,9 +178,9 @@ def push(
     allowed = require_within("inertia", inertia, 1e-4, 0.5)
     falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
     turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
-    require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST, LARGEST, "m")
+    require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST_STROKE, LARGEST_STROKE, "m")
     if turns.any():
-        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST, "m")
+        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST_STROKE, "m")
     given = _required(masonry, effects, start)
     options = {"mass_damping": mass_damping, "local_damping": local_damping}
     if isinstance(driver, Actuator) and angle is None:
@@ -260,14 +261,30 @@ class Load:
             case = MasonryCase(self.masonry, t[-1], effects=(*self.effects, driven))
             warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
             warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
-            spacing = t[-1] / (POINTS * SAMPLES)
-            answer = solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
+            answer = self._answer(case)
         *_, force = answer.actuators.values()  # effects may have others
         gone = np.interp(answer.t, t, path)
         stretch, inertia = self.stretched(answer, force, gone), self.inertia(answer, gone)
         place, gained = self.level + gone - stretch, self._gained(answer, stretch)
         end = self.level + gone[-1], stretch[-1], gained[-1]
         return Piece(means(place), means(force) - inertia, inertia, means(gained), answer, *map(float, end))
+
+    def _answer(self, case: MasonryCase) -> Response:
+        """The motion of a piece.
+
+        Raises:
+            RuntimeError: where steps gain energy. They gain a share of what swings in each period, so that undamped
+                masonry that has cracked gains much in a long piece.
+        """
+        spacing = case.duration / (POINTS * SAMPLES)
+        try:
+            return solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
+        except RuntimeError as broken:
+            what = str(broken).partition("; take ")[0]
+            raise RuntimeError(
+                f"{what}, in a piece of the push of {case.duration:.3g} s at {1e3 * self.level:.4g} mm: masonry that "
+                "has given way swings; damp its motion by local_damping = 0.1 or mass_damping = 5, or its joints by xi"
+            ) from None
 
     def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
         """How far the spring of the actuator is pressed at the samples [m], without the part of its dashpot."""

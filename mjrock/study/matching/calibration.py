@@ -15,7 +15,7 @@ from typing import Annotated, Unpack
 import numpy as np
 
 from ...problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
-from ...problem.damping.law import HIGHEST, LEAST, DampingLaw
+from ...problem.damping.law import HIGHEST_XI, LEAST_XI, DampingLaw
 from ...problem.damping.restitution import Restitution
 from ...quantities import (
     Within,
@@ -95,7 +95,7 @@ class Plan:
         tasks = []
         for i, combination in enumerate(combinations(self.side_count, self.seed + 1, self.k_n, self.amplitude)):
             e_base = _housner(combination) ** self.side_losses[i % len(self.side_losses)]
-            if not LEAST < _base_damping(combination, Restitution(e_base, -0.5), base) < HIGHEST:
+            if not LEAST_XI < _base_damping(combination, Restitution(e_base, -0.5), base) < HIGHEST_XI:
                 e_base = _housner(combination)
             for side in self.sides:
                 e = Restitution(e_base, -side)
@@ -123,7 +123,7 @@ def _base_damping(combination: Combination, e: Restitution, base: Form) -> float
 
 def presumed_damping(combination: Combination, e: Restitution, base: Form) -> float:
     """The damping ratio of the base that a one-sided match presumes [-], to six digits."""
-    return float(f"{min(max(_base_damping(combination, e, base), LEAST), HIGHEST):.6g}")
+    return float(f"{min(max(_base_damping(combination, e, base), LEAST_XI), HIGHEST_XI):.6g}")
 
 
 @dataclass(frozen=True)

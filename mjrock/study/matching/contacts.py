@@ -12,14 +12,14 @@ from typing import Annotated
 
 from ...bars import Bar
 from ...problem.damping.contacts import Contacts, OfBase, OfSide, Rubbing
-from ...problem.damping.interface import Points
+from ...problem.damping.interface import PointCount
 from ...problem.damping.restitution import Restitution
 from ...problem.wall.block import Block
 from ...problem.wall.effects import SideStop
 from ...quantities import Implausible, Within, require_flag, require_kind, require_whole, require_within, within_ranges
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Match, highest_branch
 
-RIGID = 16.0
+STIFF_AS_THEORY = 16.0
 """Rotation of the last rebound that counts, over that at which an edge lifts, of a base as stiff as theory's [-]."""
 FLAT = 2e-4
 """Most rotation at which an edge of such a base lifts, over alpha [-]: the work of the weight on its springs then costs
@@ -27,14 +27,14 @@ less than 0.001 of e_2s."""
 TOUCH_DOWN = 0.415
 """Damping ratio of such a base times h/b [-], about that of a plastic touch-down. With less the wall bounces on it,
 with more a faint rebound loses more than a large one."""
-WORTH_SAYING = 0.02
+MISS_WARNED_OF = 0.02
 """Miss of |e| that is warned of, over |e| [-]: as the scatter of |e| with the phase of a touch is."""
-UNLIKE = 5e-3
+UNLIKE_EQ_2 = 5e-3
 """Relative difference of e_2s to Eq. 2 from which a stiff base is said not to give it [-]."""
 
 
 @dataclass(frozen=True)
-class Standing:
+class GivenWall:
     """A given wall on its interfaces, in place of a `Combination` of Table 1.
 
     Args:
@@ -58,7 +58,7 @@ def matched_contacts(
     k_base: OfBase,
     k_side: OfSide = None,
     *,
-    points: Points = 2,
+    points: PointCount = 2,
     amplitude: Annotated[float, Within(0.01, 0.95)] = 0.5,
     friction: Rubbing = None,
     side_friction: Rubbing = None,
@@ -93,7 +93,7 @@ def matched_contacts(
     top = 2 * wall.h if not isinstance(side_stop, SideStop) else min(side_stop.top, 2 * wall.h)
     if doubt := e.doubt(wall, top if k_side is not None else None):
         warnings.warn(doubt, Implausible, stacklevel=3)
-    standing = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
+    standing = GivenWall(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
     options = {"accuracy": accuracy, "friction": friction, "side_friction": side_friction}
     base = Match(standing, e, points, **options)  # type: ignore[arg-type]
     xi_base, xi_side = _matched("base", base, BASE_BOUNDS, whole=True), 0.0
@@ -141,15 +141,15 @@ def as_theory(
     amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
     rebounds = require_whole("rebounds", rebounds, 1, 6)
     theory = Restitution.from_geometry(wall).base
-    if abs(e.base / theory - 1) > UNLIKE:
+    if abs(e.base / theory - 1) > UNLIKE_EQ_2:
         warnings.warn(f"a stiff base gives e_2s = {theory:.4g} of Eq. 2, and not {e.base:.4g}", stacklevel=2)
     left = (e.lumped if side_stop else e.base) ** (2 * rebounds)
     last = wall.rotation_at(left * float(wall.potential_energy(amplitude * wall.alpha)))
-    uplift = min(last / RIGID, FLAT * wall.alpha)
+    uplift = min(last / STIFF_AS_THEORY, FLAT * wall.alpha)
     k_n = wall.weight / (2 * wall.base_length * wall.half_base**2 * uplift)
     xi_base, xi_side = TOUCH_DOWN / wall.slenderness, 0.0
     if side_stop:
-        side = Match(Standing(wall, k_n, k_n, amplitude), e, 2, xi_base)  # type: ignore[arg-type]
+        side = Match(GivenWall(wall, k_n, k_n, amplitude), e, 2, xi_base)  # type: ignore[arg-type]
         xi_side = _matched("side", side, SIDE_BOUNDS, whole=False)
     return Contacts.from_damping(
         wall, k_base=k_n, xi_base=xi_base, k_side=k_n if side_stop else None, xi_side=xi_side, law="as theory"
@@ -165,7 +165,7 @@ def _matched(name: str, match: Match, bounds: tuple[float, float], *, whole: boo
             return match.restitution(xi)
 
         closest = highest_branch(measured, match.target, bounds, whole=whole)
-    if not closest.reached and abs(closest.value - match.target) > WORTH_SAYING * match.target:
+    if not closest.reached and abs(closest.value - match.target) > MISS_WARNED_OF * match.target:
         warnings.warn(
             f"no damping of the {name} gives |e| = {match.target:.4g}; the closest, xi = {closest.xi:.3g}, gives "
             f"{closest.value:.4g}",

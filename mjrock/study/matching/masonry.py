@@ -24,17 +24,17 @@ from ...theory.impact import as_one
 from .contacts import TOUCH_DOWN
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Closest, highest_branch
 
-STRONG = 4.0
+STRONG_ABOVE = 4.0
 """Damping ratio of the joints above the base, in the lowest mode in which the stack bends over an edge of it [-]. From
 1 on the stack does not vibrate, and from 4 on more changes the energy lost by less than 0.2 %."""
-CLOSE = 5e-3
+PLASTIC_WITHIN = 5e-3
 """Relative difference to the energy that is to be lost up to which a base that touches down plastically is kept [-]. On
 stiff joints less damping changes no more than that, and makes the stack bounce."""
 MISSED = 0.02
 """Relative difference to the energy that is to be lost from which a match has missed it [-]."""
-STEP = 5e-4
+SAMPLE_STEP = 5e-4
 """Spacing of the samples, over the time of a rebound [-]."""
-LEAST = 0.01
+SMALLEST_REBOUND = 0.01
 """Smallest rotation that counts as a rebound, over the largest [-]."""
 
 
@@ -93,7 +93,7 @@ def matched_masonry(
         xi[list(pile.sides)] = value
         return rebound(damped(masonry), amplitude, accuracy)
 
-    if abs(excess(base(TOUCH_DOWN / pile.wall.slenderness), e.base)) > CLOSE:
+    if abs(excess(base(TOUCH_DOWN / pile.wall.slenderness), e.base)) > PLASTIC_WITHIN:
         xi[pile.base] = _matched("base", highest_branch(base, e.base, BASE_BOUNDS), e.base)
     if pile.sides:
         lumped = abs(e.lumped)
@@ -116,7 +116,7 @@ def strong(pile: Pile) -> float:
         closed[base] = base == edge
         left = Lines(*(values[closed] for values in lines))  # type: ignore[arg-type]
         frequencies.append(lowest_frequency(stack.blocks, left, stack.joint_friction))
-    return 2 * STRONG / min(frequencies)
+    return 2 * STRONG_ABOVE / min(frequencies)
 
 
 def rebound(stack: Masonry, amplitude: float, accuracy: float) -> float:
@@ -125,7 +125,7 @@ def rebound(stack: Masonry, amplitude: float, accuracy: float) -> float:
     velocity, swing = pile.rising(amplitude)
     for swings in (1.75, 3.5):  # a stack on soft joints rocks slower than a rigid one
         case = MasonryCase(stack, swings * swing, velocity=velocity)
-        ratios = restitutions(simulate(case, accuracy=accuracy, output_step=STEP * swing), pile)
+        ratios = restitutions(simulate(case, accuracy=accuracy, output_step=SAMPLE_STEP * swing), pile)
         if len(ratios):
             return float(ratios[0])
     return 0.0
@@ -159,7 +159,7 @@ def restitutions(answer: Response, pile: Pile) -> Array:
 def peaks(answer: Response, pile: Pile) -> list[int]:
     """The samples at which the rotation of a stack, the mean over its mass, has a maximum to either side."""
     theta = answer.theta @ pile.masses / pile.masses.sum()
-    beyond = np.sign(theta) * (np.abs(theta) > LEAST * np.abs(theta).max())
+    beyond = np.sign(theta) * (np.abs(theta) > SMALLEST_REBOUND * np.abs(theta).max())
     starts = np.flatnonzero(np.diff(beyond, prepend=0)).tolist()
     tops = []
     for start, end in zip(starts, [*starts[1:], len(theta)], strict=True):

@@ -15,7 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 from ...engine.simulation import simulate
 from ...problem.damping.contacts import Contacts
 from ...problem.damping.forms import Groups
-from ...problem.damping.law import DENSITY, HIGHEST, LEAST
+from ...problem.damping.law import DENSITY, HIGHEST_XI, LEAST_XI
 from ...problem.damping.restitution import Restitution
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
@@ -30,7 +30,7 @@ R_RANGE, SLENDERNESS_RANGE, AMPLITUDE_RANGE, K_N_RANGE = (1.4, 2.8), (4.0, 15.0)
 """Table 1: half diagonal [m], h/b [-], theta_0/alpha [-], interface stiffness of base and of side [N/m3]."""
 MOST_UNLIKE = 60.0
 """Largest ratio of the stiffnesses of base and side in Table 1 [-]."""
-BASE_BOUNDS, SIDE_BOUNDS = (LEAST, HIGHEST), (1e-4, HIGHEST)
+BASE_BOUNDS, SIDE_BOUNDS = (LEAST_XI, HIGHEST_XI), (1e-4, HIGHEST_XI)
 """Damping ratios that are searched [-]."""
 SCAN = 3.0
 """Ratio of neighbouring damping ratios while the search goes down for a bracket [-]."""

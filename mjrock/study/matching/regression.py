@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from ...problem.damping.forms import BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
-from ...problem.damping.law import MARGIN
+from ...problem.damping.law import REACH_MARGIN
 from ...quantities import Array
 from ..campaign.task import Row
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Combination, Match
@@ -68,7 +68,7 @@ def well_matched(row: Row) -> bool:
     """Whether a row was reached, and for the base not in the MARGIN at an end of the reachable range."""
     if not row["reached"] or row["match"] == "side" or row["measure"] == "rms":
         return bool(row["reached"])
-    width = MARGIN * (row["highest"] - row["lowest"])
+    width = REACH_MARGIN * (row["highest"] - row["lowest"])
     return bool(row["lowest"] + width <= row["found"] <= row["highest"] - width)
 
 

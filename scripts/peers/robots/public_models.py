@@ -19,14 +19,14 @@ import mujoco
 from tqdm import tqdm
 
 import mjrock as mr
-from mjrock.anymodel.command import GAINS, IMMOBILE, LONG
+from mjrock.anymodel.command import GAINS_NOTE, IMMOBILE, LONG
 from mjrock.anymodel.inspect import InspectedContact
 from scripts.peers.robots.carried import MODELS, absent, path_of
 from scripts.shared import cli
 
 HEADER = ("model", "geoms", "pairs", "stiffest [N/m]", "softest [N/m]", "e", "deepest [mm]", "CPU [s]", "notes")
 COUNTED = {
-    "gain energy": GAINS,
+    "gain energy": GAINS_NOTE,
     "in a long step": LONG,
     "with springs or dampers beside": "along the approach",
     "with constraints that yield": "in a contact, so that",

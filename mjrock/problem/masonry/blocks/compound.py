@@ -9,10 +9,10 @@ from typing import Self
 
 import numpy as np
 
-from ....geometry.graph import components
+from ....geometry.graph import connected_parts
 from ....geometry.hull import Convex, Side
 from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, short_repr, shown
-from .joints import CLOSE, Joint, joints_in_plane
+from .joints import PARTS_APART, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
 from .polygon import Polygon, checked_name
 from .polyhedron import Polyhedron, principal_of
@@ -96,22 +96,22 @@ class Compound:
         """Where the parts lie on each other; a ValueError says if they overlap or do not hang together."""
         find = joints_in_space if self.in_space else joints_in_plane
         try:
-            joints: tuple[Joint | SpaceJoint, ...] = find(_named(self.parts), CLOSE)  # type: ignore[arg-type]
+            joints: tuple[Joint | SpaceJoint, ...] = find(_named(self.parts), PARTS_APART)  # type: ignore[arg-type]
         except ValueError as error:
             raise ValueError(f"parts: {error}") from None
-        labels = components([(joint.below, joint.above) for joint in joints], len(self.parts))
+        labels = connected_parts([(joint.below, joint.above) for joint in joints], len(self.parts))
         if labels.any():
             loose = int(labels.argmax())
             raise ValueError(
                 f"parts: part {loose} hangs together with part 0 along no {'face' if self.in_space else 'edge'}; parts "
-                f"that touch are at most {CLOSE:g} m apart"
+                f"that touch are at most {PARTS_APART:g} m apart"
             )
         return joints
 
     @cached_property
     def surface(self) -> Surface:
         """The surface of the whole, and the sides of parts that lie inside it."""
-        return (surface_in_space if self.in_space else surface_in_plane)(self.parts, self.joined, CLOSE)  # type: ignore[arg-type]
+        return (surface_in_space if self.in_space else surface_in_plane)(self.parts, self.joined, PARTS_APART)  # type: ignore[arg-type]
 
     @property
     def sides(self) -> tuple[Side, ...]:

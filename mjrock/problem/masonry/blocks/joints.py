@@ -14,13 +14,13 @@ import numpy as np
 from ....quantities import Array, Integers, short_repr
 from .shape import Flat, Shape
 
-SHORTEST = 10.0
+SHORTEST_JOINT = 10.0
 """Length of the shortest joint, over the tolerance [-]. Blocks that share less than this touch at a corner only."""
 PARALLEL = 0.05
 """Largest sine of the angle between two edges that make a joint [-]."""
 TOGETHER = 512
 """Pairs of blocks whose joints are found at once."""
-CLOSE = 1e-5
+PARTS_APART = 1e-5
 """Largest distance between the faces of two parts of a unit that are joined, and largest overlap of parts [m]."""
 LEVEL = 1e-6
 """Largest |x| of the normal of a bed joint, and largest |z| of that of a head joint [-]."""
@@ -223,7 +223,7 @@ def meetings(edges: Edges, pairs: Integers, tolerance: float) -> Meetings:
     span = np.column_stack([np.maximum(0.0, first), np.minimum(long, last)])
     rise = _dot(c - d, n) / (last - first)
     apart = _dot(d - a, n)[:, None] + rise[:, None] * (span - first[:, None])
-    lie = (span[:, 1] - span[:, 0] > SHORTEST * tolerance) & (np.abs(apart) <= tolerance).all(axis=1)
+    lie = (span[:, 1] - span[:, 0] > SHORTEST_JOINT * tolerance) & (np.abs(apart) <= tolerance).all(axis=1)
     # ends are corners, without rounding, moved to the middle between the edges
     starts = np.where((first > 0)[:, None], d, a) + (np.where(first > 0, -0.5, 0.5) * apart[:, 0])[:, None] * n
     stops = np.where((last < long)[:, None], c, b) + (np.where(last < long, -0.5, 0.5) * apart[:, 1])[:, None] * n
@@ -248,7 +248,7 @@ def _joints(
     joint = np.repeat(np.arange(len(pairs)), counts)
     corner = np.arange(len(joint)) + np.repeat(edges.first[pairs[:, 1]] - np.cumsum(counts) + counts, counts)
     away = np.hypot(*(edges.start[corner, None] - ends[joint]).transpose(2, 0, 1))
-    near = np.minimum.reduceat(away, np.cumsum(counts) - counts) < SHORTEST * tolerance if len(pairs) else away
+    near = np.minimum.reduceat(away, np.cumsum(counts) - counts) < SHORTEST_JOINT * tolerance if len(pairs) else away
     rows = zip(pairs.tolist(), sides.tolist(), ends.tolist(), met.travel.tolist(), near.tolist(), strict=True)
     for (below, above), (on, under), (start, end), (back_by, on_by), (first, last) in rows:
         yield Joint(

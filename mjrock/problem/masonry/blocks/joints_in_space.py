@@ -12,7 +12,7 @@ import numpy as np
 from ....geometry import convex
 from ....geometry.hull import Convex, Side
 from ....quantities import Array, Integers, frozen, short_repr
-from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart, unlike_named
+from .joints import LEVEL, SHORTEST_JOINT, names_of, neighbours, require_apart, unlike_named
 from .polyhedron import Vertices
 from .shape import Shape
 
@@ -85,7 +85,7 @@ class SpaceJoint:
     @cached_property
     def middle(self) -> Array:
         """Centroid of the area of the joint [m], shape (3,)."""
-        return np.asarray(self.outline[0] + convex.centroid(self.flat) @ self.axes)
+        return np.asarray(self.outline[0] + convex.polygon_centroid(self.flat) @ self.axes)
 
     @property
     def frame(self) -> Array:
@@ -199,7 +199,7 @@ def _between(
         return
     outline = convex.clipped((face.corners - origin) @ axes.T, ((other.corners - origin) @ axes.T)[::-1])
     outline = convex.cleaned(outline, tolerance)
-    if not len(outline) or convex.width(outline) <= SHORTEST * tolerance:
+    if not len(outline) or convex.width(outline) <= SHORTEST_JOINT * tolerance:
         return
     places = origin + outline @ axes
     gaps = (other.offset - places @ other.normal) / float(normal @ other.normal)
@@ -211,7 +211,7 @@ def _between(
         below, above, normal, places, sides = above, below, -normal, places[::-1], sides[::-1]
 
     def is_corner(block: Shape, place: Array) -> bool:
-        return bool(np.linalg.norm(block.corners - place, axis=1).min() < SHORTEST * tolerance)
+        return bool(np.linalg.norm(block.corners - place, axis=1).min() < SHORTEST_JOINT * tolerance)
 
     yield SpaceJoint(
         below=below,

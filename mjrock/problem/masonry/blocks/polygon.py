@@ -25,7 +25,7 @@ from ....quantities import (
 )
 
 Corners = tuple[tuple[float, float], ...]
-FARTHEST = 1e4
+FARTHEST_VERTEX = 1e4
 """Largest coordinate of a vertex [m]."""
 BEND = 1e-9
 """Sine of a corner that is too flat to tell whether it turns inwards [-]."""
@@ -182,8 +182,10 @@ def required_vertices(vertices: ArrayLike | Sequence[Sequence[float]], least: in
     points = require_reals("vertices", vertices, f"an array of real numbers of the shape {shape}")
     if points.ndim != 2 or points.shape[1] != axes or not least <= len(points) <= MOST_VERTICES:
         raise ValueError(f"vertices has the shape {points.shape}; {shape} is needed")
-    if not (np.abs(points) <= FARTHEST).all():  # a NaN is not
-        raise ValueError(f"vertices holds a coordinate outside the valid range {-FARTHEST:g} to {FARTHEST:g} m")
+    if not (np.abs(points) <= FARTHEST_VERTEX).all():  # a NaN is not
+        raise ValueError(
+            f"vertices holds a coordinate outside the valid range {-FARTHEST_VERTEX:g} to {FARTHEST_VERTEX:g} m"
+        )
     return points
 
 

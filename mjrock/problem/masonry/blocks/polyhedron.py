@@ -23,7 +23,7 @@ from ....quantities import (
     require_within,
     short_repr,
 )
-from .polygon import FARTHEST, Polygon, checked_name, required_vertices
+from .polygon import FARTHEST_VERTEX, Polygon, checked_name, required_vertices
 
 Vertices = tuple[tuple[float, float, float], ...]
 DENTED = 1e-4
@@ -96,7 +96,9 @@ class Polyhedron:
         Raises:
             ValueError: for a value outside its range.
         """
-        extents = [require_within("size", extent, 1e-3, FARTHEST, "m") for extent in require_array("size", size, (3,))]
+        extents = [
+            require_within("size", extent, 1e-3, FARTHEST_VERTEX, "m") for extent in require_array("size", size, (3,))
+        ]
         middle = require_array("centre", centre, (3,))
         signs = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
         return cls(middle + signs * extents, density, fixed, name)
@@ -113,7 +115,7 @@ class Polyhedron:
             ValueError: for a value outside its range.
         """
         require_kind("polygon", polygon, Polygon)
-        middle, half = require_within("middle", middle, -FARTHEST, FARTHEST, "m"), 0.5 * polygon.length
+        middle, half = require_within("middle", middle, -FARTHEST_VERTEX, FARTHEST_VERTEX, "m"), 0.5 * polygon.length
         ends = [[(x, middle + y, z) for x, z in polygon.vertices] for y in (-half, half)]
         return cls([*ends[0], *ends[1]], polygon.density, polygon.fixed, polygon.name)
 

@@ -11,12 +11,12 @@ import scipy
 from ....geometry import convex
 from ....geometry.hull import Side
 from ....quantities import Array, Flags
-from .joints import SHORTEST, Joint
+from .joints import SHORTEST_JOINT, Joint
 from .joints_in_space import SpaceJoint, axes_across
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 
-WITHIN = 1e-6
+LEFT_OF_SIDE = 1e-6
 """Part of the area of a side that may be left of one that lies inside [-]."""
 LIKE = 1 - 1e-10
 """Cosine of the angle between the normals of two sides that may lie in one plane [-]."""
@@ -47,7 +47,7 @@ def surface_in_plane(parts: Sequence[Polygon], joined: Sequence[Joint], close: f
             covered[k][side].append(np.array([joint.start, joint.end]))
     pieces, inside = list[Side](), []
     for i, part in enumerate(parts):
-        left = [_uncovered(side, covered[i][j], SHORTEST * close) for j, side in enumerate(part.sides)]
+        left = [_uncovered(side, covered[i][j], SHORTEST_JOINT * close) for j, side in enumerate(part.sides)]
         inside.append(np.array([not len(some) for some in left]))
         pieces += [Side(ends, side.normal, (i,)) for side, some in zip(part.sides, left, strict=True) for ends in some]
     loops = [_straightened(loop, close) for loop in _loops(pieces)]
@@ -70,7 +70,7 @@ def surface_in_space(parts: Sequence[Polyhedron], joined: Sequence[SpaceJoint], 
     sides, inside = list[Side](), []
     for k, part in enumerate(parts):
         areas = np.array([_area_in_space(side) for side in part.sides])
-        inside.append(covered[k] > (1 - WITHIN) * areas)
+        inside.append(covered[k] > (1 - LEFT_OF_SIDE) * areas)
         sides += [side._replace(parts=(k,)) for side, gone in zip(part.sides, inside[k], strict=True) if not gone]
     merged = _merged(sides, close)
     corners = np.unique(np.concatenate([side.corners for side in merged]), axis=0)

@@ -8,16 +8,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from ....quantities import GRAVITY, Array, require_flag, require_kind, require_whole, require_within, shown
+from ....quantities import Array, require_flag, require_kind, require_whole, require_within, shown
 from ...wall.bending import VerticalBending
 from ...wall.block import Block
 from ...wall.effects import SideStop
 from ..blocks.compound import Compound, FlatBlock
 from ..blocks.polygon import Polygon
 
-DEEP = 0.25
+GROUND_DEPTH = 0.25
 """Depth of the ground, over the width of what stands on it [-]."""
-BEYOND = 2.0
+GROUND_BEYOND = 2.0
 """How far the ground reaches beyond what stands on it, over the height of that [-]: what falls over lies on it."""
 THINNEST_GROUND = 1e-3
 """Depth of the ground, over its own width, at least [-]: what stands on it may be ever so slender."""
@@ -27,7 +27,7 @@ DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
 """Depth of a loading beam, and how far it reaches beyond the wall at either end, over the length of the wall [-]."""
 LEAST_RADIUS = 0.01
 """Least radius of an arch [m]."""
-MOST_BLOCKS = 5000
+MOST_BODIES = 5000
 """Most blocks of a wall."""
 
 
@@ -48,8 +48,8 @@ def ground_under(left: float, right: float, height: float, length: float, level:
 
 def extent_of_ground(wide: float, height: float) -> tuple[float, float]:
     """How far ground reaches beyond what stands on it, of a width and a height [m], and how deep it is [m]."""
-    beyond = max(BEYOND * height, 0.5 * wide)
-    return beyond, max(DEEP * wide, THINNEST_GROUND * (wide + 2 * beyond))
+    beyond = max(GROUND_BEYOND * height, 0.5 * wide)
+    return beyond, max(GROUND_DEPTH * wide, THINNEST_GROUND * (wide + 2 * beyond))
 
 
 def ground_below_all(blocks: Sequence[FlatBlock]) -> Polygon:
@@ -113,11 +113,11 @@ def required_unit(unit: object) -> tuple[float, float]:
     return long, require_within("unit height", unit[1], 1e-2, 100.0, "m")
 
 
-Ends = float | tuple[float, float]
+Taper = float | tuple[float, float]
 """A measure [m], or a pair: what it is at one end and at the other, between which it changes linearly."""
 
 
-def required_ends(name: str, measure: Ends, low: float, high: float) -> tuple[float, float]:
+def required_ends(name: str, measure: Taper, low: float, high: float) -> tuple[float, float]:
     """A measure at both ends [m]; a TypeError or ValueError says what is wrong with it."""
     if not isinstance(measure, tuple | list):
         measure = (measure, measure)
@@ -126,7 +126,7 @@ def required_ends(name: str, measure: Ends, low: float, high: float) -> tuple[fl
     return require_within(name, measure[0], low, high, "m"), require_within(name, measure[1], low, high, "m")
 
 
-def rings_of(radius: float, thickness: Ends, least: float, share: Array) -> tuple[Array, Array]:
+def rings_of(radius: float, thickness: Taper, least: float, share: Array) -> tuple[Array, Array]:
     """Radii of the inner and the outer face of an arch or a dome at its joints [m], from that of the middle.
 
     Args:
@@ -142,7 +142,7 @@ def rings_of(radius: float, thickness: Ends, least: float, share: Array) -> tupl
 
 
 def arch_of(
-    radius: float, thickness: Ends, span_angle: float, voussoirs: int, density: float, length: float
+    radius: float, thickness: Taper, span_angle: float, voussoirs: int, density: float, length: float
 ) -> list[Polygon]:
     """Voussoirs of equal angles between two fixed abutments, from left to right, see `Masonry.arch`."""
     span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
@@ -191,9 +191,9 @@ def bonded_wall(
     if not math.isclose(courses * high, height, rel_tol=1e-6):
         raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
     count = courses * length / long * (2 if halved else 1)
-    if count + courses > MOST_BLOCKS:
+    if count + courses > MOST_BODIES:
         raise ValueError(
-            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
+            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BODIES}"
         )
     polygons = [ground_under(0.0, length, height, thickness)]
     for course in range(courses):
@@ -227,7 +227,6 @@ def bending_between_floors(bending: VerticalBending) -> list[Polygon]:
     wall, crack = bending.wall, bending.crack_height
     thickness, height, deep = 2 * wall.b, 2 * wall.h, bending.floor_depth
     left, right = bending.floor_ends
-    density = bending.load / (GRAVITY * wall.length * (right - left) * deep)
     low, top = height + 0.5 * deep, height + 1.5 * deep
 
     def part(name: str, sides: tuple[float, float], levels: tuple[float, float], density: float = 2000.0) -> Polygon:
@@ -238,7 +237,7 @@ def bending_between_floors(bending: VerticalBending) -> list[Polygon]:
         part("base", (-2 * thickness, 3 * thickness), (-thickness, 0.0)),
         part("lower", (0.0, thickness), (0.0, crack), wall.density),
         part("upper", (0.0, thickness), (crack, height), wall.density),
-        part("floor", (left, right), (height, height + deep), density),
+        part("floor", (left, right), (height, height + deep), bending.floor_density),
         part("inner_guide", (left - thickness, left), (low, top)),
         part("outer_guide", (right, right + thickness), (low, top)),
     ]

@@ -17,7 +17,7 @@ from ...wall.section import Opening
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
-from .in_plane import MOST_BLOCKS, SMALLEST_PIECE, Ends, extent_of_ground, required_ends, required_unit, rings_of
+from .in_plane import MOST_BODIES, SMALLEST_PIECE, Taper, extent_of_ground, required_ends, required_unit, rings_of
 
 WHOLE = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
@@ -42,7 +42,7 @@ def box_on_ground(size: ArrayLike, density: float) -> list[Polyhedron]:
     return [ground_below(block.corners.min(axis=0), block.corners.max(axis=0)), block]
 
 
-def column_of(width: Ends, height: float, drums: int, sides: int, density: float) -> list[Polyhedron]:
+def column_of(width: Taper, height: float, drums: int, sides: int, density: float) -> list[Polyhedron]:
     """The ground and prismatic drums on it, see `Masonry.column`."""
     ends = required_ends("width", width, 1e-2, 100.0)
     angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
@@ -61,10 +61,10 @@ def column_of(width: Ends, height: float, drums: int, sides: int, density: float
     return blocks
 
 
-def dome_of(radius: float, thickness: Ends, lunes: int, hoops: int, oculus: float, density: float) -> list[Polyhedron]:
+def dome_of(radius: float, thickness: Taper, lunes: int, hoops: int, oculus: float, density: float) -> list[Polyhedron]:
     """The ground and the voussoirs of a hemisphere on it, see `Masonry.dome`."""
-    if lunes * hoops >= MOST_BLOCKS:
-        raise ValueError(f"lunes = {lunes} times hoops = {hoops} is outside the valid range up to {MOST_BLOCKS}")
+    if lunes * hoops >= MOST_BODIES:
+        raise ValueError(f"lunes = {lunes} times hoops = {hoops} is outside the valid range up to {MOST_BODIES}")
     inner, outer = rings_of(radius, thickness, 0.1, np.arange(hoops + 1) / hoops)
     polar, around = np.linspace(0.5 * math.pi, oculus, hoops + 1), 2 * math.pi * np.arange(lunes + 1) / lunes
     sines, levels = np.sin(polar), np.append(0.0, np.cos(polar[1:]))
@@ -81,7 +81,7 @@ def dome_of(radius: float, thickness: Ends, lunes: int, hoops: int, oculus: floa
     return blocks
 
 
-ROUNDED = 1 - 1e-9
+JUST_LESS = 1 - 1e-9
 """Factor on the least size of a wall, so that rounding does not refuse it [-]."""
 RETURNS = {"both": (True, True), "left": (True, False), "right": (False, True), "none": (False, False)}
 """Whether there is a return wall at the left, where y is negative, and at the right end of a facade."""
@@ -150,14 +150,14 @@ def walls_of(
     sides = RETURNS[returns]
     t = 0.5 * long if thickness is None else thickness
     corners = t * sum(sides)
-    length = require_within("length", length, (corners + long) * ROUNDED, 1e3, "m")
-    height = require_within("height", height, high * ROUNDED, 1e3, "m")
-    depth = require_within("depth", depth, (t + 0.5 * long) * ROUNDED, 1e3, "m") if any(sides) else t
+    length = require_within("length", length, (corners + long) * JUST_LESS, 1e3, "m")
+    height = require_within("height", height, high * JUST_LESS, 1e3, "m")
+    depth = require_within("depth", depth, (t + 0.5 * long) * JUST_LESS, 1e3, "m") if any(sides) else t
     units, courses = round((length - corners) / long), round(height / high)
     halves = max(round(2 * (depth - t) / long), 1)
     gable = require_whole("gable", gable, 0, units + 1 - courses % 2)
-    if (courses + gable) * (units + 1) + courses * (halves // 2 + 1) * sum(sides) >= MOST_BLOCKS:
-        raise ValueError(f"length, height and depth need more units than {MOST_BLOCKS}; give larger units")
+    if (courses + gable) * (units + 1) + courses * (halves // 2 + 1) * sum(sides) >= MOST_BODIES:
+        raise ValueError(f"length, height and depth need more units than {MOST_BODIES}; give larger units")
     fitted, behind = (length - corners) / units, 2 * (depth - t) / halves
     return Walls(length, depth, t, fitted, behind, height / courses, courses, gable, sides)
 
@@ -266,7 +266,7 @@ def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Recta
     return pieces
 
 
-def corner_of(thickness: float, height: float, angle: float, density: float) -> list[SolidBlock]:
+def wall_corner(thickness: float, height: float, angle: float, density: float) -> list[SolidBlock]:
     """The ground, a corner with wedges of two walls, and what stays of them, see `Masonry.corner`."""
     t, long = thickness, height * math.tan(angle)
     end = long + max(t, 0.5 * height)

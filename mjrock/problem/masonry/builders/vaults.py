@@ -14,15 +14,15 @@ from ....quantities import Array, require_flag, require_within
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
-from .in_plane import LEAST_RADIUS, MOST_BLOCKS, Ends, arch_of, ground_under, rings_of
-from .in_space import ROUNDED
+from .in_plane import LEAST_RADIUS, MOST_BODIES, Taper, arch_of, ground_under, rings_of
+from .in_space import JUST_LESS
 
 
 class Span(NamedTuple):
     """An arch: radius of its middle and thickness [m], angle between its springings [rad], and how many voussoirs."""
 
     radius: float
-    thickness: Ends
+    thickness: Taper
     angle: float
     voussoirs: int
 
@@ -39,8 +39,8 @@ def bridge_of(
     """The ground, and arches on piers of a width and a height up to the springings [m], see `Masonry.bridge`."""
     ends = require_flag("abutments", abutments)
     blocks = arch_of(*arch, density, length)
-    if spans * len(blocks) >= MOST_BLOCKS:
-        raise ValueError(f"spans = {spans} of {arch.voussoirs} voussoirs are more blocks than {MOST_BLOCKS}")
+    if spans * len(blocks) >= MOST_BODIES:
+        raise ValueError(f"spans = {spans} of {arch.voussoirs} voussoirs are more blocks than {MOST_BODIES}")
     springing, outer = arch.springing
     skew = outer - springing
     wide = require_within("pier_width", pier[0], skew[0] * (1 if spans == 1 else 2), 1e3, "m")
@@ -73,8 +73,8 @@ def barrel_of(arch: Span, length: float, unit: float, density: float) -> list[Po
     unit = require_within("unit", unit, 1e-2, length, "m")
     left, *courses, right = arch_of(*arch, density, 1.0)
     whole = round(length / unit)
-    if len(courses) * (whole + 1) >= MOST_BLOCKS:
-        raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BLOCKS}")
+    if len(courses) * (whole + 1) >= MOST_BODIES:
+        raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BODIES}")
     fitted = length / whole
     blocks = [_laid(left, (0.0, length), left.name)]
     for i, course in enumerate(courses):
@@ -86,7 +86,7 @@ def barrel_of(arch: Span, length: float, unit: float, density: float) -> list[Po
 
 SIDES = ("right", "back", "left", "front")
 """The sides of a bay, each a quarter of a turn from x towards y after the one before."""
-TURNED = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+QUARTER_TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 """What turns rows of x, y, z by that."""
 SHORTEST_ARM = 0.25
 """How far a stone of the groin reaches along the web at least, over the length of a unit [-]."""
@@ -101,10 +101,10 @@ def groin_of(arch: Span, length: float, unit: float, cut: bool, density: float) 
     (x, z), (reach, top) = arch.springing.tolist()
     pier = np.array([(x, z), (reach, top), (reach, z - (reach - x)), (x, z - (reach - x))])
     strips = [Polygon(pier * (-1, 1), density), *courses, Polygon(pier, density)]
-    length = require_within("length", length, 2 * reach * ROUNDED, 1e3, "m")
+    length = require_within("length", length, 2 * reach * JUST_LESS, 1e3, "m")
     unit, cut = require_within("unit", unit, 1e-2, length, "m"), require_flag("cut", cut)
-    if 4 * len(strips) * (0.5 * length / unit + 1) >= MOST_BLOCKS:
-        raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BLOCKS}")
+    if 4 * len(strips) * (0.5 * length / unit + 1) >= MOST_BODIES:
+        raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BODIES}")
     webs: list[SolidBlock] = []
     stones: dict[str, list[Polyhedron]] = {}
     for i, strip in enumerate(strips):
@@ -135,7 +135,7 @@ def _of_web(polygon: Polygon, ends: tuple[float, float], turns: int, name: str, 
     inner = np.maximum(np.abs(x), near)
     beyond = far - inner > 1e-6 * far
     inside, outside = np.column_stack([x, inner, z]), np.column_stack([x, np.full_like(x, far), z])[beyond]
-    vertices = np.vstack([inside, outside]) @ np.linalg.matrix_power(TURNED, turns)
+    vertices = np.vstack([inside, outside]) @ np.linalg.matrix_power(QUARTER_TURN, turns)
     return Polyhedron(vertices, polygon.density, name=name)
 
 

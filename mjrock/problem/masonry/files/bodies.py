@@ -13,14 +13,14 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ....geometry.graph import components
+from ....geometry.graph import connected_parts
 from ....geometry.hull import THINNEST, Hull, bulk_of, hull_of
 from ....geometry.parts import convex_parts
 from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown
 from ..blocks.compound import Compound, SolidBlock
-from ..blocks.polygon import FARTHEST, MOST_VERTICES
+from ..blocks.polygon import FARTHEST_VERTEX, MOST_VERTICES
 from ..blocks.polyhedron import Polyhedron
-from ..builders.in_plane import MOST_BLOCKS
+from ..builders.in_plane import MOST_BODIES
 
 SAME_VOLUME = 1e-3
 """Largest difference of the volume of a body from that of its hull, over the latter [-]."""
@@ -30,11 +30,11 @@ SPLINTER = 1e-4
 """Volume of a part below which it is left out, over that of the body [-]."""
 MOST_CUTS = 64
 """Most parts that a body is cut into."""
-PLATE = 0.1
+PLATE_THICKNESS = 0.1
 """Thickness of a support that is drawn as an open plate, over its extent [-]."""
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 """Length of the units that files are drawn in [m]."""
-TURNS = {
+UPWARDS = {
     "x": ((0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)),
     "y": ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
     "z": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -97,8 +97,8 @@ class Given(NamedTuple):
         if self.unit is not None:
             if self.scale is not None:
                 raise ValueError(f"unit = {shown(self.unit)} and scale = {self.scale:g} are both given; give one")
-            scale = UNITS[_one_of("unit", self.unit, UNITS)]
-        return scale * np.array(TURNS[_one_of("up", usual if self.up is None else self.up, TURNS)])
+            scale = LENGTH_UNITS[_one_of("unit", self.unit, LENGTH_UNITS)]
+        return scale * np.array(UPWARDS[_one_of("up", usual if self.up is None else self.up, UPWARDS)])
 
 
 def _one_of(name: str, value: str, known: Collection[str]) -> str:
@@ -136,11 +136,11 @@ def meshes_of(given: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) ->
         for face in faces:
             if len(face) < 3 or min(face) < 0 or max(face) >= len(vertices):
                 raise ValueError(f"{what}: the face {face} is not three or more of {len(vertices)} vertices")
-        meshes.append(Mesh(plain(require_text("meshes", name), "body"), vertices, faces))
+        meshes.append(Mesh(block_name(require_text("meshes", name), "body"), vertices, faces))
     return meshes
 
 
-def plain(name: str, otherwise: str) -> str:
+def block_name(name: str, otherwise: str) -> str:
     """A name that a block can have."""
     name = name.strip().replace("|", "_")
     return otherwise if name in ("", "world") else name
@@ -153,7 +153,7 @@ def used(vertices: Array, faces: MeshFaces) -> tuple[Array, MeshFaces]:
     return vertices[numbers], [tuple(where[vertex] for vertex in face) for face in faces]
 
 
-def bodies_of(mesh: Mesh) -> list[Mesh]:
+def mesh_bodies(mesh: Mesh) -> list[Mesh]:
     """The closed bodies of a mesh, and plane plates that are open.
 
     Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
@@ -172,11 +172,11 @@ def bodies_of(mesh: Mesh) -> list[Mesh]:
     part = 0
     for face in faces:
         parts.append(part)
-        for i, j in edges_of(face):
+        for i, j in face_edges(face):
             open_edges ^= {(min(i, j), max(i, j))}
         part += not open_edges
-        if part > MOST_BLOCKS:
-            raise ValueError(f"body {mesh.name} is more than {MOST_BLOCKS} closed bodies, which is the most")
+        if part > MOST_BODIES:
+            raise ValueError(f"body {mesh.name} is more than {MOST_BODIES} closed bodies, which is the most")
     bodies = [mesh._replace(vertices=each, faces=rings) for each, rings in _apart(places, faces, parts)]
     if not bodies:
         raise ValueError(f"body {mesh.name} has no faces")
@@ -192,7 +192,7 @@ def _all_bodies(meshes: Sequence[Mesh]) -> list[Mesh]:
     again, bodies = list[Mesh](), list[Mesh]()
     for mesh in meshes:
         own = list[Mesh]()
-        for body in bodies_of(mesh):
+        for body in mesh_bodies(mesh):
             places = np.unique(body.vertices, axis=0).tobytes()
             (again if places in seen else own).append(body)
             seen.add(places)
@@ -213,7 +213,7 @@ def _apart(places: Array, faces: MeshFaces, parts: list[int]) -> list[tuple[Arra
         pairs += [(numbers[0], number) for number in numbers]
     if not pairs:
         return []
-    labels = components(pairs, len(own)).tolist()
+    labels = connected_parts(pairs, len(own)).tolist()
     shells: dict[int, MeshFaces] = {}
     for face, part in zip(faces, parts, strict=True):
         shells.setdefault(labels[own[part, face[0]]], []).append(face)
@@ -222,7 +222,7 @@ def _apart(places: Array, faces: MeshFaces, parts: list[int]) -> list[tuple[Arra
 
 def _open_edges(body: Mesh) -> int:
     """How many edges of a body belong to an odd number of faces."""
-    count = Counter(frozenset(edge) for face in body.faces for edge in edges_of(face))
+    count = Counter(frozenset(edge) for face in body.faces for edge in face_edges(face))
     return sum(number % 2 for number in count.values())
 
 
@@ -233,7 +233,7 @@ def is_plate(body: Mesh) -> bool:
     return bool(len(about) < 4 or thick <= THINNEST * np.ptp(about, axis=0).max())
 
 
-def edges_of(face: tuple[int, ...]) -> list[tuple[int, int]]:
+def face_edges(face: tuple[int, ...]) -> list[tuple[int, int]]:
     """The edges of a face, in its order."""
     return list(zip(face, (*face[1:], face[0]), strict=True))
 
@@ -243,15 +243,15 @@ def oriented(body: Mesh) -> Mesh:
     faces = list(body.faces)
     of_edge: dict[frozenset[int], list[int]] = {}
     for number, face in enumerate(faces):
-        for edge in edges_of(face):
+        for edge in face_edges(face):
             of_edge.setdefault(frozenset(edge), []).append(number)
     seen, ahead = {0}, [0]
     while ahead:
         number = ahead.pop()
-        for edge in edges_of(faces[number]):
+        for edge in face_edges(faces[number]):
             for other in of_edge[frozenset(edge)]:
                 if other not in seen:  # beside a face that turns the same way, an edge is passed the other way
-                    faces[other] = faces[other][::-1] if edge in edges_of(faces[other]) else faces[other]
+                    faces[other] = faces[other][::-1] if edge in face_edges(faces[other]) else faces[other]
                     seen.add(other)
                     ahead.append(other)
     if enclosed_by(body._replace(faces=faces)) < 0:
@@ -328,9 +328,10 @@ def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[Soli
             raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(names[:10])}")
     bodies = [body._replace(fixed=body.fixed or body.name in fixed) for body in bodies]
     for body in bodies:
-        if not (np.abs(body.vertices) <= FARTHEST).all():  # a NaN is not
+        if not (np.abs(body.vertices) <= FARTHEST_VERTEX).all():  # a NaN is not
             raise ValueError(
-                f"body {body.name}: vertices holds a coordinate outside the valid range {-FARTHEST:g} to {FARTHEST:g} m"
+                f"body {body.name}: vertices holds a coordinate outside the valid range {-FARTHEST_VERTEX:g} to "
+                f"{FARTHEST_VERTEX:g} m"
             )
     middle = np.concatenate([body.vertices for body in bodies]).mean(axis=0)
     bounds = [Bound.of(_support(body, middle)) for body in bodies]
@@ -352,7 +353,7 @@ def _support(body: Mesh, middle: Array) -> Mesh:
     about = body.vertices.mean(axis=0)
     normal = np.linalg.svd(body.vertices - about)[2][-1]
     away = -np.sign(normal @ (middle - about)) or 1.0
-    behind = body.vertices + away * PLATE * float(np.ptp(body.vertices, axis=0).max()) * normal
+    behind = body.vertices + away * PLATE_THICKNESS * float(np.ptp(body.vertices, axis=0).max()) * normal
     hull = hull_of(np.concatenate([body.vertices, behind]))
     return body._replace(vertices=np.concatenate([body.vertices, behind])[list(hull.corners)], faces=list(hull.faces))
 

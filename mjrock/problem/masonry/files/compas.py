@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from ..blocks.polyhedron import Polyhedron
-from .bodies import Mesh, plain
-from .meshes import text_of
+from .bodies import Mesh, block_name
+from .meshes import file_text
 
 
 def guid_of(kind: str, name: object) -> str:
@@ -24,7 +24,7 @@ def guid_of(kind: str, name: object) -> str:
     return str(uuid.uuid5(uuid.NAMESPACE_URL, f"{kind} {name}"))
 
 
-def held(kind: str, data: object, guid: str) -> dict[str, Any]:
+def held(kind: str, data: object, guid: str) -> dict[str, object]:
     """A part, as COMPAS keeps it."""
     return {"dtype": kind, "data": data, "guid": guid}
 
@@ -32,7 +32,7 @@ def held(kind: str, data: object, guid: str) -> dict[str, Any]:
 def read_compas(path: Path) -> list[Mesh]:
     """The blocks of a file, each of which is a mesh, with their supports and the densities of their materials."""
     try:
-        content = _inside(json.loads(text_of(path)))
+        content = _inside(json.loads(file_text(path)))
         content = _inside(content["model"]) if "model" in content else content  # a problem up to compas_dem 0.5 has it
         pairs = _parts(content)
     except (json.JSONDecodeError, RecursionError) as error:
@@ -101,7 +101,7 @@ def _block(part: dict[str, Any], key: object, materials: dict[str, Any]) -> Mesh
         matrix = np.array(_inside(part["transformation"])["matrix"], dtype=float)
         places = places @ matrix[:3, :3].T + matrix[:3, 3]
     density = _inside(materials.get(str(part.get("material")), {})).get("density")
-    name = plain(str(part.get("name") or ""), "block" if held == "geometry" else f"block_{key}")
+    name = block_name(str(part.get("name") or ""), "block" if held == "geometry" else f"block_{key}")
     return Mesh(name, places, faces, bool(part.get("is_support", False)), density)
 
 
@@ -114,7 +114,7 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
     """Blocks as the JSON of a COMPAS model, without interactions. The same blocks give the same text."""
     densities = dict.fromkeys(block.density for block in blocks)
 
-    elements: dict[str, Any] = {}
+    elements: dict[str, object] = {}
     for block, name in zip(blocks, names, strict=True):
         mesh = {
             "attributes": {},
@@ -129,7 +129,7 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
             "max_face": len(block.faces) - 1,
         }
         stone = guid_of("density", block.density)
-        inside: dict[str, Any] = {"transformation": None, "features": [], "name": name, "material": stone}
+        inside: dict[str, object] = {"transformation": None, "features": [], "name": name, "material": stone}
         inside |= {"geometry": {"dtype": "compas.datastructures/Mesh", "data": mesh}, "is_support": block.fixed}
         guid = guid_of("block", name)
         elements[guid] = held("compas_dem.elements/Block", inside, guid)
@@ -146,7 +146,7 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
         "edge": {str(i): {} for i in range(len(elements))},
         "max_node": len(elements) - 1,
     }
-    content: dict[str, Any] = {"transformation": None, "elements": elements, "materials": stones, "graph": graph}
+    content: dict[str, object] = {"transformation": None, "elements": elements, "materials": stones, "graph": graph}
     content["tree"] = {"attributes": {}, "root": {"name": "root", "children": children}}
     model = held("compas_dem.models/BlockModel", content, model_guid(names))
     model["inheritance"] = ["compas_model.models/Model"]

@@ -15,13 +15,13 @@ from ....geometry.hull import prism
 from ....quantities import Array, named, shown
 from ..blocks.compound import Compound, FlatBlock, SolidBlock
 from ..blocks.polygon import InwardsError, Polygon
-from ..builders.in_plane import MOST_BLOCKS
-from .bodies import Given, Mesh, blocks_of, plain
+from ..builders.in_plane import MOST_BODIES
+from .bodies import Given, Mesh, block_name, blocks_of
 from .meshes import bytes_of
 
-SHORT = 1e-9
+CLOSED_WITHIN = 1e-9
 """Distance of the ends of a polyline that count as one, over its extent [-]."""
-MOST_INSERTED = 10 * MOST_BLOCKS
+MOST_INSERTED = 10 * MOST_BODIES
 """Most lines, texts and whatever else that the blocks of a drawing may insert; they take some ten seconds."""
 OUTLINES = ("LWPOLYLINE", "POLYLINE")
 DEEPEST = 50
@@ -50,14 +50,14 @@ class Outline(NamedTuple):
     corners: Array
 
 
-class Drawing(NamedTuple):
+class DxfDrawing(NamedTuple):
     """The outlines of a drawing in the order in which they are drawn, and its unit [m], None where it names none."""
 
     outlines: list[Outline]
     unit: float | None
 
 
-def read_dxf(path: Path, layers: Sequence[str] | None) -> Drawing:
+def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
     """The outlines of a drawing on some layers, or on all.
 
     Raises:
@@ -94,7 +94,7 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> Drawing:
     _warn_of_repairs(path, [*auditor.errors, *auditor.fixes])
     if left := {kind: count for kind, count in others.items() if kind in AREAS}:
         warnings.warn(f"path = {path}: only closed polylines are read; left out are {_counted(left)}", stacklevel=4)
-    return Drawing(outlines, unit)
+    return DxfDrawing(outlines, unit)
 
 
 def _outlines(path: Path, entities: Sequence[Any]) -> tuple[list[Outline], Counter[str]]:
@@ -111,7 +111,7 @@ def _outlines(path: Path, entities: Sequence[Any]) -> tuple[list[Outline], Count
             raise ValueError(
                 f"path = {path}, layer {layer}: {error}; or give the layers that hold blocks by layers="
             ) from None
-        outlines.append(Outline(f"{plain(layer, 'layer')}_{counts[layer]}", layer, corners))
+        outlines.append(Outline(f"{block_name(layer, 'layer')}_{counts[layer]}", layer, corners))
         counts[layer] += 1
     if not outlines:
         join = "; join its lines to closed polylines" if others["LINE"] > 2 else ""
@@ -183,7 +183,7 @@ def _require_few(document: Any, space: Iterable[Any]) -> None:
 
     found = held(space, ())
     for count, what, most in zip(
-        found, ("outlines", "things that are inserted"), (MOST_BLOCKS, MOST_INSERTED), strict=True
+        found, ("outlines", "things that are inserted"), (MOST_BODIES, MOST_INSERTED), strict=True
     ):
         if count > most:
             raise InsertError(f"there are {count:.3g} {what}, and at most {most} are taken")
@@ -211,7 +211,7 @@ def _corners(polyline: Any) -> Array:
     places = np.array([tuple(at) for at in (polyline.vertices_in_wcs() if light else polyline.points_in_wcs())])
     at = f"the polyline that begins at {places[0, 0]:g}, {places[0, 1]:g}" if len(places) else "a polyline"
     extent = float(np.ptp(places, axis=0).max()) if len(places) else 0.0
-    if len(places) > 1 and np.abs(places[0] - places[-1]).max() <= SHORT * extent:
+    if len(places) > 1 and np.abs(places[0] - places[-1]).max() <= CLOSED_WITHIN * extent:
         places = places[:-1]
     elif not polyline.is_closed:
         raise OutlineError(f"{at} is open: close it")
@@ -222,7 +222,7 @@ def _corners(polyline: Any) -> Array:
     return places
 
 
-def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
+def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
     """The blocks of a drawing, in m with z upwards.
 
     Args:
@@ -255,7 +255,7 @@ def polygons_of(drawing: Drawing, given: Given, density: OfLayer, length: OfLaye
         numbers = of("density", density, layer), of("length", length, layer)
         corners = outline.corners @ turn.T
         begins = f"block {outline.name}, which begins at {corners[0, 0]:g}, {corners[0, 2]:g} m"
-        if np.ptp(corners[:, 1]) > SHORT * np.ptp(corners, axis=0).max():
+        if np.ptp(corners[:, 1]) > CLOSED_WITHIN * np.ptp(corners, axis=0).max():
             raise ValueError(f"{begins}: it is not in the plane of the drawing; up='z' takes one in the plane x, z")
         ring = corners[:, [0, 2]]
         try:

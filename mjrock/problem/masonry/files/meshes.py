@@ -15,7 +15,7 @@ import numpy as np
 
 from ....quantities import Array
 from ..blocks.polyhedron import Polyhedron
-from .bodies import Mesh, plain, used
+from .bodies import Mesh, block_name, used
 
 MOST_BYTES = 500_000_000
 """Largest file that is read."""
@@ -31,7 +31,7 @@ def bytes_of(path: Path) -> bytes:
     return path.read_bytes()
 
 
-def text_of(path: Path) -> str:
+def file_text(path: Path) -> str:
     """What a text file holds."""
     try:
         return bytes_of(path).decode("utf-8-sig")
@@ -44,7 +44,7 @@ def read_obj(path: Path) -> list[Mesh]:
     vertices: list[tuple[float, ...]] = []
     faces: dict[tuple[str, str], list[tuple[int, ...]]] = {}
     thing, group = "", ""
-    for count, line in enumerate(text_of(path).replace("\\\n", " ").splitlines(), 1):
+    for count, line in enumerate(file_text(path).replace("\\\n", " ").splitlines(), 1):
         kind, _, rest = line.partition("#")[0].strip().partition(" ")
         try:
             if kind == "v":
@@ -69,7 +69,7 @@ def read_obj(path: Path) -> list[Mesh]:
     places, meshes = np.array(vertices), []
     for i, ((thing, group), ring) in enumerate(faces.items()):
         name = thing if thing and things[thing] == 1 else "_".join(part for part in (thing, group) if part)
-        meshes.append(Mesh(plain(name, f"body_{i}"), *used(places, ring)))
+        meshes.append(Mesh(block_name(name, f"body_{i}"), *used(places, ring)))
     return meshes
 
 
@@ -86,11 +86,11 @@ def read_stl(path: Path) -> list[Mesh]:
     meshes: list[Mesh] = []
     name, is_open = "body", False
     corners: list[tuple[float, float, float]] = []
-    for count, line in enumerate(text_of(path).splitlines(), 1):
+    for count, line in enumerate(file_text(path).splitlines(), 1):
         words = line.split()
         kind = words[0].lower() if words else ""
         if kind == "solid":
-            name, corners, is_open = plain(" ".join(words[1:]), f"body_{len(meshes)}"), [], True
+            name, corners, is_open = block_name(" ".join(words[1:]), f"body_{len(meshes)}"), [], True
         elif kind == "vertex":
             try:
                 corners.append(_triple(words[1:]))

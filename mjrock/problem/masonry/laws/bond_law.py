@@ -22,10 +22,9 @@ A row is anything with these numbers by name, see `rows`. Strengths are forces o
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from ....compiled import inlined
-from .joint_law import shear_limit
+from .joint_law import LawRow, shear_limit
 
 PASSES = 8
 """Passes of the search for the opening of a crack, by Newton's method, and for a plastic closing."""
@@ -35,12 +34,12 @@ YIELDS = 1 / 3
 """Share of the crushing strength that a joint which hardens bears before it closes for good [-]."""
 HARDENED = YIELDS + (1 - YIELDS) * math.pi / 4
 """Mean share of the crushing strength that it bears from there to the peak [-]."""
-HALVINGS = 40
+CLOSING_HALVINGS = 40
 """Halvings of the closing that is looked for while a joint hardens."""
 
 
 @inlined
-def tear(bond: Any, gap: float) -> None:
+def tear(bond: LawRow, gap: float) -> None:
     """Let the crack of a bond grow until it pulls no more than is left of its strength, at a gap [m].
 
     The opening w of the crack solves k (u - w) = T exp(-w r), with u the largest gap, T the strength and r its rate.
@@ -62,7 +61,7 @@ def tear(bond: Any, gap: float) -> None:
 
 
 @inlined
-def hardened(bond: Any, closing: float) -> float:
+def hardened(bond: LawRow, closing: float) -> float:
     """What a joint that hardens bears after it has closed by so much more, up to its peak [N]."""
     share = min((bond.crushed + closing) / bond.hardening, 1.0)
     bears: float = bond.peak * (YIELDS + (1 - YIELDS) * math.sqrt(share * (2 - share)))
@@ -70,13 +69,13 @@ def hardened(bond: Any, closing: float) -> float:
 
 
 @inlined
-def harden(bond: Any, gap: float, sheared: float) -> float:
+def harden(bond: LawRow, gap: float, sheared: float) -> float:
     """Close a joint at a gap [m] for good until it bears what presses, or to its peak, see `crush`. Returns by how much
     [m]."""
     left: float = bond.hardening - bond.crushed
     low, high = 0.0, min(left, -gap)
     if math.hypot(bond.k * (gap + high), sheared) < hardened(bond, high):
-        for _ in range(HALVINGS):
+        for _ in range(CLOSING_HALVINGS):
             closing = 0.5 * (low + high)
             if math.hypot(bond.k * (gap + closing), sheared) < hardened(bond, closing):
                 high = closing
@@ -88,7 +87,7 @@ def harden(bond: Any, gap: float, sheared: float) -> float:
 
 
 @inlined
-def crush(bond: Any, gap: float, sheared: float) -> float:
+def crush(bond: LawRow, gap: float, sheared: float) -> float:
     """Crush a joint at a gap [m] under a force along the face [N]. Returns by how much it closes for good [m]."""
     sheared *= 3
     closing: float = 0.0
@@ -103,7 +102,7 @@ def crush(bond: Any, gap: float, sheared: float) -> float:
 
 
 @inlined
-def soften(bond: Any, gap: float, sheared: float) -> float:
+def soften(bond: LawRow, gap: float, sheared: float) -> float:
     """Crush a joint beyond its peak, see `crush`."""
     closing: float = 0.0
     for _ in range(PASSES):
@@ -116,14 +115,14 @@ def soften(bond: Any, gap: float, sheared: float) -> float:
 
 
 @inlined
-def bonded_limit(bond: Any, push: float) -> float:
+def bonded_limit(bond: LawRow, push: float) -> float:
     """Largest force along the face that a bonded joint holds under a force along the normal [N]."""
     limit: float = min(bond.cohesion * bond.integrity + shear_limit(bond, max(push, 0.0)), bond.strength / 3)
     return limit
 
 
 @inlined
-def wear(bond: Any, slid: float) -> float:
+def wear(bond: LawRow, slid: float) -> float:
     """Wear a bond by the way of its slider [m]. Returns what its cohesion has taken [J]."""
     if bond.slip_rate == 0 or slid == 0:
         return 0.0

@@ -5,8 +5,6 @@ pose of rest and limit analysis all take the law from here. MuJoCo has the same 
 
 The spring along the normal is linear. `secant_stiffness`, `equivalent_stiffness`, `largest_stiffness`, `depth_of_force`
 and `depth_of_energy` say so, and nothing else in explicit steps does: another spring is another text of these five.
-
-A row is anything with these numbers by name: a row of compiled steps, or a `Law`.
 """
 
 from __future__ import annotations
@@ -18,6 +16,9 @@ import numpy as np
 
 from ....compiled import compiled, inlined
 from ....quantities import Array, Flags
+
+LawRow = Any
+"""Anything with the numbers of the law by name: a row of compiled steps, or a `Law`."""
 
 
 class Law(NamedTuple):
@@ -36,37 +37,37 @@ class Law(NamedTuple):
 
 
 @inlined
-def secant_stiffness(row: Any, depth: float) -> Any:
+def secant_stiffness(row: LawRow, depth: float) -> Any:
     """Force of the spring along the normal over its depth [N/m], at a depth [m]."""
     return row.k
 
 
 @inlined
-def equivalent_stiffness(row: Any, depth: float) -> Any:
+def equivalent_stiffness(row: LawRow, depth: float) -> Any:
     """Stiffness of the linear spring that holds the same energy at a depth [N/m]."""
     return row.k
 
 
 @inlined
-def largest_stiffness(row: Any) -> Any:
+def largest_stiffness(row: LawRow) -> Any:
     """Largest stiffness of the spring along the normal for which steps are short enough [N/m]."""
     return row.k
 
 
 @inlined
-def depth_of_force(row: Any, factor: float, depth: float) -> float:
+def depth_of_force(row: LawRow, factor: float, depth: float) -> float:
     """Depth at which the spring along the normal has a multiple of the force that it has at some depth [m]."""
     return factor * depth
 
 
 @inlined
-def depth_of_energy(row: Any, factor: float, depth: float) -> float:
+def depth_of_energy(row: LawRow, factor: float, depth: float) -> float:
     """Depth at which the spring along the normal holds a multiple of the energy that it holds at some depth [m]."""
     return math.sqrt(factor) * depth
 
 
 @inlined
-def normal_force(row: Any, gap: float, rate: float) -> float:
+def normal_force(row: LawRow, gap: float, rate: float) -> float:
     """Force that presses the two sides apart [N], at a gap [m] that grows at a rate [m/s].
 
     It is that of spring and dashpot while the gap is negative, and never a tension.
@@ -75,13 +76,13 @@ def normal_force(row: Any, gap: float, rate: float) -> float:
 
 
 @inlined
-def shear_limit(row: Any, push: Any) -> Any:
+def shear_limit(row: LawRow, push: Any) -> Any:
     """Largest force along the face that holds under a force along the normal [N]."""
     return row.friction * push
 
 
 @inlined
-def stored(row: Any, gap: float) -> float:
+def stored(row: LawRow, gap: float) -> float:
     """Energy in the spring along the normal [J]."""
     depth = min(gap, 0.0)
     energy: float = 0.5 * equivalent_stiffness(row, -depth) * (depth * depth)
@@ -89,7 +90,7 @@ def stored(row: Any, gap: float) -> float:
 
 
 @inlined
-def stored_along(row: Any, square: float) -> float:
+def stored_along(row: LawRow, square: float) -> float:
     """Energy in the spring along the face [J], from the square of its stretch [m2]."""
     energy: float = 0.5 * row.k_s * square
     return energy

@@ -166,11 +166,11 @@ class Halved:
         return self.between(joint) if callable(self.between) else self.between
 
 
-WITHOUT = {"k_s": np.inf, "frequency": np.nan}
+FOR_NONE = {"k_s": np.inf, "frequency": np.nan}
 """What stands for None in a table: a joint that sticks rigidly, and the lowest frequency of the masonry."""
 
 
-IN_SPACE = Within(2, 50, whole=True)
+POINTS_IN_SPACE = Within(2, 50, whole=True)
 """Valid `points` of a joint in space. In the plane they are those of `Dry`."""
 
 
@@ -207,7 +207,7 @@ class JointTable(NamedTuple):
         points = _values("points", given["points"], joints).astype(int)
         for joint, count in zip(joints, points.tolist(), strict=True):
             if isinstance(joint, SpaceJoint):
-                IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
+                POINTS_IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
         table = cls(**columns, points=points, bonds=_bonds(given["bond"], joints))
         springs = (column.tolist() for column in (table.k_n, table.k_s, table.friction, points))
         for joint, bond, *numbers in zip(joints, table.bonds, *springs, strict=True):
@@ -225,12 +225,12 @@ class JointTable(NamedTuple):
 def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Array:
     """A property of each joint, with what stands for None, shape (joints,)."""
     if not callable(given):
-        return np.full(len(joints), WITHOUT[name] if given is None else given)
+        return np.full(len(joints), FOR_NONE[name] if given is None else given)
     (within, optional), values = declared(Dry)[name], [asked(name, given, joint) for joint in joints]
     pairs = zip(joints, values, strict=True)
     return np.array(
         [
-            WITHOUT[name] if optional and value is None else within.checked(f"{name} of {joint.name}", value)
+            FOR_NONE[name] if optional and value is None else within.checked(f"{name} of {joint.name}", value)
             for joint, value in pairs
         ]
     )

@@ -16,15 +16,15 @@ from ..blocks.compound import AnyBlock
 from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 
-Blocks = Sequence[AnyBlock]
+StackBlocks = Sequence[AnyBlock]
 
 
-def is_side(blocks: Blocks, joint: Joint | SpaceJoint) -> bool:
+def is_side(blocks: StackBlocks, joint: Joint | SpaceJoint) -> bool:
     """Whether a joint is that with a fixed block beside its block, as with a side stop."""
     return blocks[joint.below].fixed and abs(joint.normal[-1]) < 1e-6
 
 
-def parts_above(blocks: Blocks, beds: Sequence[Joint | SpaceJoint]) -> list[list[int]] | None:
+def parts_above(blocks: StackBlocks, beds: Sequence[Joint | SpaceJoint]) -> list[list[int]] | None:
     """Numbers of the blocks above each bed joint of a stack, from the lowest upwards; None if this is not a stack.
 
     In a stack each block that is not fixed stands on one other block, on a bed joint, and carries at most one.
@@ -44,7 +44,7 @@ def parts_above(blocks: Blocks, beds: Sequence[Joint | SpaceJoint]) -> list[list
     return parts
 
 
-def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> Block:
+def wall_of(blocks: StackBlocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> Block:
     """Some blocks as one rigid wall on a joint: as thick as the joint, with their mass, its centroid where theirs is.
 
     In space the joint is as thick as where it is thinnest. A ValueError says if they are too squat for a rocking wall.
@@ -56,7 +56,7 @@ def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> B
 
 
 def damping_by_law(
-    blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: Integers, law: AnyLaw | str
+    blocks: StackBlocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: Integers, law: AnyLaw | str
 ) -> tuple[Array, Array]:
     """xi of each joint of a stack, and the frequency to which it refers [rad/s], as `Contacts.from_law` gives them for
     the rigid wall above.

@@ -9,12 +9,12 @@ import numpy as np
 import scipy
 from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
-from ....geometry.graph import components
+from ....geometry.graph import connected_parts
 from ....linear import loose
 from ....quantities import GRAVITY, Array, Flags
 from ..laws.bond import strengths
 from ..laws.joint_law import Law, shear_limit
-from ..lines import free_numbers, rates, slips
+from ..lines import free_numbers, mean_slip_rates, rates
 from ..masonry import Masonry
 
 UNBALANCED = 1e-7
@@ -122,7 +122,7 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names of blocks that can slide without pressing or opening a joint, and of the joints without friction they
     slide on. No stiffness holds them."""
     blocks, lines, friction = masonry.blocks, masonry.lines, masonry.joint_friction
-    sliding = slips(blocks, lines, len(friction))
+    sliding = mean_slip_rates(blocks, lines, len(friction))
     parts = sliding.shape[0] // len(friction)
     free = loose(csr_array(vstack([rates(blocks, lines, lines.normal), sliding[np.tile(friction > 0, parts)]])))
     moved = np.abs(free).max(axis=1, initial=0.0).reshape(len(masonry.free), -1).max(axis=1)
@@ -242,7 +242,7 @@ def _lacking(masonry: Masonry, forces: Array) -> Flags:
     number, count = free_numbers(masonry.blocks), len(masonry.free)
     pairs = number[np.reshape([(joint.below, joint.above) for joint in masonry.joints], (-1, 2))]
     pairs = pairs[(pairs >= 0).all(axis=1)]
-    part = components(pairs, count)
+    part = connected_parts(pairs, count)
     unknowns = len(weight_of(masonry))
     first = (EDGES if masonry.in_space else 2) * len(masonry.lines.k)
     missing = forces[first : first + 2 * unknowns].reshape(2, count, -1).sum(axis=(0, 2))
