@@ -19,7 +19,7 @@ from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
-from ..effects import placed
+from ..effects import place_in_world
 from ..lines import Lines
 from ..masonry import Masonry
 
@@ -116,7 +116,7 @@ def _joint(joint: Joint | SpaceJoint, moves: Moves) -> Joint | SpaceJoint:
 
 def _carried(masonry: Masonry, effect: Effect, moves: Moves) -> Effect:
     """An effect where its block, and that of its anchor, have moved."""
-    held = np.array(placed(masonry, effect))
+    held = np.array(place_in_world(masonry, effect))
     changes: dict[str, object] = {"at": moves.at(effect.block, held), "height": None}
     if isinstance(effect, Anchored):
         anchor, block = effect.anchor_of(held), effect.anchor_block
