@@ -26,7 +26,7 @@ from ..masonry import Masonry
 SUNK, BEYOND = 0.05, 0.01
 """How deep a contact line may lie behind its face, and in space how far a point may lie beside it, over the width of
 the joint [-]."""
-UNIT = 1e-6
+OFF_UNIT = 1e-6
 """Difference of the length of a quaternion from 1 that is put down to rounding [-]."""
 
 
@@ -59,7 +59,7 @@ class Moves(NamedTuple):
         moved[some] = require_array("pose", pose, moved[some].shape)
         if masonry.in_space:
             length = np.linalg.norm(moved[:, 3:], axis=1)
-            if (off := np.abs(length - 1)).max() > UNIT:
+            if (off := np.abs(length - 1)).max() > OFF_UNIT:
                 raise ValueError(f"pose has a quaternion of the length {length[off.argmax()]:g}; the valid one is 1")
         d = freedom.translations
         return cls(rotations(moved), masonry.centroids, masonry.centroids + moved[:, :d])
