@@ -51,7 +51,8 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
         for ax, history, unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
             said = f"{motion.name[:90]}: " if ax is axes[0] else f"ends at {history[-1]:.2g}, "
             peak = float(np.abs(history).max())
-            ax.plot(t, history, color=PALETTE[i % len(PALETTE)], linewidth=0.8, label=f"{said}peak {peak:.3g} {unit}")
+            label = f"{said}peak {peak:.3g}{f' {unit}' if ax is axes[0] else ''}"
+            ax.plot(t, history, color=PALETTE[i % len(PALETTE)], linewidth=0.8, label=label)
     for ax, label in zip(axes, ("acceleration [m/s²]", "velocity [m/s]", "displacement [m]"), strict=True):
         ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
         ax.set_ylabel(label)

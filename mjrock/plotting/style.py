@@ -188,12 +188,15 @@ def require_readable(figure: Figure) -> None:
 
 
 def _words(figure: Figure) -> list[Text]:
-    """Titles, labels of axes and texts that are drawn, but for those of ticks."""
-    found = list(figure.texts)
+    """Titles, labels of axes, legends and texts that are drawn, but for those of ticks."""
+    legends = [*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_visible())]
+    found = [*figure.texts, *(text for legend in legends if legend is not None for text in legend.get_texts())]
     for ax in figure.axes:
-        if ax.get_visible() and ax.name != "3d":  # places in space are no places in the figure
-            found += [ax.title, *(text for text in ax.texts if not text.get_clip_on())]
-            found += [axis.label for axis in (ax.xaxis, ax.yaxis) if ax.axison]
+        if ax.get_visible():
+            found.append(ax.title)
+            if ax.name != "3d":  # a place in space is none in the figure
+                found += [text for text in ax.texts if not text.get_clip_on()]
+                found += [axis.label for axis in (ax.xaxis, ax.yaxis) if ax.axison]
     return [text for text in found if text.get_visible()]
 
 

@@ -121,11 +121,12 @@ def directions(repeats: int, h: float = 1e-4) -> str:
 
 def draw_cube(ax: Axes) -> Axes:
     """The path of the cube in the first half second."""
-    for coulomb, label, at in ((True, "Coulomb's law", (0.02, 0.35)), (False, "MuJoCo's own friction", (0.02, 4.0))):
+    for coulomb, label, at in ((True, "Coulomb's law", (0.02, -1.2)), (False, "MuJoCo's own friction", (0.02, 4.0))):
         run = thrown(0.5, coulomb=coulomb)
         x, z = run.pose[:, 0, 0], 1e3 * (run.pose[:, 0, 1] - run.pose[0, 0, 1])
         ax.plot(x, z, **LINES[coulomb])
         ax.text(*at, label, color=LINES[coulomb]["color"], fontsize=8)
+    ax.set_ylim(bottom=-2.0)
     ax.set_xlabel("way of the cube [m]")
     ax.set_ylabel("rise [mm]")
     return ax
@@ -138,11 +139,11 @@ def draw_wall(ax: Axes, frictions: Array, found: dict[tuple[bool, float], list[f
         if not coulomb or accuracy == finest:
             ax.plot(frictions, values, marker="o" if coulomb else "s", markersize=3.5, **LINES[coulomb])
             said = "Coulomb's law,\nall accuracies" if coulomb else f"accuracy {accuracy:g}"
-            beside(ax, (frictions[-1], values[-1]), said, LINES[coulomb]["color"])
+            beside(ax, (frictions[-1], values[-1]), said, LINES[coulomb]["color"], (8, 0))
     ax.text(0.0, 0.25, "MuJoCo's own friction", color=LINES[False]["color"], fontsize=8)
     ax.set_xlabel("coefficient of friction of the side [-]")
     ax.set_ylabel(r"$|e|$ of the first rebound [-]")
-    ax.set_ylim(0.2, 0.39)
+    ax.set(xlim=(-0.03, 0.82), ylim=(0.2, 0.39))
     return ax
 
 

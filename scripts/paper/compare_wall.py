@@ -29,7 +29,7 @@ def law(name: str | None, points: int) -> mr.DampingLaw:
     return LAWS[name] if name in LAWS else mr.DampingLaw.load(name)
 
 
-STEP = 0.02
+STEP = 0.05
 """Least step of the energy that is marked, over the first energy [-]."""
 
 

@@ -14,5 +14,5 @@ def at_times(answer: mr.Response, words: dict[str, int], camera: tuple[float, fl
     for i, (word, sample) in enumerate(words.items()):
         ax = figure.add_subplot(1, len(words), i + 1, projection="3d")
         plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[sample], camera=camera)
-        ax.set_title(f"{word},\n$t$ = {answer.t[sample]:.2f} s", fontsize=9)
+        ax.set_title(f"{word},\n$t$ = {answer.t[sample]:.2f} s", fontsize=9, y=0.95)
     return figure

@@ -68,7 +68,9 @@ def drawn(answers: dict[str, mr.Response]) -> Figure:
     for i, (name, answer) in enumerate(answers.items()):
         ax = figure.add_subplot(1, len(answers), i + 1, projection="3d")
         plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[-1], camera=CAMERA)
-        ax.set_title(f"{name}\n{len(answer.fallen)} of {len(answer.of_masonry.masonry.free)} fallen", fontsize=9)
+        ax.set_title(
+            f"{name}\n{len(answer.fallen)} of {len(answer.of_masonry.masonry.free)} fallen", fontsize=9, y=0.95
+        )
     return figure
 
 

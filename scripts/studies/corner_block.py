@@ -32,6 +32,8 @@ STIFFNESSES = (1e8, 1e9, 1e10, 1e11)
 """k_n [N/m3]."""
 RETARDATIONS = (1e-4, 1e-3, 1e-2)
 """c/k [s]."""
+AROUND = [(-0.32, 0.32), (-0.32, 0.32), (0.0, 2.1)]
+"""What is drawn around the block [m]."""
 RISE = 0.25
 """Largest rotation of the first flight, over that which overturns the block [-]."""
 DURATION, SPACING, SHARE = 1.6, 1e-3, 0.1
@@ -93,7 +95,7 @@ def drawn(shares: dict[float, list[float]], stiffnesses: Sequence[float], answer
     grid = figure.add_gridspec(1, 2, width_ratios=(1, 2))
     solid = figure.add_subplot(grid[0], projection="3d")
     at = int(argrelmax(answer.tilt[:, 0], order=60)[0][0])
-    plotting.blocks(solid, answer.of_masonry.masonry, answer.pose[at], camera=(12.0, -40.0))
+    plotting.blocks(solid, answer.of_masonry.masonry, answer.pose[at], camera=(12.0, -40.0), limits=AROUND)
     ax = figure.add_subplot(grid[1])
     for (retardation, values), look, marker in zip(shares.items(), OWN, "vso", strict=False):
         label = f"{1e3 * retardation:g} ms"

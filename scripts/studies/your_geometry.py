@@ -75,7 +75,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         room = 0.1 * np.ptp(ends, axis=0).max()
         limits = np.column_stack([ends.min(axis=0) - room, ends.max(axis=0) + room])
         plotting.blocks(ax, each, limits=limits, camera=(22, -60))
-        ax.set_title(title, fontsize=9)
+        ax.set_title(title, fontsize=9, y=0.9)
     plotting.save(figure, out / "your_geometry.png")
     cli.report(out / "your_geometry", "\n".join(lines))
 

@@ -13,6 +13,7 @@ import mujoco
 import pytest
 
 import mjrock as mr
+from mjrock.plotting import style
 from scripts.paper import compare_wall
 from scripts.shared import cli
 from scripts.studies import in_the_browser, town
@@ -169,6 +170,38 @@ def test_a_patch_is_found():
     start = "import mjrock as mr\nfrom mjrock.distinct import explicit\n"
     assert [patch for patch in PATCHES if patches(start + patch) != [3]] == []
     assert patches(start + "model.opt.gravity[2] = 0.0\nspec.time = 1.0") == []
+
+
+def unreadable(text):
+    """Lines of a script that draw too wide, too small or in Matplotlib's colours, or that save in another way."""
+    found = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.keyword) and isinstance(node.value, ast.Tuple) and node.arg == "figsize":
+            wide = node.value.elts[0]
+            found |= {wide.lineno} if isinstance(wide, ast.Constant) and wide.value > style.WIDEST else set()
+        if isinstance(node, ast.keyword) and node.arg in ("fontsize", "title_fontsize", "labelsize"):
+            size = node.value
+            found |= {size.lineno} if isinstance(size, ast.Constant) and size.value < style.SMALLEST else set()
+        if isinstance(node, ast.JoinedStr) and isinstance(node.values[0], ast.Constant) and node.values[0].value == "C":
+            found.add(node.lineno)
+        if isinstance(node, ast.Constant) and re.fullmatch(r"C\d\W*\w?\W*|tab:\w+", str(node.value)):
+            found.add(node.lineno)
+        if isinstance(node, ast.Attribute) and node.attr == "savefig":
+            found.add(node.lineno)
+    return sorted(found)
+
+
+def test_scripts_draw_what_a_page_shows_well():
+    """`plotting.save` refuses the rest as it sees it, in the quick runs below."""
+    paths = sorted(Path(__file__).parents[2].glob("scripts/**/*.py"))
+    assert {path.stem: lines for path in paths if (lines := unreadable(path.read_text()))} == {}
+
+
+def test_what_a_page_does_not_show_well_is_found():
+    lines = ["Figure(figsize=(9, 3))", "ax.legend(fontsize=7)", 'ax.plot(x, "C0--")', 'ax.plot(x, color=f"C{i}")']
+    lines += ['ax.plot(x, color="tab:red")', "figure.savefig(path)", 'ax.plot(x, "C3o")']
+    assert [line for line in lines if unreadable(line) != [1]] == []
+    assert unreadable('Figure(figsize=(7.4, 9))\nax.legend(fontsize=8)\nax.set_title("C30 concrete")') == []
 
 
 def main_of(name):

@@ -197,6 +197,11 @@ def test_a_picture_is_the_one_that_was_looked_at(name):
     assert difference(name, drawn) < DIFFERENT
 
 
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_picture_is_readable(name, tmp_path):
+    assert plotting.save(PICTURES[name](), tmp_path / "a.png").exists()
+
+
 @pytest.mark.parametrize("missing", ["elevation", "blocks", "surroundings"])
 def test_a_sketch_without_its_wall_or_what_it_meets_is_another_picture(missing, monkeypatch):
     sketches = importlib.import_module("mjrock.plotting.sketch")

@@ -149,6 +149,36 @@ def test_a_figure_of_its_own_has_colours_that_may_be_saved(tmp_path):
     assert plotting.save(figure, tmp_path / "a.png").exists()
 
 
+def of_many_effects():
+    """A long wall with ties of all heights, a far stop, and openings."""
+    ties = [mr.Tie(2.0 + 0.5 * i, 2e6, slack=1e-3, strength=2e4 + i, ultimate=0.05, length=1.0 + i) for i in range(6)]
+    effects = [*ties, mr.Thrust(4.0, 1e3), mr.Load(1e4, 5.5), mr.AddedMass(300.0, 5.0), mr.Damper(3.0, 1e4, length=3.0)]
+    openings = [mr.Opening(1.2, 2.0), mr.Opening(0.8, 1.2, sill=3.5)]
+    wall = mr.Block.from_size(0.5, 6.0, 24.0, openings=openings)
+    return mr.Case(wall, 0.0, 1.0, side_stop=mr.SideStop(3.0), effects=effects)
+
+
+def of_many_motions():
+    waves = [np.sin(np.arange(200.0) * (1 + i)) for i in range(6)]
+    return [mr.GroundMotion(wave, 0.02, f"a record of a long name, {i}") for i, wave in enumerate(waves)]
+
+
+LONG, NAMES = "a long title " * 8, ["a label " * 6, "another " * 6]
+HARD = {
+    "sketch": lambda responses: plotting.sketch(of_many_effects()),
+    "arguments": lambda responses: plotting.sketch(of_many_effects(), LONG, arguments=True),
+    "record": lambda responses: plotting.record(of_many_motions()),
+    "grid": lambda responses: plotting.grid([("a title that takes some room", responses)] * 7, columns=4),
+    "panels": lambda responses: plotting.panels([(LONG, lambda ax: plotting.energy(ax, responses))] * 3, columns=3),
+    "history": lambda responses: plotting.history(responses, LONG, labels=NAMES),
+}
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_pictures_of_much_are_readable(name, responses, tmp_path):
+    assert plotting.save(HARD[name](responses), tmp_path / "a.png").exists()
+
+
 SEEN_WITHOUT = {
     "red": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
     "green": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
