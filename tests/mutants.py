@@ -122,7 +122,7 @@ OWN = {
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/kinds/mortar.py": ("bonds_of_lines",),
-    "distinct/search/clipping.py": ("clipping",),
+    "distinct/search/clipping.py": ("clipping", "grid"),
     "distinct/contacts/contact.py": ("contact_lines",),
     "distinct/contacts/faces.py": ("outlines",),
     "distinct/search/finder.py": ("finder",),
@@ -188,7 +188,7 @@ EQUIVALENT = {
     "standing.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
         "joints on what is fixed have no arm that is read"
     ),
-    "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
+    "rows.py: if points.held[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "forces.py: if not kinds.released_on[i] if n == 0 else now.gap > 0:": "at a gap of zero nothing presses",
     **{
         "compound.py: reaching = [part for part in self.polygons if np.ptp(np.clip(part.corners[:, 1] - z, "

@@ -15,7 +15,6 @@ from ..scene.ground import Ground
 from ..scene.scene import Scene
 from .contacts.faces import edges_of, margins
 from .contacts.touches import FIRST_OPENING
-from .kinds.link import put_on_supports
 from .kinds.lists import no_laws
 from .rows import Rows, joined, kinds, rows
 from .supports import moving
@@ -110,7 +109,7 @@ def moved_by(system: System, scene: Scene, supports: Sequence[Support]) -> Syste
     names, joints = [solid.name for solid in scene.standing.solids], scene.standing.joints
     numbers = {names.index(support.block): i for i, support in enumerate(supports)}
     for table in system.links:
-        put_on_supports(table.rows, numbers)
+        table.rows["support"] = [numbers.get(block, -1) for block in table.rows["anchor_block"].tolist()]
     below = np.array([numbers.get(joint.below, -1) for joint in joints])
     of = scene.contacts.joint
     system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)

@@ -129,7 +129,7 @@ def solve_explicit(
     if setup.search is not None:
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     checked = steps.checks(followed.steps)
-    run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], checked)
+    run = Run(setup, followed, books, samples, steps.times()[kept], checked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)

@@ -15,7 +15,7 @@ dashpots brake little within it.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -45,10 +45,8 @@ def longest_step(system: System) -> float:
     rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
     links = [table for table in system.links if any(of.any() for of in table.springs())]
     rates += [table.rates(system.bodies) for table in links]
-    lengths, root = (
-        csr_array(vstack(rates)),
-        csr_array(block_diag([coo_array(root) for root in roots_of_masses(system.bodies)])),
-    )
+    lengths, roots = csr_array(vstack(rates)), [coo_array(root) for root in roots_of_masses(system.bodies)]
+    root = csr_array(block_diag(roots))
 
     def weights(i: int) -> Array:
         along, across = ((largest_stiffness(lines), lines["k_s"]), (lines["c"], lines["c_s"]))[i]
@@ -58,7 +56,7 @@ def longest_step(system: System) -> float:
     return stable_step(*(highest(lengths, weights(i), root) for i in range(2)))
 
 
-def highest(rates: csr_array, weights: Array, root: Any) -> float:
+def highest(rates: csr_array, weights: Array, root: csr_array) -> float:
     """The highest eigenvalue of M^-1 J^T W J, as that of W^1/2 J M^-1 J^T W^1/2.
 
     Args:

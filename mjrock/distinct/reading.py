@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..geometry.frames import SPACE
-from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers
 from ..result.forces import Forces, Gathered, forces_of
 from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion, thinned
-from ..result.problem import problem_of
 from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
 from .following import Followed
+from .kinds.link import Kind
 from .kinds.ties import Ties
 from .rows import Row, Rows
 from .setup import Setup
@@ -38,12 +36,9 @@ POSITION_ROUNDING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s], and the times of
-    the checks [s]."""
+    """A run by explicit steps: what stood, what was kept of the motion, and when [s], and the times of the checks
+    [s]."""
 
-    case: AnyCase
-    contacts: Contacts | None
-    scene: Scene
     setup: Setup
     followed: Followed
     books: Books
@@ -52,7 +47,17 @@ class Run:
     checked: Array
 
     @property
-    def links(self) -> Iterator[tuple[Any, Row, str]]:
+    def case(self) -> AnyCase:
+        """What was asked."""
+        return self.setup.problem.case
+
+    @property
+    def scene(self) -> Scene:
+        """What stood."""
+        return self.setup.scene
+
+    @property
+    def links(self) -> Iterator[tuple[Kind, Row, str]]:
         """The table, the row and the name of each link."""
         for table, names in zip(self.followed.system.links, self.setup.names, strict=True):
             for row, name in zip(table.rows, names, strict=True):
@@ -61,11 +66,6 @@ class Run:
     def forces_of(self, told: str, pulled: Array) -> dict[str, Array]:
         """The force of each link that is told as a link or as an actuator, by name, among those of all."""
         return {name: pulled[:, row.number] for table, row, name in self.links if table.told == told}
-
-    @property
-    def in_space(self) -> bool:
-        """Whether the bodies move in space."""
-        return bool(self.samples.pose.shape[2] == SPACE.nq)
 
     @cached_property
     def energy(self) -> Array:
@@ -82,7 +82,7 @@ class Run:
     @property
     def rounding(self) -> float:
         """Energy that the rounding of positions makes [J]: of the weights over the largest displacement and lever."""
-        linear = self.samples.pose[..., : 3 if self.in_space else 2]
+        linear = self.samples.pose[..., : self.scene.freedom.translations]
         size = np.abs(linear).max() + np.abs(self.scene.places.at).max()
         return POSITION_ROUNDING * GRAVITY * float(self.scene.bodies.mass.sum() * size)
 
@@ -93,7 +93,8 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     Raises:
         RuntimeError: if energy has appeared from nowhere.
     """
-    require_sound(run, stats)
+    step = float(stats["timestep"])
+    require_sound(run, step)
     reading, yielded = reading_of(run), plastic(run)
     samples, kept = run.samples, thinned(len(run.t), stride)
     response = Response(
@@ -120,7 +121,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
             response.ledger.largest,
             RESIDUAL_WARNED_OF,
             "its largest part",
-            lambda share: f"the step is long for this motion, {advice(stats, 2 * share, RESIDUAL_WARNED_OF)}",
+            lambda share: f"the step is long for this motion, {advice(step, 2 * share, RESIDUAL_WARNED_OF)}",
         )
     return response
 
@@ -156,11 +157,10 @@ def reading_of(run: Run) -> Reading:
     left = search is not None and bool(search.handed_over.any())
     cracked = dict(item for law in system.laws for item in law.cracked(run.scene).items())
     beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked)
-    problem = problem_of(run.case, run.contacts)
-    return problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
+    return run.setup.problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
 
 
-def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
+def require_sound(run: Run, step: float) -> None:
     """Raise a RuntimeError if energy appears from nowhere, or if the motion is not finite; warn if much appears at ends
     of faces, which have an account.
 
@@ -168,7 +168,7 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
 
     Args:
         run: the run.
-        stats: with the step that was taken.
+        step: that was taken [s].
     """
     if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
@@ -182,7 +182,7 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     try:
         require_no_gain(run.checked, there - work + left, scale)
     except StepError as gain:
-        raise RuntimeError(f"{gain} by t = {gain.t:.4g} s; {advice(stats, 4 * gain.share, ENERGY_GAIN)}") from None
+        raise RuntimeError(f"{gain} by t = {gain.t:.4g} s; {advice(step, 4 * gain.share, ENERGY_GAIN)}") from None
     if -left.min() > RESIDUAL_WARNED_OF * scale:
         warnings.warn(
             f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "
@@ -191,12 +191,12 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
         )
 
 
-def advice(stats: Mapping[str, Any], share: float, wanted: float) -> str:
+def advice(step: float, share: float, wanted: float) -> str:
     """The step that brings a share of energy without an account down to the one that is wanted, in words.
 
     The share falls at least in proportion to the step.
     """
-    return f"take timestep = {wanted / share * stats['timestep']:.2g} s"
+    return f"take timestep = {wanted / share * step:.2g} s"
 
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:

@@ -13,14 +13,13 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import ON_ITS_FACE, require_within
-from ..result.problem import problem_of
+from ..result.problem import Problem, problem_of
 from ..result.response import State
 from ..scene.course import Course
 from ..scene.explicit_step import STEP_TAKEN
-from ..scene.masonry import masonry_course, masonry_scene
 from ..scene.scene import Scene
 from .assembly import begin_open, copied, guide, moved_by, started, system_of, take_grips
-from .kinds.lists import laws_of, links_of
+from .kinds.lists import LAWS, links_of
 from .limit import Impacts, longest_step
 from .memory import Memory, memory_of, recalled
 from .search.contact_search import ContactSearch
@@ -41,6 +40,7 @@ class Setup:
     """A system at its start, and how it is followed.
 
     Args:
+        problem: what was asked.
         scene, course, system: what stands, what happens to it, and its rows.
         limit, share: the longest stable step [s], and the step that is taken over it [-].
         spacing: largest spacing of the samples [s].
@@ -54,6 +54,7 @@ class Setup:
         memory: of the run that this one carries on, or None.
     """
 
+    problem: Problem
     scene: Scene
     course: Course
     system: System
@@ -102,7 +103,13 @@ def slowed(setup: Setup, drag: object, local: object) -> Setup:
 
 def setup_of(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
     """A wall or masonry at the start of a case, or in a given state."""
-    return setup_of_masonry(case, state) if isinstance(case, MasonryCase) else setup_of_wall(case, contacts, state)
+    problem = problem_of(case, contacts)
+    scene = problem.scene()
+    course = problem.course(scene)
+    course = course if state is None else course.continued(*state)
+    if isinstance(case, MasonryCase):
+        return setup_of_masonry(problem, case, scene, course)
+    return replace(setup_of_wall(problem, case, scene, course), of=(scene.key, contacts))
 
 
 def carried_on(setup: Setup, start: object) -> Setup:
@@ -115,24 +122,19 @@ def carried_on(setup: Setup, start: object) -> Setup:
     return replace(setup, memory=memory, system=recalled(memory, setup.system, setup.blocks))
 
 
-def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) -> Setup:
-    """A wall at the start of a case, or in a given state."""
-    problem = problem_of(case, contacts)
-    scene = problem.scene()
-    course = continued(problem.course(scene), state)
+def setup_of_wall(problem: Problem, case: Case, scene: Scene, course: Course) -> Setup:
+    """A wall at the start of its course."""
     system = system_of(scene)
     names, links = links_of(scene, case, system.bodies)
     system = started(system, course.pose, course.velocity)._replace(ground=course.ground, links=links)
     # peaks and impacts are read off the samples
     followed = longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE
-    return Setup(scene, course, system, *followed, of=(scene.key, contacts), names=names)
+    return Setup(problem, scene, course, system, *followed, names=names)
 
 
-def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
-    """Masonry at the start of a case, or in a given state."""
-    scene = masonry_scene(case)
+def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: Course) -> Setup:
+    """Masonry at the start of its course."""
     at_rest, drawn = standing(scene)
-    course = continued(masonry_course(case, scene), state)
     names, links = links_of(scene, case, at_rest.bodies)
     passive = tuple(table for table in links if table.told != "actuators")
     guided = np.concatenate([table.rows["body"] for table in links if table.told == "actuators"])
@@ -143,17 +145,12 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
     step = impacts.step(STEP_TAKEN * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
-    share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
+    share, system = step / limit, system._replace(laws=tuple(law.of(scene, system.lines) for law in LAWS))
     of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
     search = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
     apart = {"search": search, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
-    return Setup(scene, course, system, limit, share, **apart)  # type: ignore[arg-type]
-
-
-def continued(course: Course, state: State | None) -> Course:
-    """A course from its start, or from a given state."""
-    return course if state is None else course.continued(*state)
+    return Setup(problem, scene, course, system, limit, share, **apart)  # type: ignore[arg-type]
 
 
 @lru_cache(maxsize=16)

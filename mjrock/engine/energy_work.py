@@ -24,8 +24,8 @@ from ..result.ledger import Ledger
 from ..scene.course import Course
 from ..scene.dampers import taken_by_dampers
 from ..scene.ground import Shaking, mean_acceleration
+from ..scene.potential import breaks, spring_energy
 from ..scene.scene import Scene
-from ..scene.structure import breaks, spring_energy
 from .record import Record, StepKinds, Steps, Windows
 from .rows import Points, Step, impratio_of, points_of, row_of
 from .sliding import slip_of
@@ -48,30 +48,33 @@ def _ground_work(shaking: Shaking, t: Array, h: Array, width: Array, momentum: A
         work[n] -= mean_acceleration(shaking, t[n], h[n]) * momentum[n] * width[n]
 
 
-class ContactWork(NamedTuple):
+class Work(NamedTuple):
     """What the contacts take from a motion.
 
     Args:
-        joints: names of the joints of the contacts.
         dashpots, friction: work in the window of each step [J], shapes (steps, joints) and (steps,).
-        lift: impulse that the rows of sliding contacts add to their normal force, over the impulse of the contact law
-            in the steps in which they slide [-].
+        impulses: of the lift of contacts that slide on their rows, and of their law [N s], shape (2,).
     """
 
-    joints: tuple[str, ...]
     dashpots: Array
     friction: Array
-    lift: float
+    impulses: Array
+
+    @property
+    def lift(self) -> float:
+        """Impulse that the rows of sliding contacts add to their normal force, over the impulse of the contact law in
+        the steps in which they slide [-]."""
+        lift, pressed = self.impulses.tolist()
+        return lift / pressed if pressed else 0.0
 
 
-def contact_work(scene: Scene, steps: Steps) -> ContactWork:
+def contact_work(scene: Scene, steps: Steps) -> Work:
     """What the contacts take from a motion."""
-    joints = scene.contacts.joints
-    work = Work(np.zeros((len(steps.t), len(joints))), np.zeros(len(steps.t)), np.zeros(2))
+    count = len(steps.t)
+    work = Work(np.zeros((count, len(scene.contacts.joints))), np.zeros(count), np.zeros(2))
     points, room = points_of(scene, steps.method), LedgerRoom.of(scene)
     _contact_work(points, steps.record, steps.windows, steps.kinds, room, work)
-    lift, pressed = work.impulses.tolist()
-    return ContactWork(joints, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
+    return work
 
 
 def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
@@ -80,7 +83,7 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     stored, taken = scene.accounts(windows.pose, windows.velocity, broken)
     lost = lost_by_breaking(scene, broken, len(steps.t))
     stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
-    joints, dashpots, friction, _ = contact_work(scene, steps)
+    dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
     dampers = taken_by_dampers(scene.dampers, steps.pose, windows.mean, windows.width, steps.record.damping)
     dashpots = np.concatenate([dashpots, dampers], axis=1)
@@ -89,7 +92,10 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
         kinetic=stored[:, 0],
         potential=stored[:, 1],
         elastic=stored[:, 2],
-        dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate((*joints, *scene.links.damped.names))},
+        dashpots={
+            name: _since_release(dashpots[:, i])
+            for i, name in enumerate((*scene.contacts.joints, *scene.links.damped.names))
+        },
         friction=_since_release(friction),
         ground=_since_release(ground_work(scene, course, steps)),
         ties=dict(zip(scene.links.sprung.names, (taken - taken[0]).T, strict=True)),
@@ -123,13 +129,6 @@ def _since_release(work: Array) -> Array:
     return np.append(0.0, np.cumsum(work[:-1]))
 
 
-class Drag(NamedTuple):
-    """Force of a dashpot, and what Newmark's beta adds to the spring beside it [N]."""
-
-    dashpot: float
-    sprung: float
-
-
 @inlined
 def cone_force(normal: float, stopping: float, slip_inertia: float, inertia: float, mu: float) -> tuple[float, float]:
     """Normal and tangential force of an elliptic contact, as MuJoCo solves it.
@@ -151,19 +150,6 @@ def cone_force(normal: float, stopping: float, slip_inertia: float, inertia: flo
     if pressing <= 0:
         return 0.0, 0.0
     return pressing, math.copysign(mu * pressing, stopping)
-
-
-class Work(NamedTuple):
-    """What the contacts take, to be filled.
-
-    Args:
-        dashpots, friction: work in the window of each step [J], shapes (steps, joints) and (steps,).
-        impulses: of the lift of contacts that slide on their rows, and of their law [N s], shape (2,).
-    """
-
-    dashpots: Array
-    friction: Array
-    impulses: Array
 
 
 class LedgerRoom(NamedTuple):
@@ -215,21 +201,6 @@ def take_rows(points: Points, step: Step, room: LedgerRoom) -> float:
 
 
 @inlined
-def drag_of(law_k: float, dashpot: float, inertia: float, step: Step, i: int, rate: float, curve: float) -> Drag:
-    """Force of the dashpot of contact i, centred or at the end of the step, and what Newmark's beta adds to its spring.
-
-    Args:
-        law_k: its spring [N/m].
-        dashpot, inertia: its row [N s/m, kg].
-        step, i: the step, and which contact.
-        rate, curve: mean velocity of the contact in the step, and its acceleration [m/s, m/s2].
-    """
-    sprung = step.beta[i] * (step.h * step.h) * law_k * curve
-    # the row acts on the velocity that the leapfrog keeps, half a step before the pose
-    return Drag(dashpot * (rate - 0.5 * step.h * curve) + inertia * curve - sprung, sprung)
-
-
-@inlined
 def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> float:
     """Slip of contact i for velocities v along that for other velocities, which is the way of its friction [m/s].
 
@@ -268,8 +239,11 @@ def pressed_in(
     """Contact i in step n of a record, whose frames, rates and rows are in the room."""
     places, inertia = points.places, room.inertia[i]
     closed = gap(places, i, room.frames, room.middle, room.acceleration)
-    drag = drag_of(places.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
-    pressed = -(places.k[i] * closed.value + drag.dashpot + drag.sprung)
+    curve = closed.linear
+    sprung = step.beta[i] * (step.h * step.h) * places.k[i] * curve  # what Newmark's beta adds to the spring
+    # the row acts on the velocity that the leapfrog keeps, half a step before the pose
+    dashpot = room.dashpot[i] * (closed.rate - 0.5 * step.h * curve) + inertia * curve - sprung
+    pressed = -(places.k[i] * closed.value + dashpot + sprung)
     row, along, coulomb = max(pressed, 0.0), 0.0, not math.isnan(record.friction[n, i])
     if places.friction[i] > 0 and (closed.value < 0 or n == 0):
         along = record.friction[n, i]
@@ -277,7 +251,7 @@ def pressed_in(
             slip = slip_along(places, i, room.frames, record.after[n], record.after[n])
             stopping = -impratio * inertia * slip / step.h
             row, along = cone_force(pressed, stopping, impratio * inertia, inertia, places.friction[i])
-    return Pressed(closed.value, drag.dashpot, pressed, row, along, coulomb)
+    return Pressed(closed.value, dashpot, pressed, row, along, coulomb)
 
 
 @compiled

@@ -9,28 +9,103 @@ step, judge (how long the next may be). The rules are in modules of their own: `
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..compiled import compiled, inlined
-from ..geometry.frames import take_frames
+from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import snaps, stretch
-from ..quantities import ON_ITS_FACE, Array
+from ..quantities import ON_ITS_FACE, Array, Flags
 from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
 from .pace import Pace, approached, judged, step_of, while_loaded, while_taut
-from .progress import Progress, StepClock
 from .record import Record
 from .rows import Points, set_rows
 from .setting import Setting, push
-from .shaken import add_change, find_answer, take_mean
+from .shaken import Shaken, add_change, find_answer, take_mean
 from .sliding import Sliding, any_slid, find_acceleration, give_rows_back, slide, sliding_changed, time_to_stop
-from .sticking import Moved, put_sticking_edges_back
-from .touches import Openings, closure_changed, follow_openings, step_to_break, step_to_touch
+from .sticking import Joints, Moved, put_sticking_edges_back
+from .touches import Openings, Touches, closure_changed, follow_openings, step_to_break, step_to_touch
 
 LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
 """x^2 + y^2 of the quaternion of a body of space whose axis that stood at rest lies on the ground [-]."""
 FAR = 1e9
 """Length up to which a tie that has broken is slack [m]."""
+
+
+class Progress(NamedTuple):
+    """What one step hands to the next.
+
+    Args:
+        acceleration: in the last step, shape (n nv,).
+        rate: its rate, from the last two steps, shape (n nv,).
+        change: room for the change of the acceleration in a step, shape (n nv,).
+        velocity_now, acceleration_now: room for the values at the time of the pose, shape (n nv,).
+        frames, next_frames: frames of the pose before and after the step.
+        openings: gap of each contact, slack of each tie, and their rates.
+        closed: which contacts are closed and which ties are taut, shape (m + t,).
+        touches: room for the touches of a step.
+        joints: where sticking edges stuck.
+        sliding: which contacts slide.
+        shaken: the ground in the last step, and how the bodies answer to it.
+    """
+
+    acceleration: Array
+    rate: Array
+    change: Array
+    velocity_now: Array
+    acceleration_now: Array
+    frames: Array
+    next_frames: Array
+    openings: Openings
+    closed: Flags
+    touches: Touches
+    joints: Joints
+    sliding: Sliding
+    shaken: Shaken
+
+    @classmethod
+    def of(cls, memory: EngineArrays, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
+        """The state before the first step."""
+        places = setting.points.places
+        frames, touches = frames_of(memory.pose, places.freedom), Touches.of(places, setting.ties)
+        count = len(touches.k)
+        acceleration, rate, change, velocity_now, acceleration_now = np.zeros((5, len(memory.velocity)))
+        rates = acceleration, rate, change, velocity_now, acceleration_now
+        touching = Openings.of(count), np.zeros(count, dtype=np.bool_), touches
+        return cls(*rates, frames, frames.copy(), *touching, joints, sliding, Shaken.of(setting))
+
+
+class StepClock(NamedTuple):
+    """Where a run of fitted steps is.
+
+    Args:
+        t: time of the next pose [s].
+        allowed: length of step that the pace allows [s].
+        previous: length of the last step, zero at the release [s].
+        energy: twice the kinetic energy at the last touch [J], by which changes are measured, see `Method.faster`.
+        calm_steps: how many steps in a row changed little.
+        no_rate: whether no rate of the acceleration is known: after a touch, and at the release.
+        unpredictable: whether the last step changed the velocity so much that it says nothing of the next.
+        touches: how many touches have been met.
+        ended: whether the run is over.
+    """
+
+    t: float
+    allowed: float
+    previous: float
+    energy: float
+    calm_steps: int
+    no_rate: bool
+    unpredictable: bool
+    touches: int
+    ended: bool
+
+    @classmethod
+    def started(cls, pace: Pace, energy: float) -> StepClock:
+        """At the release, with the energy of the release [J]."""
+        return cls(0.0, pace.short, 0.0, max(2 * energy, pace.least_energy), 0, True, False, 0, False)
 
 
 @inlined

@@ -23,8 +23,7 @@ from ..quantities import GRAVITY, Array
 from ..scene.checks import GROUND
 from ..scene.scene import Scene
 from .rows import ContactRows, Step, points_of, set_rows
-from .shapes import in_space, meshes, sites, world
-from .tags import section, tag, value_text
+from .shapes import in_space, meshes, section, sites, tag, value_text, world
 
 HEAD = """\
 <mujoco model="rocking wall">
@@ -77,11 +76,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.solref.row`.
         keyframe: of the release. None stands for the scene at rest.
     """
-    corners = np.concatenate(
-        [rest + outline for rest, outline in zip(scene.bodies.rest, scene.bodies.outlines, strict=True)]
-    )
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
+    middle, half = extent_of(scene)
     fixed = pair_rows(scene, timestep, newmark_beta)
     keyframe = (
         Keyframe(scene.at_rest, np.zeros_like(scene.bodies.masses), np.empty(0)) if keyframe is None else keyframe
@@ -100,9 +95,6 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         meshes="".join(f"\n    {mesh}" for mesh in meshes(scene)),
     )
     camera = camera_of(scene, middle, half)
-    key = {"qpos": keyframe.pose.ravel(), "qvel": keyframe.velocity.ravel()}
-    if len(keyframe.plastic):
-        key["plastic"] = keyframe.plastic
     body = [
         "<worldbody>",
         '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',
@@ -114,9 +106,18 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         *section("tendon", linked(scene)),
         *section("actuator", forced(scene)),
         *section("custom", _records(scene, newmark_beta)),
-        *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
+        *section("keyframe", iter(["  " + tag("key", name="release", **keyframe.values)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
+
+
+def extent_of(scene: Scene) -> tuple[Array, float]:
+    """Middle of the bodies at rest [m], shape (d,), and half of their largest extent along an axis [m]."""
+    corners = np.concatenate(
+        [rest + outline for rest, outline in zip(scene.bodies.rest, scene.bodies.outlines, strict=True)]
+    )
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    return 0.5 * (low + high), 0.5 * float((high - low).max())
 
 
 def camera_of(scene: Scene, middle: Array, half: float) -> dict[str, object]:
@@ -141,6 +142,12 @@ class Keyframe(NamedTuple):
     pose: Array
     velocity: Array
     plastic: Array
+
+    @property
+    def values(self) -> dict[str, Array]:
+        """By the names of MuJoCo."""
+        values = {"qpos": self.pose, "qvel": self.velocity, "plastic": self.plastic}
+        return {name: value for name, value in values.items() if len(value)}
 
 
 class FixedRows(NamedTuple):

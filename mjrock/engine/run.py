@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -18,8 +17,8 @@ from ..result.response import Response
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.course import Course
 from ..scene.fixed_step import sound_timestep
+from ..scene.potential import breaks
 from ..scene.scene import Scene
-from ..scene.structure import breaks
 from .energy_work import ground_work, ledger
 from .forces import kept_forces
 from .model import SimulationError
@@ -29,6 +28,8 @@ MARKS = 1000
 """Times in a run of masonry between which no energy may appear."""
 SLIDING = 4.0
 """omega h up to which a fixed step follows masonry that slides, omega the highest contact frequency [-]."""
+Settings = dict[str, float | None]
+"""What a run was made with, and what its steps took, for the `stats` of its response."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +41,7 @@ class EngineRun:
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
-        broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
+        broken: the step from which each tie no longer acts, see `mjrock.scene.potential.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
         scale: energy of the release, of the springs at rest, or at most where they start as drawn, and of what the
             ground put in or took, or the largest kinetic energy if that is more [J].
@@ -84,7 +85,7 @@ class EngineRun:
         return cls(problem, scene, course, steps, energy, taken, broken, reading, scale, gain)
 
     def response(
-        self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: dict[str, Any]
+        self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: Settings
     ) -> Response:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None."""
         scene, course, steps, reading = self.scene, self.course, self.steps, self.reading
@@ -117,10 +118,10 @@ class EngineRun:
         lost = np.where(gone, 0.5 * links.strength**2 / links.k, 0.0)
         return plastic_of(self.scene, energy / links.strength, energy, when, lost)
 
-    def stats(self) -> dict[str, Any]:
+    def stats(self) -> dict[str, float | str | None]:
         """What a run took, for the `stats` of its response."""
         scene, steps, contacts = self.scene, self.steps, self.scene.contacts
-        stats = {
+        stats: dict[str, float | str | None] = {
             "steps": len(steps.t),
             "longest_timestep": float(steps.h.max()),
             "sound_timestep": sound_timestep(scene.highest_frequency),

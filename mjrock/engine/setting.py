@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compiled import inlined
 from ..geometry.kinematics import Ties
-from ..geometry.vectors import minus
+from ..geometry.vectors import increase, minus
 from ..method import METHOD, Method
 from ..quantities import Array
 from ..scene.course import Course
@@ -76,9 +76,7 @@ def add_gyroscopic_correction(memory: EngineArrays, setting: Setting, axes: tupl
             gyroscopic(setting.masses, setting.products, body, kept),
             gyroscopic(setting.masses, setting.products, body, now),
         )
-        memory.applied[x] += lacking[0]
-        memory.applied[y] += lacking[1]
-        memory.applied[z] += lacking[2]
+        increase(memory.applied[x:], lacking)
 
 
 @inlined

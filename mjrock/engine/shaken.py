@@ -15,9 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined
-from ..geometry.frames import velocities
 from ..quantities import Array
-from ..scene.ground import Ground, mean_acceleration
+from ..scene.ground import Ground, mean_acceleration, push_along
 from .memory import EngineArrays
 from .setting import Setting, push
 from .sliding import STAGE_VELOCITY, Sliding, give_rows_back, slide
@@ -43,14 +42,6 @@ class Shaken(NamedTuple):
 
 
 @inlined
-def accelerate_ground(setting: Setting, d: int, unit: float, applied: Array) -> None:
-    """Add to the applied forces what an acceleration of the ground in direction d adds to them."""
-    axes, masses = setting.points.places.axes, setting.masses
-    for j in range(0 if d == 0 else len(axes) - d, len(masses), velocities(axes)):
-        applied[j] -= masses[j] * unit
-
-
-@inlined
 def find_answer(
     memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, shaken: Shaken, t: float
 ) -> None:
@@ -61,11 +52,12 @@ def find_answer(
     for d in range(len(shaken.mean)):
         for j in range(len(memory.acceleration)):
             shaken.answer[d, j] = -memory.acceleration[j]
+    axes, masses = setting.points.places.axes, setting.masses
     for d in range(len(shaken.mean)):
         if len(setting.ground[d].accel) > 0:
-            accelerate_ground(setting, d, 1.0, memory.applied)
+            push_along(d, 1.0, masses, axes, memory.applied)
             memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
-            accelerate_ground(setting, d, -1.0, memory.applied)
+            push_along(d, -1.0, masses, axes, memory.applied)
             for j in range(len(memory.acceleration)):
                 shaken.answer[d, j] += memory.acceleration[j]
     give_rows_back(memory, sliding)

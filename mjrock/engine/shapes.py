@@ -1,4 +1,6 @@
-"""Shapes: the bodies of a model text, with their joints, faces and contact points, and the faces of the ground."""
+"""Shapes: the bodies of a model text, with their joints, faces and contact points, and the faces of the ground.
+
+Numbers have every digit."""
 
 from __future__ import annotations
 
@@ -12,7 +14,6 @@ from ..quantities import Array
 from ..scene.checks import GROUND
 from ..scene.scene import Scene
 from ..scene.tints import TINTS, told_apart
-from .tags import tag, value_text
 
 BALL = (("x", "slide", "1 0 0"), ("y", "slide", "0 1 0"), ("z", "slide", "0 0 1"))
 """The slides of a body of space, by the name, kind and axis of the joint. A ball joint `turn` follows them."""
@@ -23,6 +24,25 @@ PLATE = 4.0
 """How far the plate of a face reaches from the middle of its joint, over the largest extent of the bodies [-]."""
 LEAST_MOMENT = 1e-14
 """Smallest principal moment of a tensor of inertia that MuJoCo takes [kg m2]."""
+
+
+def section(name: str, lines: Iterator[str]) -> list[str]:
+    """A section of the text, or nothing where it would be empty."""
+    elements = list(lines)
+    return [f"<{name}>", *elements, f"</{name}>"] if elements else []
+
+
+def value_text(value: object) -> str:
+    """A quoted attribute: texts as they are, numbers with every digit that tells them from their neighbours."""
+    if isinstance(value, str):
+        return quoted(value)
+    return f'"{" ".join(repr(float(number)) for number in np.ravel(np.asarray(value)))}"'
+
+
+def tag(kind: str, within: str = "", /, **attributes: object) -> str:
+    """An element with attributes."""
+    opened = f"<{kind} {' '.join(f'{key}={value_text(value)}' for key, value in attributes.items())}"
+    return f"{opened}>{within}</{kind}>" if within else f"{opened}/>"
 
 
 def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-from typing import Any
 
 from ..method import METHOD, Method
 from ..patience import expect, first_answer
@@ -28,7 +27,7 @@ from .model import engine_of
 from .options import Options
 from .pace import short_step
 from .plain.run import simulate_plain
-from .run import EngineRun, explained
+from .run import EngineRun, Settings, explained
 from .run_warnings import (
     require_still,
     warn_if_coarse,
@@ -165,7 +164,7 @@ def default_accuracy(case: AnyCase) -> float:
     return ACCURACY_SHAKEN if case.rocks_on_moving_ground else ACCURACY
 
 
-def fitted(problem: Problem, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, dict[str, Any]]:
+def fitted(problem: Problem, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, Settings]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
     Raises:
@@ -188,9 +187,7 @@ def fitted(problem: Problem, scene: Scene, course: Course, options: Options) -> 
             used /= 10
 
 
-def fixed(
-    problem: Problem, scene: Scene, course: Course, options: Options, h: float
-) -> tuple[EngineRun, dict[str, Any]]:
+def fixed(problem: Problem, scene: Scene, course: Course, options: Options, h: float) -> tuple[EngineRun, Settings]:
     """A run at steps of one length h [s], and what it took.
 
     Raises:

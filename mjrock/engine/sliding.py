@@ -20,7 +20,7 @@ import numpy as np
 
 from ..compiled import inlined
 from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
-from ..geometry.vectors import Vector, dot, minus, plus, scaled, tangent
+from ..geometry.vectors import Vector, dot, minus, plus, put, scaled, tangent, vector
 from ..method import METHOD, Method
 from ..quantities import Array, Flags
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
@@ -46,7 +46,7 @@ class Sliding(NamedTuple):
         slides, slid: which contacts slide in this step, and which slid in the last, shape (m,).
         force: friction of each that does, along its way on the body that carries the point [N], shape (m,). The way is
             (nz, -nx) in the plane. In space it is that of the slip, and the force is negative.
-        way: unit vectors of the ways in space, shape (m, 3), or (0, 3).
+        way: unit vectors of the ways, shape (m, d).
     """
 
     coulomb: bool
@@ -59,9 +59,9 @@ class Sliding(NamedTuple):
     @classmethod
     def of(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
         """No contact slides at the start."""
-        m = len(points.rubs)
-        none, ways = np.zeros((2, m), dtype=np.bool_), m if len(points.places.axes) == 3 else 0
-        return cls(coulomb and bool(points.rubs.any()), method, none[0], none[1], np.zeros(m), np.zeros((ways, 3)))
+        none, ways = np.zeros((2, len(points.rubs)), dtype=np.bool_), np.zeros_like(points.places.normal)
+        rubs = coulomb and bool(points.rubs.any())
+        return cls(rubs, method, none[0], none[1], np.zeros(len(points.rubs)), ways)
 
 
 class Slipping(NamedTuple):
@@ -89,21 +89,11 @@ def slipping(places: Places, i: int, meets: Meeting, frames: Array, v: Array) ->
 
 
 @inlined
-def way_of(sliding: Sliding, i: int, normal: Vector) -> Vector:
-    """The way along which friction acts on contact i."""
-    if len(normal) == 2:
-        return tangent(normal)
-    return sliding.way[i, 0], sliding.way[i, 1], sliding.way[i, 2]
-
-
-@inlined
 def turned_to(sliding: Sliding, i: int, way: Vector) -> float:
-    """Take a way for contact i, and return by how much it has changed [-]. In the plane it is the same always."""
-    if len(way) == 2:
-        return 0.0
-    x, y, z = way[0] - sliding.way[i, 0], way[1] - sliding.way[i, 1], way[2] - sliding.way[i, 2]
-    sliding.way[i, 0], sliding.way[i, 1], sliding.way[i, 2] = way[0], way[1], way[2]
-    return math.sqrt(x * x + y * y + z * z)
+    """Take a way for contact i, and return by how much it has changed [-]."""
+    change = minus(way, vector(sliding.way, i, way))
+    put(sliding.way[i], way)
+    return math.sqrt(dot(change, change))
 
 
 @inlined
@@ -162,7 +152,7 @@ def apply_friction(memory: EngineArrays, setting: Setting, sliding: Sliding, fra
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
-            force = scaled(sliding.force[i], way_of(sliding, i, meets.normal))
+            force = scaled(sliding.force[i], vector(sliding.way, i, meets.normal))
             push_apart(places, i, meets, frames, force, memory.applied)
 
 

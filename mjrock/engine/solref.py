@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, overload
+from typing import overload
 
 import numpy as np
 
@@ -29,6 +29,10 @@ IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
 WITHIN = (IMPEDANCE_RANGE[0] * (1 + 1e-9), IMPEDANCE_RANGE[1] * (1 - 1e-9))
 """The same range less a margin for rounding."""
+
+
+Given = Array | float
+"""A number, or an array of them."""
 
 
 @dataclass(frozen=True)
@@ -158,7 +162,7 @@ def contact_parameters(
 
 
 def contact_parameters(
-    k: Any, c: Any, *, timestep: Any, inverse_weight: Any, newmark_beta: Any = 0.25
+    k: Given, c: Given, *, timestep: Given, inverse_weight: Given, newmark_beta: float = 0.25
 ) -> ContactParameters | ManyContactParameters:
     """MuJoCo's parameters for a unilateral spring and dashpot, integrated as Newmark's method does.
 
@@ -195,7 +199,7 @@ def contact_parameters(
     return ContactParameters(solref=(stiffness, damping), solimp=(d, d, 0.001, 0.5, 2.0), inertia=inertia)
 
 
-def _many_parameters(given: dict[str, Any], newmark_beta: Any) -> ManyContactParameters:
+def _many_parameters(given: dict[str, Given], newmark_beta: float) -> ManyContactParameters:
     """The parameters of arrays of contacts, one by one."""
     arrays = [require_reals(name, value, "numbers or arrays of numbers") for name, value in given.items()]
     try:

@@ -21,10 +21,9 @@ from ..method import METHOD, Method
 from ..quantities import Array
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .loop import fitted_loop, fixed_loop, release, settle_ties
+from .loop import Progress, StepClock, fitted_loop, fixed_loop, release, settle_ties
 from .model import Engine, require_well
 from .pace import Pace
-from .progress import Progress, StepClock
 from .record import Record, StepKinds, Steps
 from .setting import Setting
 from .shapes import PLATE

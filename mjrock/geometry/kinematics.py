@@ -150,21 +150,6 @@ class Gap(NamedTuple):
     swept: float
 
 
-class Slip(NamedTuple):
-    """How a point moves along its face.
-
-    Args:
-        place: position along the face, from the origin of the face [m].
-        rate: its rate [m/s].
-        bodies: slip of the two bodies where MuJoCo lets friction act, halfway between the surface of the sphere and the
-            face [m/s].
-    """
-
-    place: float
-    rate: float
-    bodies: float
-
-
 @inlined
 def meeting(places: Places, i: int, frames: Array) -> Meeting:
     """Where point i and its face meet at a pose."""
@@ -183,7 +168,8 @@ def meeting(places: Places, i: int, frames: Array) -> Meeting:
 
 @inlined
 def where_friction_acts(places: Places, meets: Meeting) -> Meeting:
-    """The same meeting with its arms to where friction acts, see `Slip`."""
+    """The same meeting with its arms to where MuJoCo lets friction act, halfway between the surface of the sphere and
+    the face."""
     below = scaled(0.5 * meets.gap + places.radius, meets.normal)
     return Meeting(meets.gap, meets.normal, meets.across, minus(meets.arm, below), minus(meets.face_arm, below))
 
@@ -239,16 +225,6 @@ def gap(places: Places, i: int, frames: Array, v: Array, a: Array) -> Gap:
 def depth(places: Places, i: int, frames: Array) -> float:
     """Penetration of point i [m], negative where it is open."""
     return -meeting(places, i, frames).gap
-
-
-@inlined
-def along(places: Places, i: int, frames: Array, v: Array) -> Slip:
-    """Where point i is along its face, in the plane, and how it moves with the velocities v of the bodies."""
-    meets = meeting(places, i, frames)
-    along_face = tangent(meets.normal)
-    rate = dot(along_face, over_face(places, i, meets, frames, v))
-    bodies = dot(along_face, over_face(places, i, where_friction_acts(places, meets), frames, v))
-    return Slip(dot(along_face, meets.across), rate, bodies)
 
 
 @inlined

@@ -24,7 +24,7 @@ AROUND, FARTHEST = 0.6, 3.0
 """How far the ground is drawn beyond all corners, and the farthest corners that count for it, over the extent [-]."""
 SUNK = 0.05
 """How far blocks may lie below the ground and it is still drawn, over the extent [-]."""
-ROUND = 1e-6
+PLANE_ROUNDING = 1e-6
 """Part of normals and of the extent to which two faces lie in one plane [-]."""
 SUN = np.array([-0.75, 0.55, 1.0])
 """Where the sun stands: to the right of the camera, towards it, and upwards."""
@@ -133,7 +133,8 @@ class Solids:
         corners = evened([part.corners[list(face)] for _, part in parts for face in part.faces])
         normals = np.concatenate([part.normals for _, part in parts])
         offsets = np.concatenate([part.offsets for _, part in parts])
-        planes = np.round(np.column_stack([block * ROUND, normals, offsets / np.abs(corners).max()]) / ROUND)
+        planes = np.column_stack([block * PLANE_ROUNDING, normals, offsets / np.abs(corners).max()])
+        planes = np.round(planes / PLANE_ROUNDING)
         return Facets(corners, block, np.unique(planes, axis=0, return_inverse=True)[1].ravel())
 
     def corners(self, frame: int) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
@@ -34,7 +35,7 @@ FAR = 2.0
 """A limit that is farther than the motion by this factor would flatten it."""
 NAMED = 5
 """Most runs of one record that are told apart by their lines."""
-LOW = 0.2
+NEAR_THE_AXIS = 0.2
 """Height over that of a diagram below which a label would lie on its axis [-]."""
 OPENED = 0.06
 """Rotation at which the mechanism is drawn [rad]."""
@@ -85,7 +86,10 @@ def wall_drawn(case: Case, words: Words) -> Figure:
         if effect.told is None:
             continue
         x, beside = (left.get_xlim()[0], (12, 3)) if effect.on_face else (case.block.b, (26, -10))
-        note = left.annotate(told_name(name, effect, words), (x, effect.height), beside, **look)
+        said, z = told_name(name, effect, words), effect.height
+        if len(effect.outline):  # below the crack of wedges there is room
+            x, z, beside, said = left.get_xlim()[0], 0.15 * z, (2, 0), fill(said, 12)
+        note = left.annotate(said, (x, z), beside, **look)
         note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
     for ax, title in ((left, "section"), (right, "elevation")):
         ax.axis("off")
@@ -129,7 +133,7 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
         colour = HOLDS if state.ratio >= 1 else FAILS
         ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
         ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
-        below = (-4, -11) if held > LOW * top else (-16, 4)  # the axis is near the curve
+        below = (-4, -11) if held > NEAR_THE_AXIS * top else (-16, 4)  # the axis is near the curve
         for d, a, beside in ((state.capacity, held, below), (state.demand, stiff * state.demand, (4, 4))):
             ax.annotate(words(name), (d, a), beside, textcoords="offset points", fontsize=SMALL, zorder=6)
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))

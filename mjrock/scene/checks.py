@@ -14,14 +14,14 @@ GROUND = -1
 """The body of a face or an anchor that belongs to the ground."""
 
 
-def said_of(part: Any) -> str:
+def said_of(part: object) -> str:
     """The name of a part in a message."""
     names = {"Bodies": "bodies", "ContactPoints": "contacts", "Links": "links", "ConstantForces": "forces"}
     return names[type(part).__name__]
 
 
 def keep_array(
-    part: Any,
+    part: object,
     name: str,
     shape: tuple[int, ...],
     *,

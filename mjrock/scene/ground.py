@@ -77,18 +77,15 @@ def mean_acceleration(shaking: Shaking, t: float, h: float) -> float:
 
 
 @inlined
+def push_along(d: int, acceleration: float, masses: Array, axes: tuple[int, ...], applied: Array) -> None:
+    """Add to `applied` what an acceleration of the ground in direction d of `Ground` adds to it [N], (n nv,)."""
+    for j in range(0 if d == 0 else len(axes) - d, len(masses), velocities(axes)):
+        applied[j] -= masses[j] * acceleration
+
+
+@inlined
 def push_ground(ground: Ground, masses: Array, axes: tuple[int, ...], t: float, h: float, applied: Array) -> None:
     """Add the force of the moving ground on every body to `applied` [N], shape (n nv,), as `masses`."""
-    if len(ground.x.accel) > 0:
-        mean = mean_acceleration(ground.x, t, h)
-        for j in range(0, len(masses), velocities(axes)):
-            applied[j] -= masses[j] * mean
-    if len(axes) == 3:  # noqa: SIM102, numba leaves out what the number of axes excludes
-        if len(ground.y.accel) > 0:
-            mean = mean_acceleration(ground.y, t, h)
-            for j in range(1, len(masses), velocities(axes)):
-                applied[j] -= masses[j] * mean
-    if len(ground.z.accel) > 0:
-        mean = mean_acceleration(ground.z, t, h)
-        for j in range(len(axes) - 1, len(masses), velocities(axes)):
-            applied[j] -= masses[j] * mean
+    for d in range(len(axes)):
+        if len(ground[d].accel) > 0:
+            push_along(d, mean_acceleration(ground[d], t, h), masses, axes, applied)

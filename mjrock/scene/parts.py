@@ -173,12 +173,23 @@ class ContactPoints:
     @cached_property
     def point_names(self) -> tuple[str, ...]:
         """Name of each contact point: its joint and its number in it."""
-        return point_names(self.group)
+        numbers: Counter[str] = Counter()
+        names = []
+        for name in self.group:
+            names.append(f"{name}_{numbers[name]}")
+            numbers[name] += 1
+        return tuple(names)
 
     @cached_property
     def face_names(self) -> tuple[str, ...]:
         """Name of the face that each point meets: its joint, with a number where the points of a joint meet several."""
-        return face_names(self.group, self.face_body, self.face_at, self.normal)
+        known: dict[tuple[object, ...], str] = {}
+        names = []
+        for name, body, face, normal in zip(self.group, self.face_body, self.face_at, self.normal, strict=True):
+            mark = (name, int(body), *face.tolist(), *normal.tolist())
+            number = sum(met[0] == name for met in known)
+            names.append(known.setdefault(mark, f"{name}_face_{number}" if number else name))
+        return tuple(names)
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,27 +320,6 @@ class Limits:
     reach: float = math.inf
     overlap: float = math.inf
     damped_joints: bool = False
-
-
-def point_names(group: Sequence[str]) -> tuple[str, ...]:
-    """Name of each contact point: its group and its number in it."""
-    numbers: Counter[str] = Counter()
-    names = []
-    for name in group:
-        names.append(f"{name}_{numbers[name]}")
-        numbers[name] += 1
-    return tuple(names)
-
-
-def face_names(group: Sequence[str], bodies: Integers, faces: Array, normals: Array) -> tuple[str, ...]:
-    """Name of the face that each point meets: its group, with a number where the points of a group meet several."""
-    known: dict[tuple[object, ...], str] = {}
-    names = []
-    for name, body, face, normal in zip(group, bodies, faces, normals, strict=True):
-        mark = (name, int(body), *face.tolist(), *normal.tolist())
-        number = sum(met[0] == name for met in known)
-        names.append(known.setdefault(mark, f"{name}_face_{number}" if number else name))
-    return tuple(names)
 
 
 def attachments(

@@ -20,8 +20,7 @@ from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung
 from ..problem.masonry.laws.joint_law import Law, shear_limit
 from ..quantities import GRAVITY, Array, Flags
-from .potential import Potential
-from .structure import Structure
+from .potential import Potential, Structure
 
 FORCE_TOLERANCE = 1e-9
 """Force that may be missing at rest, over the weight of the heaviest body [-]."""

@@ -26,9 +26,8 @@ from .checks import require_on
 from .dampers import Dampers
 from .masses import kinetic_energies
 from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links
-from .potential import Potential, highest_frequency, rocking_frequency, tie_frequency
+from .potential import Potential, Structure, energies, highest_frequency, rocking_frequency, tie_frequency
 from .rest import lowered, settled
-from .structure import Structure, energies
 
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
@@ -49,7 +48,7 @@ class Scene:
         title: what the scene is, in words, for the model text.
         facts: numbers and texts that the model records.
         made_of: solids and joints of the bodies and of what they stand on; None of a scene that is written by hand.
-        springs: what the joints are made of, or None.
+        springs: what the joints of masonry are made of, or None.
 
     Raises:
         ValueError: for parts that do not fit the bodies, two things of one name, or bodies that do not stand.
@@ -111,9 +110,9 @@ class Scene:
     def places(self) -> Places:
         """The contacts for the compiled functions."""
         points = self.contacts
-        ends_of = points.body, points.at, points.face_body, points.face_at
-        law = points.joint, points.k, points.c, points.friction, points.tension, points.cohesion
-        return Places(self.freedom.axes, *ends_of, points.normal, self.bodies.between(*ends_of), self.radius, *law)
+        between = self.bodies.between(points.body, points.at, points.face_body, points.face_at)
+        columns = {name: getattr(points, name) for name in Places._fields if hasattr(points, name)}
+        return Places(axes=self.freedom.axes, between=between, radius=self.radius, **columns)
 
     @cached_property
     def sense(self) -> Array:
@@ -181,7 +180,7 @@ class Scene:
         return self.accounts(self.at_rest.reshape(1, -1).copy(), np.zeros((1, len(self.bodies.masses))))[0][0]
 
     def accounts(self, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
-        """Kinetic, potential and elastic energy, and what ties have taken, see `structure.energies`."""
+        """Kinetic, potential and elastic energy, and what ties have taken, see `potential.energies`."""
         return energies(self.structure, q, v, broken)
 
     def energy(self, pose: Array, velocity: Array) -> Array:

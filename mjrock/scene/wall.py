@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -10,7 +9,6 @@ import numpy as np
 
 from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
-from ..problem.damping.interface import Interface
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
@@ -18,7 +16,7 @@ from ..problem.wall.standing import WallStanding
 from ..quantities import Array, require_kind
 from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints, JointSprings, attachments
+from .parts import Bodies, ContactPoints, attachments
 from .rest import held
 from .scene import Scene
 
@@ -93,7 +91,7 @@ def standing_wall(
     wall: Block, contacts: Contacts, stop_top: float | None, effects: tuple[Effect, ...], method: Method = METHOD
 ) -> Scene:
     """The scene of a wall, its added masses included, against a stop up to a height [m], or None."""
-    base, interfaces = contacts.base, [contacts.base]
+    base = contacts.base
     centroid = np.array([wall.centroid_offset, wall.centroid_height])
     places = [(x - centroid[0], -centroid[1]) for x in base.positions]
     faces, normals, joint, joints = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, [0] * base.points, ["base"]
@@ -101,7 +99,6 @@ def standing_wall(
     facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
     if stop_top is not None:
         side = contacts.side_up_to(stop_top)
-        interfaces.append(side)
         places += [(-wall.b - centroid[0], z) for z in side.positions + (0.5 * stop_top - centroid[1])]
         faces, normals = faces + [(-wall.b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
         joint, joints = joint + [1] * side.points, [*joints, "side"]
@@ -138,22 +135,11 @@ def standing_wall(
         title=_title(wall, stop_top),
         facts=facts,
         made_of=WallStanding(wall, stop_top),
-        springs=_springs(interfaces),
     )
     if even:
         return scene
     on_base = replace(scene.contacts, friction=np.where(scene.contacts.joint == 0, friction, 0.0))
     return replace(scene, settled=held(replace(scene, contacts=on_base).potential))
-
-
-def _springs(interfaces: Sequence[Interface]) -> JointSprings:
-    """Properties of the base and the side stop. The friction of a base that holds is infinite."""
-    without = np.inf, 0.0  # what None stands for, of the base and of the side
-    given = [none if one.friction is None else one.friction for one, none in zip(interfaces, without, strict=False)]
-    friction = np.array(given)
-    k_n, retardation = np.array([(one.k_n, one.retardation) for one in interfaces]).T
-    points = np.array([each.points for each in interfaces])
-    return JointSprings(k_n, np.full(len(interfaces), np.inf), retardation, friction, friction, points)
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.distinct.rows import rows
-from mjrock.distinct.search import clipping, grid
+from mjrock.distinct.search import clipping
 from mjrock.distinct.search.finder import Finder
 from mjrock.distinct.search.solids import Poses, Solids
 from mjrock.geometry import convex
@@ -27,17 +27,18 @@ def polygon_in(corners, count=24):
 def places_of(corners, cells):
     """Nodes of a polygon [m], shape (n, 2), what each stands for [m2], and how often each was met."""
     polygon = polygon_in(corners)
-    whole = grid.grid_of(polygon, len(corners), cells)
-    nodes, middle = grid.nodes_of(whole), grid.middle_of(polygon, len(corners))
+    whole = clipping.grid_of(polygon, len(corners), cells)
+    nodes, middle = clipping.nodes_of(whole), clipping.middle_of(polygon, len(corners))
     places, areas, corner = np.full((nodes, 2), np.nan), np.zeros(nodes), np.zeros(nodes, dtype=bool)
     for q in range(whole.quads):
-        quad = grid.quad_of(polygon, whole, q, middle)
+        quad = clipping.quad_of(polygon, whole, q, middle)
         for i in range(whole.along + 1):
             for j in range(whole.across + 1):
-                number, at = grid.number_of(whole, q, i, j), grid.place_in(quad, i / whole.along, j / whole.across)
+                number = clipping.number_of(whole, q, i, j)
+                at = clipping.place_in(quad, i / whole.along, j / whole.across)
                 assert np.isnan(places[number, 0]) or places[number] == pytest.approx(at[:2], abs=1e-14)
-                places[number], areas[number] = at[:2], areas[number] + grid.stands_for(quad, whole, i, j)
-                corner[number] = grid.is_corner(whole, i, j)
+                places[number], areas[number] = at[:2], areas[number] + clipping.stands_for(quad, whole, i, j)
+                corner[number] = clipping.is_corner(whole, i, j)
     return places, areas, corner
 
 
@@ -84,7 +85,7 @@ def test_a_part_of_the_plane_is_divided_along_its_joint_alone(start):
 
 def test_corners_where_a_polygon_goes_straight_on_are_left_out():
     polygon = polygon_in([(0, 0), (0.3, 0), (1, 0), (1, 1), (0.5, 1), (0, 1), (0, 0.2)])
-    assert grid.straightened(polygon, 7, polygon_in([])) == 4
+    assert clipping.straightened(polygon, 7, polygon_in([])) == 4
     np.testing.assert_array_equal(polygon[:4, :2], [(0, 0), (1, 0), (1, 1), (0, 1)])
 
 
@@ -99,7 +100,7 @@ LOWER = BOX((2.0, 2.0, 1.0), (0.0, 0.0, -0.5))
 def laid(upper, cells, size=99):
     """Places of a block that lies over the upper face of another one."""
     solids, table = solids_about(LOWER, upper), rows(clipping.PLACE, size)
-    count = grid.lay_out(solids, clipping.face_towards(solids, 0, UP), (0, 1), cells, table, 1, polygon_in([], 32))
+    count = clipping.lay_out(solids, clipping.face_towards(solids, 0, UP), (0, 1), cells, table, 1, polygon_in([], 32))
     return columns(table), count
 
 

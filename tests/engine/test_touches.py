@@ -5,11 +5,10 @@ import pytest
 from scenes import changed, course
 
 import mjrock as mr
-from mjrock.engine.loop import fitted_loop
+from mjrock.engine.loop import Progress, StepClock, fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace, short_step
-from mjrock.engine.progress import Progress, StepClock
 from mjrock.engine.record import Record
 from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding

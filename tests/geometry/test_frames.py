@@ -41,8 +41,7 @@ from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
 from mjrock.quantities import frozen
 from mjrock.scene.ground import Ground, push_ground
 from mjrock.scene.parts import ConstantForces, Links
-from mjrock.scene.potential import Potential
-from mjrock.scene.structure import Structure, energies
+from mjrock.scene.potential import Potential, Structure, energies
 
 AXES = SPACE.axes
 

@@ -9,7 +9,8 @@ from scenes import changed, two_blocks
 
 import mjrock as mr
 from mjrock.geometry.frames import frames_of, rotation_change
-from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
+from mjrock.geometry.kinematics import depth, gap, gaps, meeting, over_face, slack, stretch, where_friction_acts
+from mjrock.geometry.vectors import dot, tangent
 from mjrock.problem.wall.restoring_moment import pose_of
 from mjrock.problem.wall.ties_on_wall import pulled
 from mjrock.scene.parts import Links
@@ -133,19 +134,30 @@ def test_a_tie_yields_beyond_its_strength_and_stays_longer():
         assert ties.reach[0] == pytest.approx(reach + yielded)
 
 
+def slip_of_bodies(places, i, frames, v):
+    """Slip where friction acts, in the plane [m/s]."""
+    acts = where_friction_acts(places, meeting(places, i, frames))
+    return dot(tangent(acts.normal), over_face(places, i, acts, frames, v))
+
+
 def test_a_place_along_a_face_moves_with_its_rate():
     """The position along the face from its origin, its rate by central differences, and depth as the gap reversed."""
     scene, t = two_blocks(), 1e-5
+
+    def place(i, frames):
+        meets = meeting(scene.places, i, frames)
+        return dot(tangent(meets.normal), meets.across)
+
     for q, v, _ in zip(*poses(np.random.default_rng(10), 20, 2), strict=True):
         for i in range(len(scene.contacts.k)):
-            before, after = (along(scene.places, i, frames_of(q + s * v), v).place for s in (-t, t))
-            assert (after - before) / (2 * t) == pytest.approx(along(scene.places, i, frames_of(q), v).rate, abs=1e-7)
-            assert depth(scene.places, i, frames_of(q)) == pytest.approx(
-                -gap(scene.places, i, frames_of(q), v, v).value
-            )
-    still = np.zeros(6)
-    for i, place in enumerate((-0.3, 0.3, -0.3, 0.3)):
-        assert along(scene.places, i, frames_of(still), still).place == pytest.approx(place)
+            before, after = (place(i, frames_of(q + s * v)) for s in (-t, t))
+            frames = frames_of(q)
+            meets = meeting(scene.places, i, frames)
+            rate = dot(tangent(meets.normal), over_face(scene.places, i, meets, frames, v))
+            assert (after - before) / (2 * t) == pytest.approx(rate, abs=1e-7)
+            assert depth(scene.places, i, frames) == pytest.approx(-gap(scene.places, i, frames, v, v).value)
+    for i, expected in enumerate((-0.3, 0.3, -0.3, 0.3)):
+        assert place(i, frames_of(np.zeros(6))) == pytest.approx(expected)
 
 
 def test_slip_is_the_relative_velocity_where_friction_acts():
@@ -178,7 +190,8 @@ def test_slip_is_the_relative_velocity_where_friction_acts():
                 if body >= 0:
                     own = local_to(q, body, place)
                     relative += sign * (world(q + t * v, body, own) - world(q - t * v, body, own)) / (2 * t)
-            assert along(scene.places, i, frames_of(q), v).bodies == pytest.approx(relative @ [n[1], -n[0]], abs=1e-8)
+            slip = slip_of_bodies(scene.places, i, frames_of(q), v)
+            assert slip == pytest.approx(relative @ [n[1], -n[0]], abs=1e-8)
 
 
 def test_gaps_and_slip_are_those_of_the_engine():
@@ -208,7 +221,8 @@ def test_gaps_and_slip_are_those_of_the_engine():
                 row = contact.efc_address
                 assert jacobian[row] @ v == pytest.approx(rate, rel=1e-9, abs=1e-9)
                 slips = jacobian[row + 1 : row + contact.dim] @ v
-                assert np.hypot(*slips) == pytest.approx(abs(along(scene.places, i, frames_of(q), v).bodies), abs=1e-9)
+                slip = slip_of_bodies(scene.places, i, frames_of(q), v)
+                assert np.hypot(*slips) == pytest.approx(abs(slip), abs=1e-9)
     assert seen == set(range(len(scene.contacts.k)))
 
 

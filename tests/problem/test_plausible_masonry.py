@@ -2,6 +2,7 @@
 
 import warnings
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -94,6 +95,7 @@ def test_misuse_is_doubted_once(misuse):
         make()
     said = [one for one in caught if issubclass(one.category, mr.Implausible)]
     assert len(said) == 1
+    assert Path(mr.__file__).parent not in Path(said[0].filename).parents  # it points at the call
     with pytest.warns(mr.Implausible, match=doubt):
         make()
 

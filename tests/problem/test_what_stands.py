@@ -149,11 +149,6 @@ def test_the_faces_of_a_joint_of_masonry_hold_it(in_space):
 
 
 def test_springs_of_joints():
-    """Those of a wall are its interfaces; friction that holds is infinite."""
-    springs = mr.scene_of(mr.Case(SLENDER, 0.01, 1.0), CONTACTS).springs
-    np.testing.assert_allclose(springs.k_n, [5e8, 4e8])
-    np.testing.assert_allclose(springs.friction, [np.inf, 0.0])
-    np.testing.assert_allclose(springs.retardation, [CONTACTS.base.retardation, CONTACTS.side.retardation])
     masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 0.8, 0.6)], 1e9, friction=0.5, k_s=4e8)
     springs = mr.scene_of(mr.MasonryCase(masonry, 1.0)).springs
     assert (springs.k_n, springs.k_s, springs.friction, springs.residual) == (1e9, 4e8, 0.5, 0.5)

@@ -12,7 +12,7 @@ from mjrock.engine.model import engine_of
 from mjrock.engine.stepping import fitted_steps
 from mjrock.problem.wall.ties_on_wall import taken, yielded
 from mjrock.scene.parts import Links
-from mjrock.scene.structure import breaks
+from mjrock.scene.potential import breaks
 from mjrock.scene.wall import wall_scene
 
 K, STRENGTH, ULTIMATE, SLACK, SPEED = 2e6, 2e4, 0.01, 0.02, 0.5

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -86,7 +86,7 @@ class Actuators(Kind, Histories):
         self.rows["reach"] += gone[:, 0]
         return Actuators(self.rows, self.drives._replace(moved=self.drives.moved - gone))
 
-    def going_on(self, before: Actuators) -> Actuators:
+    def going_on(self, before: Self) -> Self:
         """The same ones go on from where those before had driven their blocks."""
         same = ["body", "at", "between", "k", "c"]
         if len(before.rows) == len(self.rows) and not (before.rows[same] != self.rows[same]).any():

@@ -8,8 +8,7 @@ remembers of it. `KINDS` of `links` lists the kinds, and nothing else knows whic
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -26,7 +25,7 @@ from ..rows import Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
 from ..turning import rotation_change
 
-Named = tuple[tuple[str, ...], Any]
+Named = tuple[tuple[str, ...], "Kind"]
 """The names of links, and the links."""
 
 
@@ -109,20 +108,15 @@ class Kind:
         """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""
         return np.empty(0, dtype=np.int64), np.empty(0)
 
-    def remembered(self, t: float) -> Any:
+    def remembered(self, t: float) -> Kind:
         """The links for a run that carries on from a time [s], which counts its time from there."""
         return self
 
-    def going_on(self, before: Any) -> Any:
+    def going_on(self, before: Self) -> Self:
         """The links with which a run starts that carries on one with the links before."""
         for name in ("support", "number", "account"):
             before.rows[name] = self.rows[name]
         return before
-
-
-def put_on_supports(table: Rows, supports: Mapping[int, int]) -> None:
-    """Let supports move the ends of links on their blocks, from the number of the support of each block."""
-    table["support"] = [supports.get(block, -1) for block in table["anchor_block"].tolist()]
 
 
 class Pull(NamedTuple):

@@ -22,7 +22,7 @@ from ...problem.masonry.blocks.joints import each_with_each
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ..rows import Rows, rows
-from .clipping import PLACE, clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
+from .clipping import PLACE, clip, corner_of, face_towards, lay_out, length_of, next_corner, normal_of, write_place
 from .constants import (
     AS_LARGE,
     CANDIDATE_FACES,
@@ -35,7 +35,6 @@ from .constants import (
     SHALLOWER,
     SHARE_OF_EDGES,
 )
-from .grid import lay_out
 from .pair_law import pair_number
 from .solids import Poses, Solids, parts_of, sides_of, triple, with_whole_sides
 

@@ -180,16 +180,24 @@ class Work(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """What is kept at a sample: its time [s], pose and velocity (bodies, nq) and (bodies, nv), the energy in the
-    springs of each pair and of all others (p + 1,) and the work since the release [J], the deepest contact since
-    the sample before, and what was pressed on each joint and each fixed block, see `Gathered`."""
+    """What is kept at a sample, or at all samples one after the other.
 
-    t: float
+    Args:
+        t: time [s].
+        pose, velocity: shapes (bodies, nq) and (bodies, nv).
+        elastic: energy in the springs of each pair and of all others [J], shape (p + 1,).
+        work: since the release [J].
+        deepest: the deepest contact since the sample before, if any.
+        loads, held: what was pressed on each joint and each fixed block, see `Gathered`.
+        pulled: force of each damper [N], shape (dampers,).
+    """
+
+    t: Array
     pose: Array
     velocity: Array
     elastic: Array
     work: Work
-    deepest: Overlap | None
+    deepest: list[Overlap]
     loads: Array
     held: Array
     pulled: Array
@@ -228,7 +236,9 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
                 forces = (np.empty(0), np.empty(0)) if joints is None else joints.gathered(engine, met)
                 pulled = engine.scene.links.damped.c * data.ten_velocity[engine.dampers]
                 velocity = mean[engine.driven :].reshape(-1, nv).copy()
-                samples.append(Sample(t, pose, velocity, elastic, total.plus(done, 0.5), deepest, *forces, pulled))
+                found = [] if deepest is None else [deepest]
+                work = total.plus(done, 0.5)
+                samples.append(Sample(np.array(t), pose, velocity, elastic, work, found, *forces, pulled))
                 deepest = None
             total = total.plus(done)
             if n % LOOK == 0 or n == steps:

@@ -6,7 +6,6 @@ import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -25,8 +24,8 @@ from ...result.response import End, Response, State
 from ...result.start import require_unbreakable
 from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
 from ...scene.course import Course
+from ...scene.potential import energies
 from ...scene.scene import Scene
-from ...scene.structure import energies
 from ..estimate import warn_if_plain_is_slow
 from ..mjcf import Keyframe
 from ..model import SimulationError, released
@@ -101,44 +100,31 @@ class PlainModel:
 
 @dataclass(frozen=True, eq=False)
 class PlainRun:
-    """A run of a plain model, by its samples."""
+    """A run of a plain model.
+
+    Args:
+        of: the model.
+        at: all samples, one after the other.
+    """
 
     of: PlainModel
-    samples: list[Sample]
+    at: Sample
 
-    @cached_property
-    def t(self) -> Array:
-        """Times of the samples [s], shape (n,)."""
-        return np.array([sample.t for sample in self.samples])
-
-    @cached_property
-    def pose(self) -> Array:
-        """Poses, shape (n, bodies, nq)."""
-        return np.array([sample.pose for sample in self.samples])
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Velocities, shape (n, bodies, nv)."""
-        return np.array([sample.velocity for sample in self.samples])
-
-    @cached_property
-    def elastic(self) -> Array:
-        """Energy in the springs of each pair and of all others [J], shape (n, p + 1)."""
-        return np.array([sample.elastic for sample in self.samples])
-
-    @cached_property
-    def work(self) -> Work:
-        """The work since the release at all samples [J]."""
-        ground, pressed, rubbed, damped = zip(*(sample.work for sample in self.samples), strict=True)
-        return Work(np.array(ground), np.array(pressed), np.array(rubbed), np.array(damped))
+    @classmethod
+    def of_samples(cls, of: PlainModel, samples: list[Sample]) -> PlainRun:
+        """The run that went through some samples."""
+        parts = dict(zip(Sample._fields, zip(*samples, strict=True), strict=True))
+        works = Work(*map(np.array, zip(*parts.pop("work"), strict=True)))
+        found = [one for some in parts.pop("deepest") for one in some]
+        return cls(of, Sample(work=works, deepest=found, **{name: np.array(part) for name, part in parts.items()}))
 
     @cached_property
     def stored(self) -> tuple[Array, Array]:
         """Kinetic, potential and elastic energy [J], shape (n, 3), and what ties have taken, shape (n, ties)."""
-        scene, flat = self.of.scene, (len(self.t), -1)
+        scene, at, flat = self.of.scene, self.at, (len(self.at.t), -1)
         without = scene.structure._replace(places=scene.places._replace(k=np.zeros_like(scene.contacts.k)))
-        parts, taken = energies(without, self.pose.reshape(flat), self.velocity.reshape(flat))
-        parts[:, 2] += self.elastic.sum(axis=1)
+        parts, taken = energies(without, at.pose.reshape(flat), at.velocity.reshape(flat))
+        parts[:, 2] += at.elastic.sum(axis=1)
         return parts, taken
 
     @cached_property
@@ -149,8 +135,8 @@ class PlainRun:
 
     def ledger(self) -> Ledger:
         """Where the energy is, and what took it."""
-        (parts, taken), work, scene = self.stored, self.work, self.of.scene
-        lost = -(work.pressed - work.pressed[0]) - (self.elastic - self.elastic[0])
+        (parts, taken), at, work, scene = self.stored, self.at, self.at.work, self.of.scene
+        lost = -(work.pressed - work.pressed[0]) - (at.elastic - at.elastic[0])
         groups = (*scene.contacts.joints, "encounters")
         of = self.of.pairs.of_joint
         dashpots = {name: lost[:, of == i].sum(axis=1) for i, name in enumerate(groups)}
@@ -158,7 +144,7 @@ class PlainRun:
             dashpots.pop("encounters")
         damped = dict(zip(scene.links.damped.names, (work.damped - work.damped[0]).T, strict=True))
         return Ledger(
-            t=self.t,
+            t=at.t,
             kinetic=parts[:, 0],
             potential=parts[:, 1],
             elastic=parts[:, 2],
@@ -171,8 +157,7 @@ class PlainRun:
     @cached_property
     def overlap(self) -> tuple[float, str]:
         """The largest volume that two solids have in common, over that of the smaller one [-], and where, in words."""
-        found = [sample.deepest for sample in self.samples if sample.deepest is not None]
-        shares = [(one.share, one) for one in sorted(found, key=lambda one: -one.depth)[:LOOKED_AT]]
+        shares = [(one.share, one) for one in sorted(self.at.deepest, key=lambda one: -one.depth)[:LOOKED_AT]]
         if not shares:
             return 0.0, ""
         share, worst = max(shares, key=lambda pair: pair[0])
@@ -187,12 +172,11 @@ class PlainRun:
 
     def forces(self, plastic: dict[str, Plastic]) -> Forces:
         """The forces of joints, links and fixed blocks."""
-        case, scene = self.of.problem.case, self.of.scene
-        ties = motion_of_ties(Moving(case, self.t, self.pose), plastic)
-        pulled = {name: ties[name].force for name in scene.links.sprung.names}
-        pulled |= dict(zip(scene.links.damped.names, np.array([s.pulled for s in self.samples]).T, strict=True))
-        loads, held = (np.array([getattr(sample, name) for sample in self.samples]) for name in ("loads", "held"))
-        return forces_of(case, case.standing.frames, Gathered(self.t, self.pose, loads, held, pulled))
+        case, links, at = self.of.problem.case, self.of.scene.links, self.at
+        ties = motion_of_ties(Moving(case, at.t, at.pose), plastic)
+        pulled = {name: ties[name].force for name in links.sprung.names}
+        pulled |= dict(zip(links.damped.names, at.pulled.T, strict=True))
+        return forces_of(case, case.standing.frames, Gathered(at.t, at.pose, at.loads, at.held, pulled))
 
 
 def simulate_plain(problem: Problem, options: Options, state: State | None) -> Response:
@@ -219,11 +203,11 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
     gathers = JointForces(model.pairs.of_joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:
-        run = PlainRun(model, follow(model.engine(h), course, steps, stride, gathers if options.forces else None))
+        samples = follow(model.engine(h), course, steps, stride, gathers if options.forces else None)
     except StepError as error:
         raise SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; halve the step") from None
     stats = {"steps": steps, "timestep": h, "resolved": h * scene.highest_frequency, **watch.stepping()}
-    response = response_of_plain(run, stats, options)
+    response = response_of_plain(PlainRun.of_samples(model, samples), stats, options)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     return response
@@ -248,13 +232,13 @@ def require_plain(case: AnyCase) -> None:
             )
 
 
-def response_of_plain(run: PlainRun, settings: dict[str, Any], options: Options) -> Response:
+def response_of_plain(run: PlainRun, settings: dict[str, float], options: Options) -> Response:
     """The response of a run."""
-    model, motion = run.of, SampledMotion(run.pose, run.velocity, run.energy)
+    model, at, motion = run.of, run.at, SampledMotion(run.at.pose, run.at.velocity, run.energy)
     encounters = model.pairs.of_joint == len(model.scene.contacts.joints)
-    elsewhere = bool((run.elastic[:, encounters] > 0).any())
+    elsewhere = bool((at.elastic[:, encounters] > 0).any())
     beside = BesidePoses(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
-    reading = model.problem.read(model.scene, run.t, motion, released=model.course.released, beside=beside)
+    reading = model.problem.read(model.scene, at.t, motion, released=model.course.released, beside=beside)
     plastic, account = run.plastic(), run.ledger()
     overlap, said = run.overlap
     if overlap > DOUBTED:
@@ -268,7 +252,7 @@ def response_of_plain(run: PlainRun, settings: dict[str, Any], options: Options)
     return Response(
         case=model.problem.case,
         solver="plain MuJoCo",
-        t=run.t,
+        t=at.t,
         motion=motion,
         outcome=reading.outcome,
         message=reading.message + told_of_ties(plastic),
@@ -277,6 +261,6 @@ def response_of_plain(run: PlainRun, settings: dict[str, Any], options: Options)
         plastic=plastic,
         ledger=account if options.ledger else None,
         stats=reading.stats | {"overlap": overlap, "mujoco": mujoco.__version__} | settings,
-        end=End(run.pose[-1].copy(), run.velocity[-1].copy()),
+        end=End(at.pose[-1].copy(), at.velocity[-1].copy()),
         kept_forces=run.forces(plastic) if options.forces else None,
     )

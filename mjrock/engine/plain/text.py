@@ -18,9 +18,8 @@ from ...geometry.frames import PLANE
 from ...quantities import GRAVITY
 from ...scene.checks import GROUND
 from ...scene.scene import Scene
-from ..mjcf import SPARSE_FROM, Keyframe, camera_of, forced, linked
-from ..shapes import BALL, HINGE, in_space, inertia_of_body, sites, tints
-from ..tags import section, tag
+from ..mjcf import SPARSE_FROM, Keyframe, camera_of, extent_of, forced, linked
+from ..shapes import BALL, HINGE, in_space, inertia_of_body, section, sites, tag, tints
 from .pairs import POINTS, PairRows, Pairs
 from .pieces import Piece
 
@@ -91,11 +90,7 @@ def plain_text(
         moved: names of fixed blocks that are moved. Each is a body whose frame is that of the world at rest.
     """
     rows = pairs.rows(timestep)
-    corners = np.concatenate(
-        [rest + outline for rest, outline in zip(scene.bodies.rest, scene.bodies.outlines, strict=True)]
-    )
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
+    middle, half = extent_of(scene)
     laws, mixes = _laws(pairs, rows), _meets_others(pieces, pairs)
     head = HEAD.format(
         title=scene.title.replace("--", "- -"),
@@ -110,9 +105,6 @@ def plain_text(
         impratio=number_text(rows.impratio),
         rows=' jacobian="sparse"' if len(scene.bodies.names) >= SPARSE_FROM else "",
     )
-    key = {"qpos": keyframe.pose, "qvel": keyframe.velocity}
-    if len(keyframe.plastic):
-        key["plastic"] = keyframe.plastic
     memory = [element("size", memory=f"{int(8 + MEMORY_OF_PIECE * len(pieces))}M")] if mixes else []
     shapes = [element("mesh", name=piece.name, vertex=piece.shape.corners) for piece in pieces if piece.has_mesh]
     body = [
@@ -129,7 +121,7 @@ def plain_text(
         *section("contact", (f"  {line}" for line in [*_pairs(pieces, pairs, laws), *_apart(moved)])),
         *section("tendon", linked(scene)),
         *section("actuator", forced(scene)),
-        *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
+        *section("keyframe", iter(["  " + tag("key", name="release", **keyframe.values)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -16,6 +15,7 @@ from ...quantities import (
     require_within,
     short_repr,
     shown,
+    warn_of,
 )
 from ..wall.block import Block
 from .interface import contact_lines
@@ -176,10 +176,9 @@ def stiffness_range(
     best = measured_stiffness(wall, math.sqrt(ends[0] * ends[1]), points)
     found = StiffnessRange(low, best, high, f"a frequency of {ends[0]:.3g} to {ends[1]:.3g} Hz")
     if estimate is not None and not (low <= estimate.high and estimate.low <= high):
-        warnings.warn(
+        warn_of(
             f"the measured frequency gives k_n = {low:.2g} to {high:.2g} N/m3, and {estimate.basis} gives "
             f"{estimate.low:.2g} to {estimate.high:.2g} N/m3; is the wall detached, and the frequency in Hz?",
-            stacklevel=2,
         )
     return found
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
 
 import numpy as np
 
-from ...quantities import Array, Implausible, Within, keep_declared, require_kind, within_ranges
+from ...quantities import Array, Implausible, Within, keep_declared, require_kind, warn_of, within_ranges
 from ..wall.block import Block
 
 LAWS_END = 0.3
@@ -92,11 +91,10 @@ class Interface:
     def __post_init__(self) -> None:
         keep_declared(self)
         if self.xi > LAWS_END * (1 + 1e-9):
-            warnings.warn(
+            warn_of(
                 f"xi = {self.xi:g} is {self.xi:.0%} of critical, and the laws end at {LAWS_END:.0%}; "
                 "damping ratios are fractions",
                 Implausible,
-                stacklevel=3,
             )
 
     def __repr__(self) -> str:

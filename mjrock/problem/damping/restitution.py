@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -18,6 +17,7 @@ from ...quantities import (
     require_whole,
     require_within,
     short_repr,
+    warn_of,
 )
 from ..wall.block import Block
 
@@ -137,10 +137,9 @@ class Restitution:
         if not 0 < alpha < math.asin(math.sqrt(2 / 3)):
             raise ValueError(f"alpha = {alpha:g} rad is outside the valid range 0 < alpha < 0.9553 rad of Eq. 2")
         if alpha > LARGEST_ANGLE and not isinstance(wall, Block):
-            warnings.warn(
+            warn_of(
                 f"alpha = {alpha:g} rad is {math.degrees(alpha):.3g} degrees; angles are radians",
                 Implausible,
-                stacklevel=2,
             )
         base, side = 1 - 1.5 * math.sin(alpha) ** 2, 1 - 1.5 * math.cos(alpha) ** 2
         return cls(base, side, made_for=(alpha, 1.0))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -24,6 +23,7 @@ from ...quantities import (
     require_within,
     short_repr,
     spelt,
+    warn_of,
     within_ranges,
 )
 from .oscillator import LONGEST_PERIOD, building_modes
@@ -298,10 +298,9 @@ def code_spectrum(
     if not isinstance(topography, str) or topography not in TOPOGRAPHY_NTC:
         raise ValueError(f"topography = {spelt(topography)} is not one of {', '.join(TOPOGRAPHY_NTC)}")
     if ag < PROBABLY_IN_G:
-        warnings.warn(
+        warn_of(
             f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?",
             Implausible,
-            stacklevel=3,
         )
     if code in SITE_EC8:
         for name, value in (("F0", F0), ("Tc", Tc)):

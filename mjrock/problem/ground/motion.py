@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -30,6 +29,7 @@ from ...quantities import (
     require_whole,
     require_within,
     spelt,
+    warn_of,
     within_ranges,
 )
 from .correction import integral, within_band, without_baseline
@@ -84,9 +84,8 @@ class GroundMotion:
         values, step = checked_record(accel, dt)
         keep(self, accel=values, dt=step, name=name, header=dict(header or {}))
         if self.peak > SUSPICIOUS:
-            warnings.warn(
+            warn_of(
                 f"{name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2",
-                stacklevel=2,
             )
 
     def __repr__(self) -> str:
@@ -552,15 +551,15 @@ class GroundMotion:
         """
         if unit is None:
             said = "the text of a SAC set states no unit: give unit=, which will be needed; cm/s2 are taken"
-            warnings.warn(said, FutureWarning, stacklevel=2)
+            warn_of(said, FutureWarning)
         return cls._from_text(path, lambda lines: parse_sac(lines, "cm/s2" if unit is None else unit))
 
     @classmethod
     def _from_text(cls, path: str | PathLike[str], parse: Parse) -> GroundMotion:
-        return motion_of(read(path, lambda file: parse(text_lines(file)))[0], path, stacklevel=4)
+        return motion_of(read(path, lambda file: parse(text_lines(file)))[0], path)
 
 
-def motion_of(trace: Trace, path: str | PathLike[str], stacklevel: int = 3) -> GroundMotion:
+def motion_of(trace: Trace, path: str | PathLike[str]) -> GroundMotion:
     """The motion of a trace, named after its header or its file, with what makes one doubt its unit or baseline."""
     header = trace.header
     named = [header[field] for field in NAMING if header.get(field)] if header.get("STATION_CODE") else []
@@ -569,12 +568,11 @@ def motion_of(trace: Trace, path: str | PathLike[str], stacklevel: int = 3) -> G
     peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
     if peak < FAINT_FILE:
         doubt = "" if "UNITS" in header else "; is its unit right?"
-        warnings.warn(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only{doubt}", stacklevel=stacklevel)
+        warn_of(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only{doubt}")
     if abs(final) > DRIFT * fastest:
-        warnings.warn(
+        warn_of(
             f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; it needs a "
             "baseline correction, motion.corrected(baseline='linear')",
-            stacklevel=stacklevel,
         )
     return motion
 

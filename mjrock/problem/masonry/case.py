@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated, Any, ClassVar
@@ -24,6 +23,7 @@ from ...quantities import (
     require_kind,
     require_whole,
     require_within,
+    warn_of,
 )
 from ..ground.motion import GroundMotion
 from ..wall.case import Case
@@ -129,7 +129,7 @@ class MasonryCase(Carrying):
             self.require_guided("velocity", np.asarray(self.velocity))
         keep(self, supports=supports_of(self.masonry, self.supports))
         for doubt in doubts(self):
-            warnings.warn(doubt, Implausible, stacklevel=3)
+            warn_of(doubt, Implausible)
 
     def _require_effects(self) -> None:
         """Check that each effect is on a block that is not fixed, and keep them as a tuple."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -31,6 +30,7 @@ from ...quantities import (
     require_path,
     require_whole,
     shown,
+    warn_of,
 )
 from ..damping.contacts import AnyLaw, required_law
 from ..wall.bending import VerticalBending
@@ -229,7 +229,7 @@ class Masonry(Drawn):
         if len(counts := set(self.table.points.tolist())) == 1:
             keep(self, points=counts.pop())
         for odd in self._doubts():
-            warnings.warn(odd, Implausible, stacklevel=3)
+            warn_of(odd, Implausible)
 
     def __repr__(self) -> str:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
@@ -1108,9 +1108,7 @@ class Masonry(Drawn):
             drawn = {outline.name: outline.corners for outline in drawing.outlines}
             raise ValueError(f"path = {path}: {with_sizes(error, drawn, given.matrix(drawing.unit or 1.0))}") from None
         if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
-            warnings.warn(
-                f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another", stacklevel=4
-            )
+            warn_of(f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another")
         return masonry
 
     def to_obj(self, path: AnyPath) -> Path:
@@ -1159,7 +1157,7 @@ class Masonry(Drawn):
         except ValueError as error:
             raise with_sizes(error, {mesh.name: mesh.vertices for mesh in meshes}, given.matrix()) from None
         if given.up is None and (odd := odd_axis(masonry.blocks, masonry.space_joints, given.ground)):
-            warnings.warn(odd, Implausible, stacklevel=5)
+            warn_of(odd, Implausible)
         return masonry
 
     def convex_in_space(self, what: str) -> list[Polyhedron]:
@@ -1187,7 +1185,7 @@ class Masonry(Drawn):
         wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
         apart = not_joined(self.blocks, self.joints, wider)
         if odd := nearly([joint.name for joint in self._joints_within(wider, apart)], wider):
-            warnings.warn(odd, Implausible, stacklevel=6)
+            warn_of(odd, Implausible)
         return self
 
 

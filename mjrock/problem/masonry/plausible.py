@@ -18,7 +18,7 @@ from .masonry import Masonry
 
 JUDGED_BLOCKS = 40
 """Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
-BORNE = 3.0
+OF_THE_WEIGHT = 3.0
 """Force of an actuator at its full displacement over the weight, up to which its spring may be a force that is given,
 and the displacement no motion [-]."""
 
@@ -63,7 +63,7 @@ def _extent(masonry: Masonry, way: Array) -> float:
 def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
     """A doubt about an actuator, empty where there is none."""
     far, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
-    if far > extent and jack.stiffness * far > BORNE * mass * GRAVITY:
+    if far > extent and jack.stiffness * far > OF_THE_WEIGHT * mass * GRAVITY:
         return f"{name}: displacement reaches {far:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
     if 0 < jack.stiffness * far < NEGLIGIBLE_SHARE * mass * GRAVITY:
         return (

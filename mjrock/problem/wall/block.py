@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -25,6 +24,7 @@ from ...quantities import (
     require_row,
     require_within,
     shown,
+    warn_of,
 )
 from .effects import AddedMass
 from .restoring_moment import Restoring, of_force, pose_of
@@ -75,10 +75,9 @@ class Block:
         if not 0 <= self.inset < self.b:
             raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
         if self.density > HEAVIEST:
-            warnings.warn(
+            warn_of(
                 f"density = {self.density:g} kg/m3, and stone has up to {HEAVIEST:g} kg/m3: is it a weight in N/m3?",
                 Implausible,
-                stacklevel=3,
             )
         self._require_parts()
         if not self.centroid_offset < self.half_base:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Never
@@ -22,6 +21,7 @@ from ...quantities import (
     require_kind,
     require_within,
     shown,
+    warn_of,
 )
 from ..ground.motion import GroundMotion
 from .block import Block
@@ -94,7 +94,7 @@ class Case(Carrying):
                 raise TypeError(f"{name} = {shown(value)} is not a GroundMotion")
         self._require_effects()
         for doubt in doubts(self):
-            warnings.warn(doubt, Implausible, stacklevel=3)
+            warn_of(doubt, Implausible)
 
     def _require_effects(self) -> None:
         """Check that each effect is on the wall and that the wall stands with them, and keep them as a tuple."""

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...quantities import GRAVITY, Implausible
+from ...quantities import GRAVITY, Implausible, warn_of
 from ..ground.motion import GroundMotion
 from .effect import Anchored, Effect
 from .effects import AddedMass, Load, Thrust
@@ -56,23 +55,21 @@ def warn_of_low_stop(case: Any) -> None:
     """Warn of a base that holds under a wall whose side stop is so low that the base decides what the wall does."""
     top = case.stop_top
     if top is not None and top < LOW * (height := rebound_height(case)):
-        warnings.warn(
+        warn_of(
             f"the side stop reaches {top:.4g} m, and one below {LOW * height:.4g} m pushes the base outwards; here the "
             "base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against still lower stops "
             "rebounds too: give the contacts the friction that the base has",
             Implausible,
-            stacklevel=3,
         )
 
 
 def warn_if_still(case: Any, *, forces: bool = False) -> None:
     """Warn of a run of a wall that nothing moves, unless it is asked for the forces at rest."""
     if case.is_still and not forces:
-        warnings.warn(
+        warn_of(
             "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run is one of "
             "rest; give the case a release or a motion",
             Implausible,
-            stacklevel=3,
         )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
@@ -16,7 +15,7 @@ from numpy.typing import ArrayLike
 from ....geometry.graph import connected_parts
 from ....geometry.hull import THINNEST, Hull, bulk_of, hull_of
 from ....geometry.parts import convex_parts
-from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown
+from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown, warn_of
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import FARTHEST_VERTEX, MOST_VERTICES
 from ..blocks.polyhedron import Polyhedron
@@ -199,7 +198,7 @@ def _all_bodies(meshes: Sequence[Mesh]) -> list[Mesh]:
         bodies += own if len(own) == 1 else [body._replace(name=f"{mesh.name}_{i}") for i, body in enumerate(own)]
     if again:
         said = named([body.name for body in again])
-        warnings.warn(f"{len(again)} bodies are drawn twice, and read once: {said}", stacklevel=6)
+        warn_of(f"{len(again)} bodies are drawn twice, and read once: {said}")
     count = Counter(body.name for body in bodies)
     return [body if count[body.name] == 1 else body._replace(name=f"{body.name}_{i}") for i, body in enumerate(bodies)]
 
@@ -364,7 +363,7 @@ def _say_dented(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | 
     whole = sum(bound.of_hull - bound.enclosed for bound in dented) / total
     if convex == "hull":
         said = named([f"{bound.body.name} {bound.added:.2%}" for bound in dented])
-        warnings.warn(f"convex='hull' adds volume to {len(dented)} bodies: {said}; to all {whole:.2%}", stacklevel=5)
+        warn_of(f"convex='hull' adds volume to {len(dented)} bodies: {said}; to all {whole:.2%}")
         return
     others = f", the most of {len(dented)} such bodies of {len(bounds)}" if len(dented) > 1 else ""
     raise ValueError(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -12,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ....geometry.hull import prism
-from ....quantities import Array, named, shown
+from ....quantities import Array, named, shown, warn_of
 from ..blocks.compound import Compound, FlatBlock, SolidBlock
 from ..blocks.polygon import InwardsError, Polygon
 from ..builders.in_plane import MOST_BODIES
@@ -93,7 +92,7 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
     outlines, others = _outlines(path, [each for each in entities if layers is None or each.dxf.layer in layers])
     _warn_of_repairs(path, [*auditor.errors, *auditor.fixes])
     if left := {kind: count for kind, count in others.items() if kind in AREAS}:
-        warnings.warn(f"path = {path}: only closed polylines are read; left out are {_counted(left)}", stacklevel=4)
+        warn_of(f"path = {path}: only closed polylines are read; left out are {_counted(left)}")
     return DxfDrawing(outlines, unit)
 
 
@@ -147,7 +146,7 @@ def _warn_of_repairs(path: Path, repairs: Sequence[Any]) -> None:
     """Warn of a drawing that was repaired while it was read."""
     if repairs:
         said = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
-        warnings.warn(f"path = {path} is damaged, and was repaired while it was read: {said}", stacklevel=4)
+        warn_of(f"path = {path} is damaged, and was repaired while it was read: {said}")
 
 
 class Held(NamedTuple):

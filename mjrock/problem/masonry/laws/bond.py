@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
 
-from ....quantities import Array, Implausible, Within, keep, keep_declared, require_flag, require_within, short_repr
+from ....quantities import (
+    Array,
+    Implausible,
+    Within,
+    keep,
+    keep_declared,
+    require_flag,
+    require_within,
+    short_repr,
+    warn_of,
+)
 from .bond_law import HARDENED, YIELDS
 
 LEAST_POINTS = 3
@@ -94,7 +103,7 @@ class Bond:
                 "range of the tension is then above 0"
             )
         if odd := self._doubt():
-            warnings.warn(odd, Implausible, stacklevel=3)
+            warn_of(odd, Implausible)
 
     def _doubt(self) -> str:
         """What is odd about strengths and energies, in words, empty where nothing is."""
