@@ -177,7 +177,7 @@ def require_readable(figure: Figure) -> None:
         raise ValueError(f"the figure is {width:.3g} in wide; at most {WIDEST:g} in are shown in full size")
     for text in figure.findobj(Text):
         assert isinstance(text, Text)
-        if text.get_visible() and text.get_text().strip() and (size := text.get_fontsize()) < SMALLEST - 1e-6:
+        if text.get_visible() and text.get_text().strip() and (size := float(text.get_fontsize())) < SMALLEST - 1e-6:
             raise ValueError(f"text {text.get_text()!r} has {size:g} pt; at least {SMALLEST:g} pt can be read")
     for text in _words(figure):
         box = text.get_window_extent()

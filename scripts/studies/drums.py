@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting.figures import BLACK, BLUE, GREEN, ORANGE
+from mjrock.plotting.style import Look
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 from scripts.shared.labels import beside
@@ -36,7 +37,7 @@ LOWEST, HIGHEST = 0.9, 16.0
 """Amplitudes [g tan(alpha)]."""
 FOLLOWED = 10.0
 """How long a column is followed after the pulse [1/p]."""
-LOOKS = (
+LOOKS: tuple[Look, ...] = (
     {"color": ORANGE},
     {"color": ORANGE},
     {"color": GREEN},
