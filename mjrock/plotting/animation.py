@@ -433,7 +433,8 @@ def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tupl
     is_below, (wide, high) = case is not None and filmed(case).is_below, bodies.extent_seen
     shown = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST)) if is_below else OTHERWISE
     figure: Any = Figure(figsize=(WIDE, shown + is_below * STRIP * count), layout="constrained")
-    part, others = figure, None
+    part: Any = figure
+    others: Any = None
     if count:
         ratios = {"height_ratios": (shown, STRIP * count)} if is_below else {"width_ratios": (1.0, 1.5)}
         part, others = figure.subfigures(1 + is_below, 2 - is_below, **ratios)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from ..files import replacing
-from ..quantities import require_kind, require_path
+from ..quantities import require_kind, require_path, warn_of
 from ..result.response import Response
 from .arguments import picture
 from .figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, Picture
@@ -139,14 +139,16 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
 
     It has no traces of when and by what it was made (reproducible bytes).
 
-    A path without a suffix is that of a PNG. Returns the path that was written. What a page cannot show well is not
-    written; `figure.savefig` of Matplotlib writes everything.
+    A path without a suffix is that of a PNG. Returns the path that was written.
 
     Raises:
         TypeError: for what is not a figure or an Axes.
-        ValueError: for a suffix that Matplotlib does not write, for a figure wider than 7.4 in, text smaller than 8 pt,
-            words that the edge cuts off, one of Matplotlib's own colours, and a line with the name of a solver and
-            another colour than that of `STYLES`.
+        ValueError: for a suffix that Matplotlib does not write.
+
+    Warns:
+        UserWarning: of what a page cannot show well: a figure wider than 7.4 in, text smaller than 8 pt, words that the
+            edge cuts off, one of Matplotlib's own colours, and a line with the name of a solver and another colour than
+            that of `STYLES`.
     """
     require_kind("figure", figure, Figure, Axes)
     drawn = figure_of(figure) if isinstance(figure, Axes) else figure
@@ -161,30 +163,29 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
     try:
         with replacing(path) as partial:
             drawn.savefig(partial, dpi=FINE, metadata={"Software": None} if path.suffix == ".png" else None)
-            require_readable(drawn)
+            unreadable = list(_unreadable(drawn))
     finally:
         drawn.set_dpi(dpi)
+    if unreadable:
+        more = f", and {len(unreadable) - 1} more" if len(unreadable) > 1 else ""
+        warn_of(f"{path.name} is not one that a page can show well: {unreadable[0]}{more}")
     return path
 
 
-def require_readable(figure: Figure) -> None:
-    """Refuse a figure that a page cannot show well, once it is drawn and has all its texts.
-
-    Raises:
-        ValueError: as `save` says.
-    """
+def _unreadable(figure: Figure) -> Iterator[str]:
+    """What a page cannot show well of a figure that is drawn and has all its texts, see `save`."""
     if (width := figure.get_figwidth()) > WIDEST + 1e-6:
-        raise ValueError(f"the figure is {width:.3g} in wide; at most {WIDEST:g} in are shown in full size")
+        yield f"the figure is {width:.3g} in wide; at most {WIDEST:g} in are shown in full size"
     for text in figure.findobj(Text):
         assert isinstance(text, Text)
         if text.get_visible() and text.get_text().strip() and (size := float(text.get_fontsize())) < SMALLEST - 1e-6:
-            raise ValueError(f"text {text.get_text()!r} has {size:g} pt; at least {SMALLEST:g} pt can be read")
+            yield f"text {text.get_text()!r} has {size:g} pt; at least {SMALLEST:g} pt can be read"
     for text in _words(figure):
         box = text.get_window_extent()
-        if text.get_text().strip() and not (figure.bbox.padded(EDGE).count_contains(box.corners()) == 4):
-            raise ValueError(f"text {text.get_text()!r} is cut off by the edge of the figure")
+        if text.get_text().strip() and figure.bbox.padded(EDGE).count_contains(box.corners()) != 4:
+            yield f"text {text.get_text()!r} is cut off by the edge of the figure"
     for artist in figure.findobj(lambda one: isinstance(one, Line2D | Patch | Collection)):
-        _require_colours(artist)
+        yield from _foreign_colours(artist)
 
 
 def _words(figure: Figure) -> list[Text]:
@@ -200,15 +201,15 @@ def _words(figure: Figure) -> list[Text]:
     return [text for text in found if text.get_visible()]
 
 
-def _require_colours(artist: Artist) -> None:
-    """Refuse what has one of Matplotlib's own colours, or the name of a solver and not its colour."""
+def _foreign_colours(artist: Artist) -> Iterator[str]:
+    """What has one of Matplotlib's own colours, or the name of a solver and not its colour."""
     label, of = str(artist.get_label()), {str(style["label"]): style["color"] for style in STYLES.values()}
     solver = next((name for name in of if label == name or label.startswith((f"{name},", f"{name}:"))), None)
     for colour in _colours(artist):
         if colour in TABLEAU_COLORS.values():
-            raise ValueError(f"{label!r} has the colour {colour} of Matplotlib; take those of plotting.PALETTE")
+            yield f"{label!r} has the colour {colour} of Matplotlib; take those of plotting.PALETTE"
         if solver is not None and colour != of[solver]:
-            raise ValueError(f"{label!r} has the colour {colour}; that of its solver is {of[solver]}")
+            yield f"{label!r} has the colour {colour}; that of its solver is {of[solver]}"
 
 
 def _colours(artist: Artist) -> set[str]:

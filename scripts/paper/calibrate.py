@@ -143,7 +143,7 @@ def save_residuals(title: str, fit: Regression, picture: Path) -> None:
     """Residuals against every variable."""
     values = {name: np.array([getattr(one, name) for one in fit.combinations]) for name in NAMES}
     variables = {label: (values[name], "log") for name, label in SYMBOLS.items()}
-    variables |= {"softness": (fit.groups.softness, "log"), "|e| asked for": (np.exp(-fit.loss), "linear")}
+    variables |= {"softness": (np.asarray(fit.groups.softness), "log"), "|e| asked for": (np.exp(-fit.loss), "linear")}
     plotting.save(law_pictures.residuals(title, fit.predicted / fit.xi, variables), picture)
 
 

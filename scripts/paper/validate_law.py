@@ -136,7 +136,7 @@ def possible(law: DampingLaw, one: Combination, wanted: float) -> bool:
     low, high = law.reach(wall, one.k_base)
     peak = wall.rotation_at(wanted**2 * float(wall.potential_energy(one.amplitude * wall.alpha)))
     uplift = Groups.of(wall, mr.Restitution.from_geometry(wall.alpha), one.k_base).softness * wall.alpha
-    return low <= mr.Restitution.from_geometry(wall.alpha).base <= high and peak > uplift
+    return bool(low <= mr.Restitution.from_geometry(wall.alpha).base <= high and peak > uplift)
 
 
 def table_2(compared: Mapping[int, Sequence[DampingLaw]], out: Path) -> str:

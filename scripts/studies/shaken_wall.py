@@ -188,7 +188,7 @@ def stiffness_of(joint: str, cuts: Sequence[int]) -> float:
 def wall_of(points: int = POINTS, way: Way | None = None, cuts: Sequence[int] = range(COURSES + 1)) -> mr.Masonry:
     """The wall between its base and its beam, with its joists on their supports."""
     way = way or Way()
-    blocks = [box((0.0, 0.0, -0.1), (THICK, LENGTH, 0.0), fixed=True, name="base")]
+    blocks: list[mr.Polyhedron | mr.Compound] = [box((0.0, 0.0, -0.1), (THICK, LENGTH, 0.0), fixed=True, name="base")]
     blocks += [part(first, end) for first, end in pairwise(cuts)]
     blocks.append(box((0.0, 0.0, HEIGHT), (THICK, LENGTH, HEIGHT + 0.1), density=7850.0, name="beam"))
     for level, (first, end) in enumerate(LEVELS):

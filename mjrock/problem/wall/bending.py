@@ -14,7 +14,8 @@ from .block import Block
 
 CURVE_POINTS = 20_001
 """Rotations at which the curve is looked at."""
-DEEPEST_FLOOR, TYPICAL, DENSITIES = 5.0, 2500.0, get_args(Density)[1]
+DEEPEST_FLOOR, TYPICAL = 5.0, 2500.0
+DENSITIES: Within = get_args(Density)[1]
 """Largest depth of a floor, over the thickness of the wall [-], its density where it has one of between one and as many
 thicknesses, and those that a block may have [kg/m3]."""
 
@@ -149,10 +150,8 @@ class VerticalBending:
             ValueError: for a load that is too small or too large for a block.
         """
         thickness = 2 * self.wall.b
-        least, most = (
-            self._specific * thickness * DENSITIES.low,
-            self._specific * DEEPEST_FLOOR * thickness * DENSITIES.high,
-        )
+        least = self._specific * thickness * DENSITIES.low
+        most = self._specific * DEEPEST_FLOOR * thickness * DENSITIES.high
         load = require_within("load", self.load, least, most, "N")
         return min(max(load / (self._specific * self.floor_depth), DENSITIES.low), DENSITIES.high)
 
