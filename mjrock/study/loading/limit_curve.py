@@ -80,8 +80,8 @@ def limit_curve(
     then stay where they are, and a step ends where a further line closes, from which another mechanism may go on. No
     steps in time are made, and joints have no stiffness. The curve ends where joints slide, since those of associated
     friction open as they do, and where a further joint would open as well and several hinges would move at once: `push`
-    follows both. Where several mechanisms have the same multiplier, as a corner
-    along its diagonal has, it goes on with one of them.
+    follows both. Where several mechanisms have the same multiplier, as a corner along its diagonal has, it goes on with
+    one of them.
 
     Args:
         masonry: the masonry, with dry joints.
