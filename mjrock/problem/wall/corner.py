@@ -34,7 +34,7 @@ class Corner:
         ValueError: for a value outside its range.
 
     Examples:
-        >>> corner = mr.Corner(0.5, 4.0, angle=math.radians(30))
+        >>> corner = mr.Corner(0.5, 4.0, angle=0.5236)
         >>> case = mr.Case(corner.block, 0.0, 10.0, effects=corner.masses)
         >>> round(corner.multiplier, 4), round(mr.pushover(case).start, 4)
         (0.3714, 0.3714)
