@@ -136,3 +136,9 @@ def test_a_push_along_the_diagonal_ends_in_the_blows_that_it_comes_to():
 def test_refused(made, given, message):
     with pytest.raises(ValueError, match=message):
         made(*given)
+
+
+@pytest.mark.parametrize(("given", "message"), [((10.0, 100.0, 1.2), "offset of the added mass"), ((2.0, 2.0), "swap")])
+def test_a_corner_that_no_wall_stands_for_is_refused_as_it_is_made(given, message):
+    with pytest.raises(ValueError, match=rf"thickness = {given[0]:g} m, height = .* are no corner .*{message}"):
+        mr.Corner(*given)

@@ -87,6 +87,20 @@ def test_it_ends_where_joints_slide():
     assert curve.ended.endswith("slide")
 
 
+def test_it_ends_where_lines_close_again_and_again():
+    """A corner that is pushed along a wall has many mechanisms of one multiplier."""
+    corner = mr.Masonry.corner(0.5, 4.0, math.pi / 6)
+    curve = mr.limit_curve(corner, None, angle=0.0, to=2.0, poses=2)
+    assert curve.ended in ("lines close again and again", "locks")
+    assert len(curve.multiplier) <= 3 + len(corner.lines.at)
+
+
+def test_a_tie_that_breaks_is_refused():
+    tie = mr.Tie(height=0.9, stiffness=1e6, strength=1e3, ultimate=0.05, block="block_0")
+    with pytest.raises(ValueError, match=r"effects\[0\], ultimate = 0\.05 m: limit_curve does not follow"):
+        mr.limit_curve(mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)]), 1, to=0.1, effects=tie)
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [({"to": 0.0}, "to = 0"), ({"to": 0.1, "poses": 1}, "poses = 1"), ({"to": 0.1, "direction": 2}, "direction")],

@@ -181,6 +181,7 @@ def test_the_pose_of_a_response_has_supports_and_centroids_without_masses():
     ("given", "said"),
     [
         ({"pose": [[0.0, 0.0]]}, "pose"),
+        ({"pose": [[0.0, 0.0, 5.73]]}, r"rotation of 5\.73 rad; .* radians"),
         ({"pose": [[0.0, 1.0, 0.0]]}, "no multiplier of the forces that grow holds the masonry"),
         ({"pose": [[0.0, 0.0, 0.0]], "associated": False}, "a pose takes associated friction"),
     ],
