@@ -18,7 +18,7 @@ from ...problem.masonry.limit.collapse import Collapse, UnbalancedError
 from ...problem.masonry.limit.pose import Moves, gaps_of
 from ...problem.masonry.lines import free_numbers
 from ...problem.masonry.masonry import Masonry
-from ...problem.wall.effect import Anchored, Effect
+from ...problem.wall.effect import Effect
 from ...quantities import Array, Flags, Integers, named, require_kind, require_whole, require_within
 from .limit_analysis import collapse_multiplier, horizontal
 
@@ -93,7 +93,7 @@ def limit_curve(
         The `LimitCurve`: `displacement` [m], `multiplier` [-], `pose` and `d_0`.
 
     Raises:
-        TypeError, ValueError: as `collapse_multiplier` does, and for a tie that breaks: its elongation is not followed.
+        TypeError, ValueError: as `collapse_multiplier` does.
 
     Examples:
         >>> column = mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 3)
@@ -103,7 +103,6 @@ def limit_curve(
     require_kind("masonry", masonry, Masonry)
     to = require_within("to", to, 1e-6, 100.0, "m")
     step = to / require_whole("poses", poses, 2, 10_000)
-    _require_unbroken(effects)
     found = collapse_multiplier(masonry, direction, angle=angle, effects=effects)
     path = Path.of(masonry, horizontal(masonry, direction, angle))
     curve = [(0.0, found.multiplier, path.rest)]
@@ -133,16 +132,6 @@ def limit_curve(
         curve.append((path.gone(pose), found.multiplier, pose))
     displacement, multipliers, gone = zip(*curve, strict=True)
     return LimitCurve(np.array(displacement), np.array(multipliers), np.array(gone), ended)
-
-
-def _require_unbroken(effects: Sequence[Effect] | Effect) -> None:
-    """Raise a ValueError for a tie that breaks."""
-    for i, effect in enumerate([effects] if isinstance(effects, Effect) else effects):
-        if isinstance(effect, Anchored) and effect.law.ultimate < math.inf:
-            raise ValueError(
-                f"effects[{i}], ultimate = {effect.law.ultimate:g} m: limit_curve does not follow how far a tie is "
-                "drawn out; leave ultimate out and compare the elongation, or take push"
-            )
 
 
 def _ended(d: float, multiplier: float, to: float, found: Collapse) -> str:
