@@ -22,7 +22,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.method import METHOD
-from mjrock.plotting.figures import BLACK, ORANGE
+from mjrock.plotting.figures import GREEN, ORANGE
 from mjrock.quantities import Array
 from scripts.shared import cli
 from scripts.shared.labels import beside
@@ -33,7 +33,7 @@ WALL = mr.Block.from_size(0.6, 4.2)
 ACCURACIES = (1e-3, 1e-4, 1e-5)
 LINES: dict[bool, dict[str, Any]] = {
     True: {"color": ORANGE, "linestyle": "-", "linewidth": 1.8},
-    False: {"color": BLACK, "linestyle": "--", "linewidth": 1.2},
+    False: {"color": GREEN, "linestyle": "--", "linewidth": 1.2},
 }
 """Of runs by Coulomb's law, and of runs on the rows."""
 
@@ -121,12 +121,12 @@ def directions(repeats: int, h: float = 1e-4) -> str:
 
 def draw_cube(ax: Axes) -> Axes:
     """The path of the cube in the first half second."""
-    for coulomb, label, at in ((True, "Coulomb's law", (0.02, -1.2)), (False, "MuJoCo's own friction", (0.02, 4.0))):
+    for coulomb, label, at in ((True, "Coulomb's law", (0.02, -1.0)), (False, "MuJoCo's own friction", (0.02, 4.0))):
         run = thrown(0.5, coulomb=coulomb)
         x, z = run.pose[:, 0, 0], 1e3 * (run.pose[:, 0, 1] - run.pose[0, 0, 1])
         ax.plot(x, z, **LINES[coulomb])
         ax.text(*at, label, color=LINES[coulomb]["color"], fontsize=8)
-    ax.set_ylim(bottom=-2.0)
+    ax.set_ylim(bottom=-1.6)
     ax.set_xlabel("way of the cube [m]")
     ax.set_ylabel("rise [mm]")
     return ax
@@ -143,7 +143,7 @@ def draw_wall(ax: Axes, frictions: Array, found: dict[tuple[bool, float], list[f
     ax.text(0.0, 0.25, "MuJoCo's own friction", color=LINES[False]["color"], fontsize=8)
     ax.set_xlabel("coefficient of friction of the side [-]")
     ax.set_ylabel(r"$|e|$ of the first rebound [-]")
-    ax.set(xlim=(-0.03, 0.82), ylim=(0.2, 0.39))
+    ax.set(xlim=(-0.03, 1.27), ylim=(0.2, 0.39), xticks=frictions[::2])
     return ax
 
 

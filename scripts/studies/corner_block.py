@@ -104,7 +104,7 @@ def drawn(shares: dict[float, list[float]], stiffnesses: Sequence[float], answer
     ax.axhspan(low, high, color="0.92")
     ax.text(stiffnesses[0], low, " bounds of theory for a corner", fontsize=SMALL, va="bottom", color="0.3")
     ax.axhline(edge, color="0.5", linestyle="-.", linewidth=0.8)
-    ax.text(stiffnesses[0], edge, " about an edge, Housner", fontsize=SMALL, va="bottom", color="0.3")
+    ax.text(stiffnesses[0], edge, " about an edge,\n Housner", fontsize=SMALL, va="top", color="0.3")
     ax.set_xscale("log")
     ax.set_xlabel(r"stiffness of the joint $k_n$ [N/m$^3$]")
     ax.set_ylabel("energy after a corner impact\nover that before [-]")

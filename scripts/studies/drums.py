@@ -45,8 +45,8 @@ LOOKS: tuple[Look, ...] = (
     {"color": BLUE},
 )
 """Colour and line of each column."""
-RISE = {(4, 2): 7, (8, 2): -5, (4, 4): -5}
-"""How far the name of a column stands above the end of its curve [pt]."""
+NAMED = {(4, 2): 5.0}
+"""Frequency at which a column is named at the left of its curve, where others have the same end."""
 
 
 def pulse(frequency: float, amplitude: float) -> mr.GroundMotion:
@@ -117,7 +117,9 @@ def drawn(frequencies: Sequence[float], least: NDArray[np.float64], theory: NDAr
             continue  # it falls together with two drums
         ax.plot(frequencies, curve, marker=marker, markersize=4, linewidth=1.4, **look)
         said = "1 and 2 drums" if column == (2, 2) else name(*column)
-        beside(ax, (frequencies[-1], curve[-1]), said, look["color"], (8, RISE.get(column, 0)))
+        at = min(NAMED.get(column, math.inf), frequencies[-1])
+        place = at, float(np.interp(at, frequencies, curve))
+        beside(ax, place, said, look["color"], (-8 if column in NAMED else 8, 0))
     ax.text(frequencies[0], 1.7, "below $\\omega_p/p = 4$ all are alike,\nbut for joints of four lines", fontsize=8)
     ax.set_yscale("log")
     ax.set_xlim(0.3, frequencies[-1] + 0.1)

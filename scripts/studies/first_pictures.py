@@ -18,14 +18,14 @@ from scripts.shared import cli
 def with_every_effect() -> mr.Case:
     """A wall that carries one of each effect."""
     wall = mr.Block.from_size(
-        thickness=0.7, height=6.0, length=4.0, gable=mr.Gable(1.2), openings=[mr.Opening(width=1.2, height=2.2)]
+        thickness=0.7, height=6.0, length=4.0, gable=mr.Gable(1.2), openings=[mr.Opening(width=1.0, height=2.0)]
     )
     effects = (
         mr.Tie(height=5.2, stiffness=2e6, strength=2e4, length=2.0),
         mr.Thrust(height=4.4, force=3e3),
-        mr.Load(force=2e4, height=6.0, offset=0.15),
-        mr.AddedMass(mass=500.0, height=6.0, offset=-0.2),
-        mr.FrictionDamper(height=3.0, stiffness=2e6, slip_force=5e3, length=2.0),
+        mr.Load(force=2e4, height=6.0, offset=0.2),
+        mr.AddedMass(mass=500.0, height=5.65, offset=-0.1),
+        mr.FrictionDamper(height=3.4, stiffness=2e6, slip_force=5e3, length=2.0),
         mr.Damper(height=0.7, c=1e4, length=2.0),
     )
     return mr.Case(wall, 0.0, 1.0, side_stop=mr.SideStop(4.0), effects=effects)
@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     plotting.save(plotting.sketch(with_every_effect(), arguments=True), out / "effects.png")
     responses = of_the_tutorial(0.5 if args.quick else 15.0)
-    plotting.save(plotting.history(responses, labels=["with the tie", "as it is"]), out / "tutorial.png")
+    plotting.save(plotting.history(responses, labels=["with the tie", "without the tie"]), out / "tutorial.png")
     for response in responses:
         print(response.message)
     motions = of_a_record()

@@ -1,6 +1,6 @@
 """A wall in running bond under a strong sine, by explicit steps: it slides, falls, and lies in a heap.
 
-Blocks that leave their joints meet the ground and each other. Draws the wall at five times, and prints how many blocks
+Blocks that leave their joints meet the ground and each other. Draws the wall at six times, and prints how many blocks
 fall and how well the books of energy close through the collapse.
 """
 
@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 import mjrock as mr
 from mjrock import plotting
@@ -40,6 +41,8 @@ def drawn(answer: mr.Response) -> Figure:
         plotting.blocks(ax, masonry, answer.pose[row], joints=False, limits=limits)
         ax.set_title(f"{answer.t[row]:.1f} s", fontsize=9)
         ax.axis("off")
+    ax = axes.flat[0]
+    ax.add_artist(AnchoredSizeBar(ax.transData, 1.0, "1 m", "center", frameon=False, sep=4))
     return figure
 
 

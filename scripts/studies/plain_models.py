@@ -182,6 +182,7 @@ def picture(
             said = f"{name}, walls of Table 1" if resolved == RESOLVED[0] else None
             ax.loglog(near, np.maximum(np.abs(both[i]), 1e-6), ".", color=colour, alpha=0.5, label=said)
     ax.axhline(0.01, color="0.7", linewidth=0.8)
+    ax.text(0.99, 0.011, "1 %", transform=ax.get_yaxis_transform(), ha="right", va="bottom", fontsize=9, color="0.3")
     ax.set(xlabel=r"$\omega h$ [-]", ylabel="error of |e| at the first rebound [-]", ylim=(1e-5, 1))
     ax.legend(frameon=False, fontsize=9)
     return figure

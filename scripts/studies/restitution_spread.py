@@ -61,8 +61,8 @@ def drawn(peaks: dict[float, Array], fell: dict[float, Flags], fits: Sequence[mr
     decay.set(xlabel="rebound", ylabel="peak over release [-],\nmedian and 16 to 84 %", ylim=(0, None))
     for sd, fit, marker in zip(fell, fits, "os^", strict=True):
         plotting.fragility(ends, fit, levels, fell[sd].mean(axis=0), f"sd {sd:g}", marker)
-    for ax in (decay, ends):
-        ax.legend(frameon=False, fontsize=8)
+    decay.legend(frameon=False, fontsize=8, title="standard deviation of $e$", title_fontsize=8)
+    ends.legend(frameon=False, fontsize=8, title="median, dispersion", title_fontsize=8, loc="lower right")
     return figure
 
 
