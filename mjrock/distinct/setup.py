@@ -19,7 +19,7 @@ from ..scene.course import Course
 from ..scene.explicit_step import STEP_TAKEN
 from ..scene.scene import Scene
 from .assembly import begin_open, copied, guide, moved_by, started, system_of, take_grips
-from .kinds.lists import LAWS, links_of
+from .kinds.lists import laws_of, links_of
 from .limit import Impacts, longest_step
 from .memory import Memory, memory_of, recalled
 from .search.contact_search import ContactSearch
@@ -145,7 +145,7 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
     step = impacts.step(STEP_TAKEN * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
-    share, system = step / limit, system._replace(laws=tuple(law.of(scene, system.lines) for law in LAWS))
+    share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
     of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
     search = drawn.begun(blocks)
     started(system, course.pose, course.velocity)

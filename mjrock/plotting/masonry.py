@@ -14,8 +14,9 @@ from ..geometry.poses import at_rest
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.limit.collapse import Collapse
+from ..problem.masonry.limit.pose import pose_of_all
 from ..problem.masonry.masonry import Masonry
-from ..quantities import require_array, require_flag, require_kind, require_within
+from ..quantities import Array, require_flag, require_kind, require_within
 from ..result.bodies import Moving
 from ..result.motion import sample_at
 from ..result.response import Response
@@ -52,7 +53,7 @@ def blocks(
         ax: where to draw.
         masonry: the masonry, or a response of it, which is drawn as it was at a time.
         pose: x, z and theta of each block that is not fixed [m, m, rad], shape (bodies, 3), in space (bodies, 7), such
-            as `answer.pose[-1]`; None draws masonry at rest.
+            as `answer.pose[-1]`, or of all blocks, as `answer.at(t)`; None draws masonry at rest.
         at: time of the response that is drawn [s]; None is the end.
         forces: "thrust" draws the line of thrust over the blocks, see `thrust`, and "bars" a bar at each joint along
             its force, as long as that is large, through the place where it acts. "cracks" draws joints that
@@ -84,7 +85,7 @@ def blocks(
             require_shown("forces", forces, run)
     magnified, freedom = require_within("magnified", magnified, 0.0, 1e6), SPACE if case.in_space else PLANE
     still = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
-    placed = (still if pose is None else require_array("pose", pose, still.shape))[None]
+    placed = (still if pose is None else _of_free(case.masonry, pose))[None]
     moving = Moving(case, time, placed, magnified)
     if case.in_space:
         bodies = Solids(moving, camera, required_limits(limits, "xyz"))
@@ -99,6 +100,18 @@ def blocks(
     if run is not None and forces is not None:
         forces_on(ax, run, moving, forces, animated=False)(0)
     return ax
+
+
+def _of_free(masonry: Masonry, pose: ArrayLike) -> Array:
+    """The pose of the free blocks, from one of them or of all blocks.
+
+    Raises:
+        ValueError: as `pose_of_all`, and for fixed blocks that have moved.
+    """
+    moved, free = pose_of_all(masonry, pose), list(masonry.free)
+    if (np.delete(moved, free, axis=0)[:, : 3 if masonry.in_space else None] != 0).any():
+        raise ValueError("pose has fixed blocks that have moved; give the response whose supports move them")
+    return moved[free]
 
 
 def _joints(ax: Axes, joints: Sequence[Joint]) -> None:

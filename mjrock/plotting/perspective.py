@@ -22,8 +22,8 @@ ZOOM = 1.0
 """Size of a picture before it is enlarged [-]."""
 MARGIN, TITLED = (0.2, 0.4), (0.2, 0.8)
 """Width and height that stay free around a view, for the scale bar, and for a title too [inch]."""
-BELOW = 0.05
-"""How far a scale bar stands below what is seen, over its height [-]."""
+BELOW, BELOW_FLAT = 0.05, 0.02
+"""How far a scale bar stands below what is seen, over its height, and at least over its width [-]."""
 FINE, DENSE = 2, 150
 """Pixels that are drawn along each side of one of the picture, where it has fewer than so many to an inch."""
 EDGE, RIM = 0.55, 0.1
@@ -152,7 +152,7 @@ def _scale_bar(ax: Axes3D, bodies: Solids, *, animated: bool) -> None:
     """Draw a line of 1, 2 or 5 times a power of ten [m] across the line of sight, below what is seen at the left."""
     (left, low), (right, high) = bodies.seen
     length = round_length(float(right - left))
-    start = np.array([left, low - BELOW * (high - low)])
+    start = np.array([left, low - max(BELOW * (high - low), BELOW_FLAT * (right - left))])
     ends = np.array([start, start + np.array([length, 0.0])]) @ bodies.across
     (line,) = ax.plot(*ends.T, color="0.15", linewidth=2.5, solid_capstyle="butt", zorder=6, clip_on=False)
     text = ax.text(*ends[1], f"  {length:g} m", va="center", fontsize=8, zorder=6)

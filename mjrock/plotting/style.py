@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -100,7 +101,7 @@ def wrapped(text: str, wide: float, size: float) -> str:
 
 def power_of_ten(value: float) -> str:
     """A number as a figure has it: 5e8 as 5 times ten to the eighth, and in full from 0.001 to 9999."""
-    if value == 0 or 1e-3 <= abs(value) < 1e4:
+    if value == 0 or not math.isfinite(value) or 1e-3 <= abs(value) < 1e4:
         return f"{value:.4g}"
     first, exponent = f"{value:.3e}".split("e")
     factor = "" if float(first) == 1 else rf"{float(first):.4g} \cdot "

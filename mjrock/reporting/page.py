@@ -28,7 +28,7 @@ from .subject import Reported, reported
 from .texts import DASH, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
 
-HEADS = ("project", "client", "author", "date")
+HEADS = ("project", "client", "author", "date", "place")
 """What the title block has a place for."""
 Responses = Response | Sequence[Response] | Mapping[str, Response | Sequence[Response]]
 
@@ -66,7 +66,8 @@ def report(
         e, contacts: what the responses were computed with, for the inputs.
         checks: of `mechanism_check` and `dynamic_check`, by the names of their mechanisms or variants: one or several
             of each, at most one of them kinematic.
-        project: "project", "client", "author" and "date" of the title block, which leaves room for those not given.
+        project: "project", "client", "author", "date" and "place" of the title block, which leaves room for what is not
+            given.
         language: "en" or "it". Texts of yours stay as they are. `mjrock/reporting/texts.toml` has all others.
         basis: what inputs rest on, by their names in the program, such as {"density": "3 cores, 2024", "k_base": "E of
             the mortar 800 MPa, 30 mm"}.
@@ -188,9 +189,9 @@ def required_sections(sections: object) -> dict[str, object]:
 
 
 def title_block(block: Mapping[str, str], words: Words) -> Markup:
-    """Project, client, author and date, with room to write where one is not given."""
+    """Project, client, author, date and place, with room to write where one is not given."""
     cells = [cell for name in HEADS for cell in (words(f"head_{name}"), block.get(name, ""))]
-    return table((), [cells[:4], cells[4:]], kind="block")
+    return table((), [cells[i : i + 4] for i in range(0, len(cells), 4)], kind="block")
 
 
 def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:

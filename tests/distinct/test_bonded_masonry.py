@@ -9,7 +9,7 @@ import pytest
 from bonded import MORTAR, joint
 
 import mjrock as mr
-from mjrock.distinct.setup import setup_of_masonry
+from mjrock.distinct.setup import setup_of
 
 HUGE = mr.Bond(1e9, 1e9, 1e12, 1e12)
 WEAK = {"k_n": 2e9, "k_s": 1e9, "points": 3, "frequency": 500.0, "bond": mr.Bond(2e3, 2.8e3, 0.05, 0.5)}
@@ -311,7 +311,7 @@ def test_each_line_of_a_bond_has_its_part_of_the_area(in_space):
     masonry = mr.Masonry.column(0.5, 2.0, 2, **bond)
     if not in_space:
         masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 1.0)] * 2, **bond)
-    system = setup_of_masonry(mr.MasonryCase(masonry, 0.1), None).system
+    system = setup_of(mr.MasonryCase(masonry, 0.1), None, None).system
     for group in range(len(masonry.joints)):
         bonds = system.laws[0].rows[system.lines["group"] == group]
         np.testing.assert_allclose(bonds["share"], bonds["k"] / bonds["k"].sum(), rtol=1e-12)

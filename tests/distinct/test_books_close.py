@@ -225,7 +225,7 @@ def test_what_wedged_springs_hold_counts_as_energy_that_there_was(share, fails):
         rounding=0.0,
     )
     with pytest.raises(RuntimeError, match=r"0\.10% of the energy there was") if fails else nullcontext():
-        require_sound(run, {"timestep": 1e-3})
+        require_sound(run, 1e-3)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])

@@ -13,7 +13,7 @@ import numpy as np
 
 import mjrock as mr
 from mjrock.distinct.search.solids import Solids
-from mjrock.distinct.setup import setup_of_masonry
+from mjrock.distinct.setup import setup_of
 from mjrock.geometry.poses import rotations
 from mjrock.problem.masonry.blocks.joints_in_space import SpaceJoint
 from mjrock.problem.masonry.lines import Lines
@@ -214,7 +214,7 @@ def pushed_beside(scene: Scene) -> bool:
 
 def default_step(scene: Scene) -> float:
     """The step that explicit steps take of themselves for masonry [s]."""
-    setup = setup_of_masonry(masonry_case(scene), None)
+    setup = setup_of(masonry_case(scene), None, None)
     return setup.share * setup.limit
 
 

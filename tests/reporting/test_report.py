@@ -215,6 +215,7 @@ def test_what_is_written_is_shown_and_never_run():
 def test_a_title_block_leaves_room_for_what_is_not_given():
     text, _ = whole("en")
     assert "<td>Author</td><td></td><td>Date</td><td></td>" in text
+    assert "<td>Place</td><td></td>" in text
 
 
 def test_formulae_are_mathml():
@@ -435,7 +436,7 @@ def test_a_sketch_names_values_or_arguments():
         ({"checks": {"a": [3]}}, r"checks\['a'\] = 3"),
         ({"checks": {"a": []}}, r"checks\['a'\] is empty"),
         ({"checks": {"a": [CHECK, CHECK]}}, r"checks\['a'\] has 2 kinematic checks"),
-        ({"project": {"owner": "?"}}, "project has 'owner', which is not one of project, client, author, date"),
+        ({"project": {"owner": "?"}}, "project has 'owner', which is not one of project, client, author, date, place"),
         ({"project": "San Rocco"}, "project = 'San Rocco'"),
         ({"project": {"client": 3}}, r"project\['client'\] = 3"),
         ({"responses": []}, "responses is empty"),

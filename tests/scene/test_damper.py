@@ -123,7 +123,7 @@ def test_the_rate_at_which_a_damper_slows_a_mass(rate):
     scene, _ = sliding(rate * BLOCK.mass)
 
     def slowed(dampers):
-        return damping_rate(dampers, scene.potential.unmoved, scene.freedom, scene.bodies.principal)
+        return damping_rate(dampers, scene.potential.unmoved, scene.bodies.principal)
 
     assert slowed(scene.dampers) == pytest.approx(rate)
     contacts = mr.Contacts.from_damping(BLOCK, k_base=5e8, xi_base=0.05)

@@ -79,7 +79,9 @@ def test_the_check_by_hand(t, h, angle):
     levers = np.array([t, 1.5 * t + p / 3]) / math.sqrt(2)
     found = mr.mechanism_check(as_wall(t, h, angle), lambda T, xi: 0.1, confidence_factor=1.2)
     assert found.alpha_0 == pytest.approx(by_hand(t, h, math.radians(angle)), rel=1e-12)
-    assert mr.Corner(t, h, math.radians(angle)).multiplier == pytest.approx(found.alpha_0, rel=1e-12)
+    corner = mr.Corner(t, h, math.radians(angle))
+    assert corner.multiplier == pytest.approx(found.alpha_0, rel=1e-12)
+    assert mr.mechanism_check(corner, lambda T, xi: 0.1, confidence_factor=1.2).d_0 == found.d_0
     share = (weights @ heights) ** 2 / (weights.sum() * (weights @ heights**2))
     assert found.participation == pytest.approx(share)
     assert found.linear == pytest.approx(2 * found.alpha_0 * mr.GRAVITY / (share * 1.2))
@@ -136,3 +138,9 @@ def test_a_push_along_the_diagonal_ends_in_the_blows_that_it_comes_to():
 def test_refused(made, given, message):
     with pytest.raises(ValueError, match=message):
         made(*given)
+
+
+@pytest.mark.parametrize(("given", "message"), [((10.0, 100.0, 1.2), "offset of the added mass"), ((2.0, 2.0), "swap")])
+def test_a_corner_that_no_wall_stands_for_is_refused_as_it_is_made(given, message):
+    with pytest.raises(ValueError, match=rf"thickness = {given[0]:g} m, height = .* are no corner .*{message}"):
+        mr.Corner(*given)

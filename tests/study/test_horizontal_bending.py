@@ -115,3 +115,8 @@ def test_it_stands_a_slow_push_below_the_multiplier_and_falls_above(solve):
 def test_refused(given, message):
     with pytest.raises((TypeError, ValueError), match=message):
         mr.HorizontalBending(*given)
+
+
+def test_a_strip_that_would_slide_is_warned_of():
+    with pytest.warns(mr.Implausible, match=r"slides before it bends unless friction .* is 0\.8; 0\.4"):
+        mr.HorizontalBending(mr.Block.from_size(0.6, 2.0, 3.0), 12e3)

@@ -87,6 +87,28 @@ def test_it_ends_where_joints_slide():
     assert curve.ended.endswith("slide")
 
 
+def test_it_ends_where_lines_close_again_and_again():
+    """A corner that is pushed along a wall has many mechanisms of one multiplier."""
+    corner = mr.Masonry.corner(0.5, 4.0, math.pi / 6)
+    curve = mr.limit_curve(corner, None, angle=0.0, to=2.0, poses=2)
+    assert curve.ended in ("lines close again and again", "locks")
+    assert len(curve.multiplier) <= 3 + len(corner.lines.at)
+
+
+def test_a_tie_that_breaks_bears_nothing_from_there_on():
+    """A block of 0.6 by 2 m leans by theta; its tie at 1.9 m is then longer by 1.9 sin(theta), next to its height."""
+    column = mr.Masonry.stack([mr.Block.from_size(0.6, 2.0)])
+    tie = mr.Tie(height=1.9, stiffness=1e6, strength=1e3, ultimate=0.05, block="block_0")
+    bare, held = mr.limit_curve(column, 1, to=0.5), mr.limit_curve(column, 1, to=0.5, effects=tie)
+    broken = 1.9 * np.sin(held.pose[:, 0, 2]) > 0.052
+    assert broken[5:].any()
+    assert not broken[:2].any()
+    assert held.d_0 == pytest.approx(bare.d_0, rel=1e-3)
+    extra = held.multiplier - np.interp(held.displacement, bare.displacement, bare.multiplier)
+    assert np.abs(extra[broken]).max() < 1e-4
+    assert extra[~broken].min() > 0.9 * 1e3 * 1.9 / (column.blocks[1].mass * mr.GRAVITY)
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [({"to": 0.0}, "to = 0"), ({"to": 0.1, "poses": 1}, "poses = 1"), ({"to": 0.1, "direction": 2}, "direction")],

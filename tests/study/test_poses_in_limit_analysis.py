@@ -181,6 +181,7 @@ def test_the_pose_of_a_response_has_supports_and_centroids_without_masses():
     ("given", "said"),
     [
         ({"pose": [[0.0, 0.0]]}, "pose"),
+        ({"pose": [[0.0, 0.0, 5.73]]}, r"rotation of 5\.73 rad; .* radians"),
         ({"pose": [[0.0, 1.0, 0.0]]}, "no multiplier of the forces that grow holds the masonry"),
         ({"pose": [[0.0, 0.0, 0.0]], "associated": False}, "a pose takes associated friction"),
     ],
@@ -202,3 +203,16 @@ def test_a_column_that_leans_as_one_is_a_block():
     found = mr.collapse_multiplier(column, 1, pose=lean)
     assert found.multiplier == pytest.approx(math.tan(math.atan2(0.6, 3.0) - 0.05), rel=1e-9)
     assert found.moving == ("block_0", "block_1", "block_2")
+
+
+def test_a_tie_that_the_pose_has_made_shorter_or_has_torn_bears_nothing():
+    column, tie = mr.Masonry.stack([mr.Block.from_size(0.6, 2.0)]), {"height": 1.9, "stiffness": 1e6, "strength": 1e3}
+    torn = mr.Tie(**tie, ultimate=0.05, block="block_0")
+    for theta, effect in ((-0.1, mr.Tie(**tie, block="block_0")), (0.1, torn)):
+        half = 0.5 * math.copysign(0.6, theta)
+        x, z = -half * (math.cos(theta) - 1) + math.sin(theta), half * math.sin(theta) + math.cos(theta) - 1
+        pose = [[x, z, theta]]
+        bare = mr.collapse_multiplier(column, 1, pose=pose).multiplier
+        assert mr.collapse_multiplier(column, 1, pose=pose, effects=effect).multiplier == pytest.approx(bare, rel=1e-9)
+    held = mr.collapse_multiplier(column, 1, pose=pose, effects=mr.Tie(**tie, block="block_0")).multiplier
+    assert held > bare + 0.05

@@ -43,6 +43,11 @@ def numbered(links: Tables) -> Tables:
     return links
 
 
+def laws_of(scene: Scene, lines: Rows) -> Tables:
+    """The laws of the joints of a scene, which take over what they hold of its lines."""
+    return tuple(law.of(scene, lines) for law in LAWS)
+
+
 def no_laws(d: int) -> Tables:
     """The laws of dry joints in d directions."""
     return tuple(law(law.table(d, 0)) for law in LAWS)  # type: ignore[call-arg]

@@ -31,10 +31,11 @@ class Corner:
         density: mass density [kg/m3], 200 to 30000.
 
     Raises:
-        ValueError: for a value outside its range.
+        ValueError: for a value outside its range, or sizes whose wall and masses are beyond those of a `Block` and of
+            `AddedMass`.
 
     Examples:
-        >>> corner = mr.Corner(0.5, 4.0, angle=math.radians(30))
+        >>> corner = mr.Corner(0.5, 4.0, angle=0.5236)
         >>> case = mr.Case(corner.block, 0.0, 10.0, effects=corner.masses)
         >>> round(corner.multiplier, 4), round(mr.pushover(case).start, 4)
         (0.3714, 0.3714)
@@ -49,7 +50,11 @@ class Corner:
 
     def __post_init__(self) -> None:
         keep_declared(self)
-        _ = self.block
+        try:
+            _ = self.block, self.masses
+        except ValueError as error:
+            said = f"thickness = {self.thickness:g} m, height = {self.height:g} m, angle = {self.angle:g} rad"
+            raise ValueError(f"{said} are no corner that a wall can stand for: {error}") from None
 
     @property
     def depth(self) -> float:

@@ -24,6 +24,8 @@ BLOCKS = 100_000
 """Largest number of a block."""
 FARTHEST_POINT = 1e4
 """Largest coordinate of a point [m]."""
+SHORTER = 1e-9
+"""How much shorter than its reach a link may be by rounding and still pull [m]."""
 OF_MASONRY, IN_SPACE = {"of": "masonry"}, {"of": "masonry in space"}
 """Metadata of a field of an effect that only masonry takes, and of one that only masonry in space takes."""
 
@@ -123,6 +125,12 @@ class LinkLaw(NamedTuple):
         """Whether it may hold what stands: it has a spring that pulls at rest. One that pushes too bears nothing
         there."""
         return self.k > 0 and self.push == 0
+
+    def pulls_at(self, length: float) -> float:
+        """The largest force that its spring bears at a length [N]: none where it is slack or has broken."""
+        beyond = length - self.reach
+        broken = self.strength < math.inf and beyond > self.strength / self.k + self.ultimate
+        return 0.0 if broken or beyond < -SHORTER else self.strength
 
     def drawn(self, elongation: Array) -> Array:
         """How far the slider has moved along elongations beyond the slack [m], shape (n,), if nothing breaks."""

@@ -9,11 +9,13 @@ from typing import Annotated
 
 import numpy as np
 
-from ...quantities import Within, keep, keep_declared, require_kind, require_within, short_repr
+from ...quantities import Implausible, Within, keep, keep_declared, require_kind, require_within, short_repr, warn_of
 from .bending import CURVE_POINTS, BendingCurve, require_plain
 from .block import Block
 from .tie import Tie
 
+TYPICAL_FRICTION = 0.4
+"""Coefficient of friction of masonry, NTC 2018 and EN 1996-1-1, 3.6.2 [-]."""
 TIE_STIFFNESS = 1e3
 """Stiffness of the tie that stands for the side walls, their thrust per thickness of the wall [-]."""
 
@@ -40,6 +42,9 @@ class HorizontalBending:
     Raises:
         TypeError, ValueError: for a wall that is not a plain rectangle, or a value outside its range.
 
+    Warns:
+        Implausible: where it slides before it bends unless friction is above 0.4.
+
     Examples:
         >>> strip = mr.HorizontalBending(mr.Block.from_size(0.5, 2.0, 6.0), thrust=12e3)
         >>> round(strip.multiplier, 4), round(strip.friction, 2)
@@ -59,6 +64,12 @@ class HorizontalBending:
         if self.crack is not None:
             length = self.wall.length
             keep(self, crack=require_within("crack", self.crack, 0.01 * length, 0.99 * length, "m"))
+        if self.friction > TYPICAL_FRICTION:
+            warn_of(
+                f"the strip slides before it bends unless friction at its ends and crack is {self.friction:.2g}; "
+                f"{TYPICAL_FRICTION:g} is usual",
+                Implausible,
+            )
 
     @property
     def parts(self) -> tuple[float, float]:

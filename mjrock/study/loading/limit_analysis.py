@@ -82,8 +82,9 @@ def collapse_multiplier(
             [N], or with the moment about it, positive where it turns the top to the right [N m], shape (2,) or (3,); in
             space forces along x, y and z, or with three moments, shape (3,) or (6,).
         effects: what is constant beside the weight, `Load` and `Thrust`, `AddedMass`, whose inertia grows with that of
-            the blocks, and `Tie`, which pulls with up to its strength however far it is drawn out, and is not slack.
-            Each names its block as in a `MasonryCase`.
+            the blocks, and `Tie`, which pulls with up to its strength, and is not slack at rest. In a pose it pulls
+            where it is longer than at rest and has not been drawn out beyond its `ultimate` elongation. Each names its
+            block as in a `MasonryCase`.
         pose: where the blocks have moved, as a `Response` has them: displacement of the centroids [m] and rotation
             [rad], positive where tops turn to the right, shape (free, 3), in space displacement and unit quaternion,
             (free, 7); or of all blocks, with supports that have moved, as `response.at(t)` gives them. Joints are those
@@ -112,6 +113,7 @@ def collapse_multiplier(
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
     given = _required(masonry, effects)
+    laws = [link.law for link in link_effects(given).values()]
     if pose is not None:
         masonry.require_dry("collapse_multiplier in a pose")
         if not dilates:
@@ -123,7 +125,8 @@ def collapse_multiplier(
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
     links = tuple(link_effects(given).values())
-    strength, constant = np.array([tie.law.strength for tie in links]), applied(masonry, given)
+    spans, constant = [link.span for link in links], applied(masonry, given)
+    strength = np.array([law.pulls_at(span) for law, span in zip(laws, spans, strict=True)])
     ties = Pulls.of(masonry, pulls_of(masonry, links), strength)
     if pose is not None:
         return limit_of(masonry, push, grown, constant, ties=ties, least=-math.inf)

@@ -80,8 +80,8 @@ def limit_curve(
     then stay where they are, and a step ends where a further line closes, from which another mechanism may go on. No
     steps in time are made, and joints have no stiffness. The curve ends where joints slide, since those of associated
     friction open as they do, and where a further joint would open as well and several hinges would move at once: `push`
-    follows both. Where several mechanisms have the same multiplier, as a corner along its diagonal has, it goes on with
-    one of them.
+    follows both. Where several mechanisms have the same multiplier it goes on with one of them, and where lines close
+    again and again, more often than there are lines, it ends.
 
     Args:
         masonry: the masonry, with dry joints.
@@ -117,6 +117,9 @@ def limit_curve(
         pose = path.further(pose, found, stay, min(step, to - d))
         if path.gone(pose) - d < ROUNDED * path.size:
             ended = "locks"
+            break
+        if len(curve) > poses + len(path.pair):
+            ended = "lines close again and again"
             break
         try:
             found = collapse_multiplier(masonry, direction, angle=angle, effects=effects, pose=pose)

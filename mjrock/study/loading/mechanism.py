@@ -24,6 +24,7 @@ from ...problem.ground.spectrum import response_spectrum
 from ...problem.masonry.case import require_wall
 from ...problem.wall.bending import VerticalBending
 from ...problem.wall.case import Case
+from ...problem.wall.corner import Corner
 from ...problem.wall.horizontal_bending import HorizontalBending
 from ...problem.wall.ties_on_wall import moment_at_strength
 from ...quantities import (
@@ -327,7 +328,7 @@ class MechanismCheck:
 
 
 def mechanism_check(
-    case: Case | VerticalBending | HorizontalBending,
+    case: Case | Corner | VerticalBending | HorizontalBending,
     demand: Demand | Mapping[str, Demand],
     *,
     confidence_factor: float = 1.35,
@@ -347,7 +348,7 @@ def mechanism_check(
     its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known.
 
     Args:
-        case: the wall and its effects, whose release and motion play no part, or a wall that bends between
+        case: the wall and its effects, whose release and motion play no part, a corner, or a wall that bends between
             floors or side walls.
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
             [m] of a spectrum. It is that of both limit states, or a mapping has one for each, "SLV" and "SLC"; the
@@ -370,6 +371,8 @@ def mechanism_check(
         >>> str(check).startswith('<MechanismCheck: starts at 0.1')
         True
     """
+    if isinstance(case, Corner):
+        case = Case(case.block, 0.0, 1.0, effects=case.masses)
     demands = _by_limit_state(demand)
     severe = demands["SLV"]
     peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None

@@ -34,6 +34,23 @@ Numbers = int | Sequence[int] | Integers
 """The number of a block, or of each of some."""
 
 
+def pose_of_all(masonry: Masonry, pose: ArrayLike) -> Array:
+    """The pose of all blocks, shape (blocks, nq), from one of all or of the free ones.
+
+    Raises:
+        TypeError, ValueError: for another shape, or quaternions that are not of unit length.
+    """
+    blocks, freedom = len(masonry.blocks), SPACE if masonry.in_space else PLANE
+    moved = at_rest(blocks, freedom).reshape(blocks, freedom.nq)
+    some = list(range(blocks)) if np.shape(pose) == moved.shape else list(masonry.free)
+    moved[some] = require_array("pose", pose, moved[some].shape)
+    if masonry.in_space:
+        length = np.linalg.norm(moved[:, 3:], axis=1)
+        if (off := np.abs(length - 1)).max() > OFF_UNIT:
+            raise ValueError(f"pose has a quaternion of the length {length[off.argmax()]:g}; the valid one is 1")
+    return moved
+
+
 class Moves(NamedTuple):
     """Where the blocks have moved, also the fixed ones.
 
@@ -51,17 +68,15 @@ class Moves(NamedTuple):
         """Those of a pose of all blocks or of the free ones.
 
         Raises:
-            ValueError: for another shape, or quaternions that are not of unit length.
+            TypeError, ValueError: as `pose_of_all`, and for a rotation in the plane beyond pi.
         """
-        blocks, freedom = len(masonry.blocks), SPACE if masonry.in_space else PLANE
-        moved = at_rest(blocks, freedom).reshape(blocks, freedom.nq)
-        some = list(range(blocks)) if np.shape(pose) == moved.shape else list(masonry.free)
-        moved[some] = require_array("pose", pose, moved[some].shape)
-        if masonry.in_space:
-            length = np.linalg.norm(moved[:, 3:], axis=1)
-            if (off := np.abs(length - 1)).max() > OFF_UNIT:
-                raise ValueError(f"pose has a quaternion of the length {length[off.argmax()]:g}; the valid one is 1")
-        d = freedom.translations
+        moved = pose_of_all(masonry, pose)
+        if not masonry.in_space and (turn := np.abs(moved[:, 2])).max() > np.pi:
+            most = moved[turn.argmax(), 2]
+            raise ValueError(
+                f"pose has a rotation of {most:g} rad; the valid range is -pi to pi, and angles are radians"
+            )
+        d = moved.shape[1] - (4 if masonry.in_space else 1)
         return cls(rotations(moved), masonry.centroids, masonry.centroids + moved[:, :d])
 
     def at(self, block: Numbers, points: Array) -> Array:
