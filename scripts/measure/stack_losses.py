@@ -95,8 +95,8 @@ def drawn(found: dict[tuple[str, float, bool], list[list[float]]], stiffnesses: 
                 colour = plotting.PALETTE[i % len(plotting.PALETTE)]
                 ax.plot(stiffnesses, curve, dashes, color=colour, marker="osD^"[i], markerfacecolor="none")
                 if choice == choices[0] and not side:
-                    beside(ax, (stiffnesses[0], curve[0]), f"{n} block{'s' * (n > 1)}", colour, (10, 8))
-        ax.set_xscale("log")
+                    beside(ax, (stiffnesses[0], curve[0]), f"{n} block{'s' * (n > 1)}", colour, (-8, 5))
+        ax.set(xscale="log", xlim=(0.3 * stiffnesses[0], 1.5 * stiffnesses[-1]))
         ax.axhline(1, color="0.6", linewidth=0.6)
         ax.set_title(choice, fontsize=9)
         ax.set_xlabel("$k_n$ of the base [N/m³]")

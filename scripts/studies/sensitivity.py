@@ -44,8 +44,8 @@ def capacity(**settings: Any) -> mr.Capacity:
 
 
 LABELS = {
-    "seed": "the record",
-    "polarity": "its polarity",
+    "seed": "the seed of the record",
+    "polarity": "its polarity, 1 is reversed",
     "k_n": "stiffness $k_n$",
     "points": "contact lines",
     "capacity_g": "intensity that overturns the wall",

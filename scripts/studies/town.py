@@ -189,7 +189,8 @@ def draw_curves(ax: Axes, fits: Mapping[str, tuple[mr.Fragility, mr.Fragility]],
         plotting.fragility(ax, fits[name][which], solver=name, unit=("g", "m/s")[which])
     ax.set(xlabel=f"peak {('acceleration', 'velocity')[which]} at the wall [{('g', 'm/s')[which]}]", xlim=(0, 1.2))
     ax.set_ylabel("share of walls [-]" if which == 0 else "")
-    ax.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0, 1))
+    look: dict[str, Any] = {"fontsize": 8, "title_fontsize": 8, "frameon": False, "alignment": "left"}
+    ax.legend(title="median, dispersion", loc="lower left", bbox_to_anchor=(0, 1), **look)
     return ax
 
 
