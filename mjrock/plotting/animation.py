@@ -100,7 +100,8 @@ class FilmedMasonry(Filmed):
         def strip(ax: Axes) -> Axes:
             acceleration(ax, self.case, float(response.t[-1]))
             if ax.get_legend() is not None:
-                ax.legend(edgecolor="none", fontsize=8, loc="upper right", ncols=3)
+                above = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.0, "ncols": 3}
+                ax.legend(frameon=False, fontsize=8, **above)
             return ax
 
         return [strip] if self.case.grounds else []
@@ -112,8 +113,8 @@ def filmed(case: AnyCase) -> Filmed:
 
 
 MOST_FRAMES = 20_000
-COLOURS = 128
-"""Colours of a film. Flat drawings need no more, and files are three times smaller."""
+COLOURS, COLOURED = 128, 9
+"""Colours of a film, and pictures that they are taken from. With so few, files are three times smaller."""
 HUNDREDTHS = 100
 """A GIF gives the time of a frame in hundredths of a second, and browsers play below two of them slower [1/s]."""
 
@@ -121,7 +122,7 @@ WIDE = 8.0
 """Width of a film [inch]."""
 LOWEST, HIGHEST, OTHERWISE = 2.0, 6.0, 4.5
 """Heights of what shows masonry, which fills it in between, and of a film of a wall or of other bodies [inch]."""
-STRIP, CLOCK = 1.1, 0.4
+STRIP, CLOCK = 1.3, 0.4
 """Heights of a strip below the bodies and of what is said above them [inch]."""
 HELD = 1.0
 """How much longer than others a GIF shows its last frame, after which it begins anew [s]."""
@@ -143,9 +144,9 @@ class Stage:
         self.palette: Image.Image | None = None
 
     def keep_colours(self, update: Update, count: int) -> None:
-        """Take the colours of all pictures from the first, the middle and the last of so many."""
+        """Take the colours of all pictures from some of so many, the first and the last among them."""
         taken = []
-        for frame in sorted({0, count // 2, count - 1}):
+        for frame in sorted(set(np.linspace(0, count - 1, COLOURED, dtype=int).tolist())):
             update(frame)
             taken.append(np.asarray(self.drawn()))
         self.palette = Image.fromarray(np.concatenate(taken)).quantize(COLOURS)
