@@ -100,7 +100,7 @@ class FilmedMasonry(Filmed):
         def strip(ax: Axes) -> Axes:
             acceleration(ax, self.case, float(response.t[-1]))
             if ax.get_legend() is not None:
-                above = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.0, "ncols": 3}
+                above: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.0, "ncols": 3}
                 ax.legend(frameon=False, fontsize=8, **above)
             return ax
 
