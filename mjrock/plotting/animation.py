@@ -100,8 +100,8 @@ class FilmedMasonry(Filmed):
         def strip(ax: Axes) -> Axes:
             acceleration(ax, self.case, float(response.t[-1]))
             if ax.get_legend() is not None:
-                above: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.0, "ncols": 3}
-                ax.legend(frameon=False, fontsize=8, **above)
+                place: Any = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.0}
+                ax.legend(frameon=False, fontsize=8, ncols=3, **place)
             return ax
 
         return [strip] if self.case.grounds else []
