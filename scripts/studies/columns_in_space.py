@@ -335,7 +335,7 @@ def draw_peaks(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
         ax.plot(x, y, marker, color=colour, markerfacecolor="none", markersize=5, label=SHORT[way])
     draw_square(ax, math.degrees(low), math.degrees(edge))
     ax.set(xlabel="peak tilt, explicit steps [deg]", ylabel="peak tilt [deg]")
-    ax.set_title("peaks of all records; in the grey they overturn", fontsize=9)
+    ax.set_title("peaks; in the grey they overturn", fontsize=9)
     ax.legend(frameon=False, fontsize=8, loc="upper left")
 
 
