@@ -194,7 +194,7 @@ def drawn(pushes: Mapping[str, Array], turned: Array | None) -> Figure:
     if turned is not None:
         below.plot(*measured("WS1100_cyclic_envelope").T, "o", color="0.4", markersize=4, label="test, envelope")
         below.plot(*turned.T, **look | {"label": plotting.STYLES["explicit"]["label"], "linewidth": 0.9})
-    below.legend(frameon=False, loc="upper left", fontsize=SMALL)
+        below.legend(frameon=False, loc="upper left", fontsize=SMALL)
     below.set_title(rf"to and fro, $\sigma$ = {1e-3 * LOADS['WS100'] / (LENGTH * THICK):.2f} MPa", fontsize=10)
     ax.set_title("pushed to 40 mm: tests grey, explicit steps blue", fontsize=10)
     for each in (ax, below):
