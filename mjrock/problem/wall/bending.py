@@ -35,7 +35,8 @@ class BendingCurve(NamedTuple):
 
 
 def require_plain(wall: Block) -> None:
-    """Raise a ValueError unless a wall is a plain rectangle."""
+    """Raise a TypeError or a ValueError unless a wall is a plain rectangle."""
+    require_kind("wall", wall, Block)
     if not wall.is_plain or wall.inset:
         raise ValueError(f"wall = {wall!r} is not a plain rectangle; cut it to the strip between its openings")
 
@@ -78,9 +79,8 @@ class VerticalBending:
     __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        require_kind("wall", self.wall, Block)
-        keep_declared(self)
         require_plain(self.wall)
+        keep_declared(self)
         thickness, height = 2 * self.wall.b, 2 * self.wall.h
         if self.bearing is not None:
             keep(self, bearing=require_within("bearing", self.bearing, 1e-3 * thickness, thickness, "m"))

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ...quantities import Implausible, Within, keep, keep_declared, require_kind, require_within, short_repr, warn_of
+from ...quantities import Implausible, Within, keep, keep_declared, require_within, short_repr, warn_of
 from .bending import CURVE_POINTS, BendingCurve, require_plain
 from .block import Block
 from .tie import Tie
@@ -58,9 +58,8 @@ class HorizontalBending:
     __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        require_kind("wall", self.wall, Block)
-        keep_declared(self)
         require_plain(self.wall)
+        keep_declared(self)
         if self.crack is not None:
             length = self.wall.length
             keep(self, crack=require_within("crack", self.crack, 0.01 * length, 0.99 * length, "m"))

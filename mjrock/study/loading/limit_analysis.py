@@ -34,8 +34,6 @@ from ...scene.masonry import wedged
 
 NOTHING, BORNE = 1e-6, 1e-3
 """Multiplier that counts as none, and that of associated friction from which something is borne [-]."""
-ROUNDING = 1e-9
-"""Slack that counts as none [m]."""
 
 
 def collapse_multiplier(
@@ -165,8 +163,8 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Eff
                 "Load, Thrust, AddedMass and Tie"
             )
         for link in links:
-            slack = link.law.reach - link.span
-            if slack > ROUNDING:
+            if link.law.pulls_at(link.span) == 0:
+                slack = link.law.reach - link.span
                 raise ValueError(
                     f"effects[{i}], slack = {slack:g} m: the tie holds nothing as the masonry begins to move; the "
                     "valid value is 0"
