@@ -361,7 +361,7 @@ def fixed_loop(
     """
     last = max(1, round(setting.duration / h))
     for n in range(len(record.t)):
-        if sliding.coulomb or len(setting.dampers.c) > 0:
+        if sliding.coulomb or len(setting.dampers.law) > 0:
             take_frames(memory.pose, frames, setting.points.places.axes)
         record.t[n], record.h[n] = h * (first + n), h
         make_step(memory, setting, sliding, frames, record, n)

@@ -81,7 +81,7 @@ class Pace(NamedTuple):
         return cls(
             short,
             longest,
-            math.sqrt(method.taut * accuracy) / scene.tie_frequency if len(scene.links.sprung.k) else math.inf,
+            math.sqrt(method.taut * accuracy) / scene.tie_frequency if scene.links.sprung.names else math.inf,
             accuracy,
             2 * float(scene.rest_energies[2]),
             scene.highest_frequency,

@@ -52,7 +52,7 @@ class Setting(NamedTuple):
     @classmethod
     def of(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
         """That of a run, whose ties yield in it alone."""
-        ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.c))
+        ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.names))
         splits = len(scene.bodies.names) == 1 and any(len(shaking.accel) for shaking in course.ground)
         acting = scene.dampers, damping, refines, splits, float(course.duration)
         return cls(points_of(scene, method), ties, scene.bodies.masses, scene.bodies.products, course.ground, *acting)
@@ -87,7 +87,7 @@ def push(memory: EngineArrays, setting: Setting, frames: Array, t: float) -> Non
     is with the gyroscopic moments of bodies of space.
     """
     dampers, axes, ahead = setting.dampers, setting.points.places.axes, 0.5 * memory.options[TIMESTEP]
-    if len(dampers.c) > 0:
+    if len(dampers.law) > 0:
         for j in range(len(memory.applied)):
             memory.applied[j] = memory.velocity[j] + (ahead * memory.acceleration[j] if setting.refines else 0.0)
         damping_forces(dampers, frames, memory.applied, setting.damping)

@@ -15,7 +15,7 @@ from ..result.forces import required_room
 from ..result.ledger import StepError
 from ..result.problem import Problem, problem_of
 from ..result.response import End, Response, State
-from ..result.start import require_unbreakable, required_start
+from ..result.start import require_in_text, required_start
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
@@ -118,7 +118,7 @@ def simulate(
     if start is None:
         warn_if_still(case, forces=forces)
     if options.timestep is not None:
-        require_unbreakable(case)
+        require_in_text(case)
     if forces:
         required_room(case, case.duration / options.apart)
     state = None if start is None else required_start(start, case)

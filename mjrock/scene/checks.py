@@ -44,13 +44,20 @@ def keep_array(
     values = values if values.size else values.reshape(shape)
     if values.shape != shape:
         raise ValueError(f"{said} has the shape {values.shape}; {shape} is needed")
+    require_values(said, values, above, least, infinite)
+    object.__setattr__(part, name, frozen(values))
+
+
+def require_values(
+    said: str, values: NDArray[Any], above: float | None = None, least: float | None = None, infinite: bool = False
+) -> None:
+    """Raise a ValueError for a value that is no number, infinite where none may be, or not above or from `least` on."""
     if np.isnan(values).any() or not (infinite or np.isfinite(values).all()):
         raise ValueError(f"{said} holds a value that is not finite")
     if above is not None and not (values > above).all():
         raise ValueError(f"{said} = {values.min():g} is outside the valid range, which is above {above:g}")
     if least is not None and not (values >= least).all():
         raise ValueError(f"{said} = {values.min():g} is outside the valid range, which starts at {least:g}")
-    object.__setattr__(part, name, frozen(values))
 
 
 def require_others(part: Any, name: str) -> None:

@@ -22,7 +22,7 @@ from ..problem.masonry.laws.pairs import Meets
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import constant_forces_of, link_effects
 from ..quantities import Array, Flags, Integers, frozen
-from .checks import GROUND, keep_array, require_inertia, require_others
+from .checks import GROUND, keep_array, require_inertia, require_others, require_values
 from .masses import mass_diagonals, principal, products_of
 
 
@@ -201,7 +201,7 @@ class Links:
         body, at: the body that each link holds, and where, from its centroid [m], shapes (t,) and (t, d).
         anchor_body, anchor_at: the body of the other end, or -1 for the ground, and the end, as of a face, shapes (t,)
             and (t, d).
-        k, reach, strength, push, ultimate, c: the law of each, shape (t,); what is left out is as in `LinkLaw`.
+        law: a `LinkLaw` for each, kept as rows with its numbers, shape (t,).
         anchor_block: number of the block of masonry that the other end moves with, or -1 for the ground, shape (t,).
     """
 
@@ -210,12 +210,7 @@ class Links:
     at: Array = field(default_factory=_none)
     anchor_body: Integers = field(default_factory=_none)
     anchor_at: Array = field(default_factory=_none)
-    k: Array = field(default_factory=_none)
-    reach: Array = field(default_factory=_none)
-    strength: Array = field(default_factory=_none)
-    push: Array = field(default_factory=_none)
-    ultimate: Array = field(default_factory=_none)
-    c: Array = field(default_factory=_none)
+    law: NDArray[np.void] = field(default_factory=_none)
     anchor_block: Integers = field(default_factory=_none)
 
     def __post_init__(self) -> None:
@@ -226,19 +221,23 @@ class Links:
             keep_array(self, name, (t,), kind=np.int64)
         for name in ("at", "anchor_at"):
             keep_array(self, name, (t, directions))
-        for name, usual in LinkLaw._field_defaults.items():
-            if not np.size(getattr(self, name)):
-                object.__setattr__(self, name, np.full(t, usual))
-        for name in ("k", "push", "c"):
-            keep_array(self, name, (t,), least=0.0)
-        for name in ("reach", "strength"):
-            keep_array(self, name, (t,), above=0.0, infinite=True)
-        keep_array(self, "ultimate", (t,), least=0.0, infinite=True)
         require_others(self, "anchor_body")
-        if not ((self.push == 0) | (self.push == self.strength)).all():
+        self._keep_law()
+        if not ((self.law["push"] == 0) | (self.law["push"] == self.law["strength"])).all():
             raise ValueError("push of the links is neither zero nor the strength")
-        if not np.isfinite(self.reach[self.k > 0]).all():
+        if not np.isfinite(self.law["reach"][self.law["k"] > 0]).all():
             raise ValueError("reach of the links is infinite for a link with a spring; give it a length")
+
+    def _keep_law(self) -> None:
+        """Check and keep the laws as rows. Those numbers may be infinite that are so when they are left out."""
+        kind = np.dtype([(name, float) for name in LinkLaw._fields])
+        given = self.law if np.size(self.law) else [LinkLaw()] * len(self.names)
+        object.__setattr__(self, "law", frozen(np.array(given, dtype=kind)).view(np.recarray))
+        if self.law.shape != (len(self.names),):
+            raise ValueError(f"law of the links has the shape {self.law.shape}; {(len(self.names),)} is needed")
+        for name, usual in LinkLaw._field_defaults.items():
+            above, infinite = (0.0 if name in ("reach", "strength") else None), usual == math.inf
+            require_values(f"{name} of the links", self.law[name], above, 0.0, infinite)
 
     def of(self, some: Flags) -> Links:
         """Some of the links."""
@@ -249,17 +248,17 @@ class Links:
     @cached_property
     def sprung(self) -> Links:
         """The links with a spring."""
-        return self.of(self.k > 0)
+        return self.of(self.law["k"] > 0)
 
     @cached_property
     def bearing(self) -> Links:
         """The links with a spring that may have a force at rest: those that only pull."""
-        return self.of((self.k > 0) & (self.push == 0))
+        return self.of((self.law["k"] > 0) & (self.law["push"] == 0))
 
     @cached_property
     def damped(self) -> Links:
         """The links with a dashpot, and those without a spring."""
-        return self.of((self.c > 0) | (self.k == 0))
+        return self.of((self.law["c"] > 0) | (self.law["k"] == 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -347,8 +346,8 @@ def attachments(
         others = np.where(blocks == GROUND, GROUND, number[blocks])
         ends = np.array([link.anchor_of(point) for link, point in zip(links.values(), points, strict=True)])
         ends = ends - np.where(others[:, None] == GROUND, 0.0, centroids[others])
-        laws = LinkLaw(*np.array([link.law for link in links.values()]).T)
-        pulled = Links(tuple(links), bodies, at, others, ends, **laws._asdict(), anchor_block=blocks)
+        laws: Any = [link.law for link in links.values()]
+        pulled = Links(tuple(links), bodies, at, others, ends, laws, blocks)
     if forces:
         bodies, _, at = on([effect for effect, _ in forces.values()])
         vectors = np.array([force for _, force in forces.values()])

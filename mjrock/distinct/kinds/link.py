@@ -72,8 +72,9 @@ class Kind:
     def linking(cls, links: Links, between: Array, **columns: Any) -> Named:
         """Links of a scene with these columns. Their other `own` numbers are those of the law of the links."""
         count = len(links.body)
-        taken = {name: getattr(links, name) for name in ("body", "anchor_block", *cls.own) if name not in columns}
         ends = {"anchor": links.anchor_body, "at": links.at, "origin": links.anchor_at, "between": between}
+        taken = {name: links.law[name] for name in cls.own if name not in columns}
+        taken |= {"body": links.body, "anchor_block": links.anchor_block}
         table = cls.table(between.shape[1], count, **columns | taken | ends if count else {})
         return links.names, cls(table)  # type: ignore[call-arg]
 

@@ -12,7 +12,9 @@ from itertools import accumulate
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...compiled import inlined
 from ...quantities import Array, keep, require_array, require_whole, require_within, short_repr
 
 Point = tuple[float, float, float]
@@ -141,6 +143,32 @@ class LinkLaw(NamedTuple):
             elongation.tolist(), lambda at, length: min(max(at, length - stretch), length + squeeze), initial=0.0
         )
         return np.array(list(slid)[1:])
+
+
+DASHPOT = ("c",)
+"""The numbers of `LinkLaw` that its dashpot has."""
+
+
+@inlined
+def resistance(law: LinkLaw, rate: float) -> float:
+    """Force with which the dashpot of a link resists the rate of its length [N], for all solvers.
+
+    `law` may be a row with the numbers of `DASHPOT`.
+    """
+    return law.c * rate
+
+
+def steepest(law: NDArray[np.void]) -> Array:
+    """The largest slope of `resistance` over the rate [N s/m], from which the longest step follows.
+
+    `law` are rows with the numbers of `DASHPOT`.
+    """
+    return law["c"]
+
+
+def beyond_text(law: LinkLaw) -> str:
+    """The number of a law that the text of a model, and so a fixed step, cannot have, in words; empty for none."""
+    return f"ultimate = {law.ultimate:g} m" if law.ultimate < math.inf else ""
 
 
 class Told(Protocol):

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...quantities import GRAVITY, Implausible, warn_of
 from ..ground.motion import GroundMotion
-from .effect import Anchored, Effect
+from .effect import Anchored, Effect, resistance
 from .effects import AddedMass, Load, Thrust
 from .tie import Tie
 from .ties_on_wall import TiePull, moment_at_strength, pulled
@@ -220,7 +220,7 @@ def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     if not link.law.c > 0:
         return ""
     speed, weight = math.sqrt(GRAVITY * room(link)[0]), whole.mass * GRAVITY
-    force = link.law.c * speed
+    force = resistance(link.law, speed)
     if NEGLIGIBLE_SHARE * weight <= force <= EXCESSIVE * weight:
         return ""
     unit = "kN s/m" if force < weight else "N s/m"
