@@ -21,7 +21,7 @@ from ..geometry.frames import PLANE
 from ..method import METHOD, Method
 from ..problem.wall.effect import LinkLaw
 from ..quantities import GRAVITY, Array
-from ..scene.checks import GROUND
+from ..scene.parts import GROUND
 from ..scene.scene import Scene
 from .rows import ContactRows, Step, points_of, set_rows
 from .shapes import in_space, meshes, section, sites, tag, value_text, world

@@ -11,9 +11,8 @@ from ..geometry.kinematics import Ties
 from ..geometry.vectors import increase, minus
 from ..method import METHOD, Method
 from ..quantities import Array
-from ..scene.course import Course
+from ..scene.course import Course, Ground, push_ground
 from ..scene.dampers import Dampers, damp, damping_forces
-from ..scene.ground import Ground, push_ground
 from ..scene.masses import gyroscopic
 from ..scene.scene import Scene
 from .memory import TIMESTEP, EngineArrays
@@ -34,7 +33,7 @@ class Setting(NamedTuple):
         refines: whether dampers, and what MuJoCo's gyroscopic moments lack, act as applied forces at the velocity of
             the pose; otherwise the engine does what is in its text.
         splits: whether accelerations are split into the answer to the ground and what is smooth, see
-            `mjrock.engine.shaken`: those of one body on moving ground.
+            `mjrock.engine.loop`: those of one body on moving ground.
         duration: how long the motion is followed [s].
     """
 

@@ -21,7 +21,6 @@ from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
 from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
-from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .options import Options
@@ -29,11 +28,13 @@ from .pace import short_step
 from .plain.run import simulate_plain
 from .run import EngineRun, Settings, explained
 from .run_warnings import (
+    interpreted_seconds,
     require_still,
     warn_if_coarse,
     warn_if_lifted,
     warn_if_sheared,
     warn_if_slid,
+    warn_if_slow,
     warn_of_gain,
 )
 from .stepping import fitted_steps, fixed_steps

@@ -22,10 +22,9 @@ from ..geometry.frames import Freedom, frames_of
 from ..geometry.kinematics import AppliedForces, LinkEnds, Places, Ties, ends, gaps
 from ..problem.wall.standing import Standing
 from ..quantities import Array, Integers, frozen
-from .checks import require_on
 from .dampers import Dampers
 from .masses import kinetic_energies
-from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links
+from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links, require_on
 from .potential import Potential, Structure, energies, highest_frequency, rocking_frequency, tie_frequency
 from .rest import lowered, settled
 

@@ -40,7 +40,7 @@ from mjrock.geometry.kinematics import (
 from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
 from mjrock.problem.wall.effect import LinkLaw
 from mjrock.quantities import frozen
-from mjrock.scene.ground import Ground, push_ground
+from mjrock.scene.course import Ground, push_ground
 from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.potential import Potential, Structure, energies
 

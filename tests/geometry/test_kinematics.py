@@ -12,8 +12,7 @@ from mjrock.geometry.frames import frames_of, rotation_change
 from mjrock.geometry.kinematics import depth, gap, gaps, meeting, over_face, slack, stretch, where_friction_acts
 from mjrock.geometry.vectors import dot, tangent
 from mjrock.problem.wall.effect import LinkLaw
-from mjrock.problem.wall.restoring_moment import pose_of
-from mjrock.problem.wall.ties_on_wall import pulled
+from mjrock.problem.wall.restoring_moment import pose_of, pulled
 from mjrock.scene.parts import Links
 from mjrock.scene.rest import settled
 from mjrock.scene.wall import wall_course

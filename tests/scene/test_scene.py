@@ -13,7 +13,7 @@ from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.rows import inverse_weights
 from mjrock.engine.stepping import fitted_steps
 from mjrock.problem.wall.effect import LinkLaw
-from mjrock.scene.ground import Shaking, ground_velocity, mean_acceleration
+from mjrock.scene.course import Shaking, ground_velocity, mean_acceleration
 from mjrock.scene.parts import Links
 from mjrock.scene.wall import wall_scene
 

@@ -11,7 +11,7 @@ from mjrock.engine.energy_work import ledger
 from mjrock.engine.model import engine_of
 from mjrock.engine.stepping import fitted_steps
 from mjrock.problem.wall.effect import LinkLaw
-from mjrock.problem.wall.ties_on_wall import taken, yielded
+from mjrock.problem.wall.restoring_moment import taken, yielded
 from mjrock.scene.parts import Links
 from mjrock.scene.potential import breaks
 from mjrock.scene.wall import wall_scene

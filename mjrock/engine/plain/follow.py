@@ -18,8 +18,7 @@ from ...bars import Bar
 from ...geometry.frames import PLANE
 from ...problem.masonry.histories import Support
 from ...quantities import GRAVITY, Array, Integers
-from ...scene.course import Course
-from ...scene.ground import mean_acceleration
+from ...scene.course import Course, mean_acceleration
 from ...scene.scene import Scene
 from ..model import require_well
 from .overlap import Overlap

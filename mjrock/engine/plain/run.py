@@ -26,11 +26,10 @@ from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, wa
 from ...scene.course import Course
 from ...scene.potential import energies
 from ...scene.scene import Scene
-from ..estimate import warn_if_plain_is_slow
 from ..mjcf import Keyframe
 from ..model import SimulationError, released
 from ..options import SPACING, Options
-from ..run_warnings import require_known, warn_if_sheared
+from ..run_warnings import require_known, warn_if_plain_is_slow, warn_if_sheared
 from .follow import JointForces, PlainEngine, Sample, Work, follow
 from .pairs import Pairs
 from .pieces import Piece, pieces_of

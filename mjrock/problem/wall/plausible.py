@@ -12,8 +12,8 @@ from ...quantities import GRAVITY, Implausible, warn_of
 from ..ground.motion import GroundMotion
 from .effect import Anchored, Effect, resistance
 from .effects import AddedMass, Load, Thrust
+from .restoring_moment import TiePull, moment_at_strength, pulled
 from .tie import Tie
-from .ties_on_wall import TiePull, moment_at_strength, pulled
 
 NEGLIGIBLE_SHARE = 1e-4
 """Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
