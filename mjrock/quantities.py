@@ -268,6 +268,12 @@ def is_iterable(values: object) -> TypeGuard[Iterable[object]]:
     return isinstance(values, Iterable) or hasattr(type(values), "__getitem__")
 
 
+def require_sequence(name: str, value: object, takes: str) -> None:
+    """Raise a TypeError that names the value and what it should be, unless it is a sequence and no text."""
+    if not isinstance(value, Sequence) or isinstance(value, str):
+        raise TypeError(f"{name} = {shown(value)} is not {takes}")
+
+
 def require_flag(name: str, value: object) -> bool:
     """Return `value` as a bool, or raise a TypeError unless it is True or False."""
     if not isinstance(value, bool | np.bool_):

@@ -29,6 +29,7 @@ from ...quantities import (
     require_flag,
     require_kind,
     require_path,
+    require_sequence,
     require_whole,
     shown,
     warn_of,
@@ -1202,8 +1203,7 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
     Raises:
         TypeError, ValueError: for what is no block, for both kinds, too few or too many, or names that stand twice.
     """
-    if not isinstance(blocks, Sequence) or isinstance(blocks, str):
-        raise TypeError(f"blocks = {shown(blocks)} is not a list of blocks")
+    require_sequence("blocks", blocks, "a list of blocks")
     for i, block in enumerate(blocks):
         if not isinstance(block, Polygon | Polyhedron | Compound):
             raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon, Polyhedron or Compound")

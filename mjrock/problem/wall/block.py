@@ -22,8 +22,8 @@ from ...quantities import (
     require_kind,
     require_real,
     require_row,
+    require_sequence,
     require_within,
-    shown,
     warn_of,
 )
 from .effects import AddedMass
@@ -91,8 +91,7 @@ class Block:
         """Check openings, profile and masses, and keep them as tuples."""
         for name, kind in (("openings", Opening), ("masses", AddedMass)):
             parts = getattr(self, name)
-            if not isinstance(parts, Sequence) or isinstance(parts, str):
-                raise TypeError(f"{name} = {shown(parts)} is not a sequence of {kind.__name__}")
+            require_sequence(name, parts, f"a sequence of {kind.__name__}")
             for i, part in enumerate(parts):
                 require_kind(f"{name}[{i}]", part, kind)
             keep(self, **{name: tuple(parts)})

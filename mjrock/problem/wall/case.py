@@ -88,9 +88,7 @@ class Case(Carrying):
         keep(self, theta0=require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad"))
         keep_declared(self)
         for name in ("motion", "vertical"):
-            value = getattr(self, name)
-            if not (value is None or isinstance(value, GroundMotion)):
-                raise TypeError(f"{name} = {shown(value)} is not a GroundMotion")
+            require_kind(name, getattr(self, name), GroundMotion, type(None))
         self._require_effects()
         for doubt in doubts(self):
             warn_of(doubt, Implausible)
@@ -129,9 +127,7 @@ class Case(Carrying):
         parts = [f"theta0 = {self.theta0:.4g} rad = {share:.3g} alpha", f"{self.duration:.6g} s", stop]
         if self.omega0:
             parts.append(f"omega0 = {self.omega0:.4g} rad/s")
-        for name, motion in (("motion", self.motion), ("vertical", self.vertical)):
-            if motion is not None:
-                parts.append(f"{name} {motion.name!r}")
+        parts += [f"{name} {motion.name!r}" for name, motion in self.grounds.items()]
         parts += [type(effect).__name__ for effect in self.effects]
         return f"<Case of {self.block!r}: {', '.join(parts)}>"
 

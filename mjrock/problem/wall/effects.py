@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, Literal, TypeVar
 
 from ...notebook import Drawn
-from ...quantities import Within, keep, keep_declared, short_repr, shown
+from ...quantities import Within, keep, keep_declared, require_sequence, short_repr
 from ..ground.motion import GroundMotion
 from .effect import (
     HIGHEST_WALL,
@@ -330,9 +330,6 @@ class Carrying(Drawn):
         """Keep the effects, or a single one, as a tuple. They are of `EFFECT_KINDS` or `further` ones."""
         kinds = (*EFFECT_KINDS, *further)
         given = (self.effects,) if isinstance(self.effects, kinds) else self.effects
-        if not isinstance(given, Sequence) or isinstance(given, str):
-            names = [kind.__name__ for kind in kinds]
-            raise TypeError(
-                f"effects = {shown(self.effects)} is not a sequence of {', '.join(names[:-1])} or {names[-1]}"
-            )
+        names = [kind.__name__ for kind in kinds]
+        require_sequence("effects", given, f"a sequence of {', '.join(names[:-1])} or {names[-1]}")
         keep(self, effects=tuple(given))

@@ -15,7 +15,16 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, Within, keep_declared, require_flag, require_within, short_repr, shown
+from ...quantities import (
+    Array,
+    Within,
+    keep_declared,
+    require_flag,
+    require_sequence,
+    require_within,
+    short_repr,
+    shown,
+)
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""
@@ -113,8 +122,7 @@ class Moments(NamedTuple):
 def require_profile(profile: Sequence[Sequence[float]], thickness: float, height: float) -> Profile:
     """A profile as pairs of floats; a ValueError says if it does not go from the base of this thickness up to this
     height [m], or if a value is out of range."""
-    if not isinstance(profile, Sequence) or isinstance(profile, str):
-        raise TypeError(f"profile = {shown(profile)} is not a sequence of pairs of height and thickness [m]")
+    require_sequence("profile", profile, "a sequence of pairs of height and thickness [m]")
     pairs: list[tuple[float, float]] = []
     for i, pair in enumerate(profile):
         if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ....geometry.graph import connected_parts
 from ....geometry.hull import Convex, Side
-from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, short_repr, shown
+from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, require_sequence, short_repr
 from .joints import PARTS_APART, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
 from .polygon import Polygon, checked_name
@@ -179,8 +179,7 @@ def _named(parts: Sequence[Polygon | Polyhedron]) -> list[Polygon | Polyhedron]:
 
 def checked_parts(parts: Sequence[Polygon | Polyhedron]) -> tuple[Polygon | Polyhedron, ...]:
     """Parts of one kind; a TypeError or ValueError says what is wrong with them."""
-    if not isinstance(parts, Sequence) or isinstance(parts, str):
-        raise TypeError(f"parts = {shown(parts)} is not a list of blocks")
+    require_sequence("parts", parts, "a list of blocks")
     if not 2 <= len(parts) <= MOST_PARTS:
         raise ValueError(f"parts has {len(parts)} blocks; the valid range is 2 to {MOST_PARTS}")
     for i, part in enumerate(parts):

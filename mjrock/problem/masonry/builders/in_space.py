@@ -12,7 +12,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ....quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
+from ....quantities import (
+    require_array,
+    require_kind,
+    require_real,
+    require_sequence,
+    require_whole,
+    require_within,
+    shown,
+    spelt,
+)
 from ...wall.bending import HorizontalBending
 from ...wall.section import Opening
 from ..blocks.compound import Compound, SolidBlock
@@ -195,8 +204,7 @@ def facade_of(
 
 def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[list[Rectangle], list[Rectangle]]:
     """The openings, and the lintels over them: up to a bed joint, half a course high or more."""
-    if not isinstance(openings, Sequence) or isinstance(openings, str):
-        raise TypeError(f"openings = {shown(openings)} is not a sequence of (y, Opening)")
+    require_sequence("openings", openings, "a sequence of (y, Opening)")
     holes: list[Rectangle] = []
     lintels: list[Rectangle] = []
     for i, pair in enumerate(openings):
