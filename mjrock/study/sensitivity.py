@@ -17,8 +17,7 @@ from ..files import aligned, csv_text
 from ..notebook import Drawn
 from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
 from .campaign.campaign import CampaignOptions, completed
-from .campaign.grid import axis_label, labelled
-from .campaign.task import Row, Task
+from .campaign.task import Row, Task, axis_label, labelled
 
 MEASURE_UNITS = {"peak_over_alpha": "alpha", "g": "g", "m": "m", "s": "s", "rad": "rad", "N": "N", "J": "J"}
 """Units of a measure, by the name of its column or by the end of that name."""

@@ -18,9 +18,18 @@ from mjrock import Restitution, Store, plotting
 from mjrock.problem.damping.forms import PowerLaw
 from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI
 from mjrock.study.campaign.campaign import completed
-from mjrock.study.matching.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
+from mjrock.study.matching.calibration import (
+    Calibration,
+    Plan,
+    Regression,
+    calibrate,
+    coefficients,
+    presumed_damping,
+    r_squared,
+    regress,
+    sweep,
+)
 from mjrock.study.matching.match import K_N_RANGE, REFERENCE, Combination, Match
-from mjrock.study.matching.regression import Regression, coefficients, r_squared, regress
 from scripts.shared import cli, law_pictures
 
 LAYOUTS = {"CALIBRATED": 2, "CALIBRATED_BED": 16}

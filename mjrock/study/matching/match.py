@@ -70,6 +70,24 @@ REFERENCE = Combination()
 """The reference values of Table 1."""
 
 
+@dataclass(frozen=True)
+class GivenWall:
+    """A given wall on its interfaces, in place of a `Combination` of Table 1.
+
+    Args:
+        wall: the wall.
+        k_base, k_side: interface stiffness [N/m3].
+        amplitude: theta_0/alpha of the release [-].
+        side_stop: the side that the wall is matched against.
+    """
+
+    wall: Block
+    k_base: float
+    k_side: float
+    amplitude: float
+    side_stop: bool | SideStop = True
+
+
 def combinations(
     count: int, seed: int, k_n: tuple[float, float] = K_N_RANGE, amplitude: tuple[float, float] = AMPLITUDE_RANGE
 ) -> list[Combination]:
@@ -111,7 +129,7 @@ class Match:
 
     COLUMNS: ClassVar[tuple[str, ...]] = ("reached", "xi", "found", "lowest", "highest", "rms", "runs")
 
-    combination: Combination
+    combination: Combination | GivenWall
     e: Restitution
     points: int = 2
     xi_base: float | None = None
@@ -127,6 +145,16 @@ class Match:
             keep(self, xi_base=require_within("damping ratio of the base xi_base", self.xi_base, 0.0, 1.0))
 
     @property
+    def face(self) -> str:
+        """Whether the "base" or the "side" is matched."""
+        return "base" if self.xi_base is None else "side"
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The damping ratios that are searched [-]."""
+        return BASE_BOUNDS if self.xi_base is None else SIDE_BOUNDS
+
+    @property
     def target(self) -> float:
         """The restitution of the rebound that is asked for, |e| [-]."""
         return self.e.base if self.xi_base is None else abs(self.e.lumped)
@@ -136,7 +164,7 @@ class Match:
         """What is matched on what."""
         combination = self.combination
         return {
-            "match": "base" if self.xi_base is None else "side",
+            "match": self.face,
             "points": self.points,
             "measure": self.measure,
             **{name.name: getattr(combination, name.name) for name in fields(combination)},
@@ -193,11 +221,10 @@ class Match:
 
     def __call__(self, history: Path | None = None) -> Row:
         """Search, and return the columns."""
-        bounds = BASE_BOUNDS if self.xi_base is None else SIDE_BOUNDS
         if self.measure == "rms":
-            least = least_difference(self.difference, bounds)
+            least = least_difference(self.difference, self.bounds)
             return least.row | {"found": self.restitution(least.xi), "rms": least.value}
-        return highest_branch(self.restitution, self.target, bounds, whole=self.xi_base is None).row
+        return highest_branch(self.restitution, self.target, self.bounds, whole=self.xi_base is None).row
 
 
 @dataclass(frozen=True)
