@@ -1,4 +1,7 @@
-"""What a report says and shows of a wall or of masonry: inputs with their units, results, what to be careful of."""
+"""What a report says and shows of a wall or of masonry: inputs with their units, results, what to be careful of.
+
+Effects, contacts, motions, solvers and versions are told of both alike.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,6 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 import matplotlib
 import mujoco
-import numpy
 import numpy as np
 import scipy
 from matplotlib.figure import Figure
@@ -37,6 +39,24 @@ from .verdicts import REVERSED, effect_name, told_name
 
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
+ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
+"""What is said of a run of a solver, its unit and its digits."""
+
+
+class Input(NamedTuple):
+    """An input of the report.
+
+    Args:
+        key: its name in the program, by which `basis` names it.
+        name: in words.
+        value: with its unit.
+        computed: whether it follows from others, and rests on nothing of its own.
+    """
+
+    key: str
+    name: str
+    value: str
+    computed: bool = False
 
 
 class Reported(Protocol):
@@ -323,26 +343,6 @@ def reported(case: AnyCase) -> Reported:
     return ReportedMasonry(case) if isinstance(case, MasonryCase) else ReportedWall(case)
 
 
-ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
-"""What is said of a run of a solver, its unit and its digits."""
-
-
-class Input(NamedTuple):
-    """An input of the report.
-
-    Args:
-        key: its name in the program, by which `basis` names it.
-        name: in words.
-        value: with its unit.
-        computed: whether it follows from others, and rests on nothing of its own.
-    """
-
-    key: str
-    name: str
-    value: str
-    computed: bool = False
-
-
 def of_effects(case: AnyCase, words: Words) -> list[Input]:
     """The effects."""
     told = [(name, effect.told, told_name(name, effect, words)) for name, effect in case.named.items()]
@@ -435,7 +435,7 @@ def versions(words: Words) -> list[tuple[str, ...]]:
     made = {
         "mjrock": __version__,
         "MuJoCo": mujoco.__version__,
-        "NumPy": numpy.__version__,
+        "NumPy": np.__version__,
         "SciPy": scipy.__version__,
         "matplotlib": matplotlib.__version__,
         "Python": platform.python_version(),

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
 import os
 import signal
 import warnings
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from pickle import PickleError
 from queue import Empty, SimpleQueue
@@ -23,7 +22,7 @@ from pebble import ProcessExpired
 
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
 from .pool import CHUNK_SECONDS, QUIT, Workers
-from .progress import CampaignProgress, WarningCounter, collect_warnings
+from .progress import CampaignProgress, collect_warnings
 from .store import Store
 from .task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
 
@@ -107,14 +106,14 @@ def campaign(
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry=retry, limit=limit)
         try:
-            with collect_warnings(run.warned.add):
+            with collect_warnings(progress.warned.add):
                 _carry_out(run, tasks, executor, count)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
             ) from None
         finally:
-            run.close()
+            progress.close()
         if total is not None and run.asked != total:
             raise RuntimeError(f"the tasks ended after {run.asked} of {total}; the same call carries on from there")
     return path
@@ -152,7 +151,7 @@ def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, co
             with Workers(count, run.limit) as workers:
                 run.across(chain([first], pending), count, workers.submit)
     except BrokenExecutor as error:
-        if executor is None and not run.finished:
+        if executor is None and not run.progress.finished:
             raise RuntimeError(GUARD) from None
         raise RuntimeError(
             f"the processes broke down: {error}; what is done is kept, and the same call carries on"
@@ -213,12 +212,7 @@ class Runner:
         self, file: Store, progress: CampaignProgress, folder: Path | None, *, retry: bool, limit: float | None
     ) -> None:
         self.file, self.progress, self.folder, self.retry, self.limit = file, progress, folder, retry, limit
-        self.statuses: Counter[str] = Counter()
-        self.outcomes: Counter[str] = Counter()
-        self.warned = WarningCounter()
         self.seconds = 0.0
-        self.finished = 0
-        self.skipped = 0
         self.asked = 0
 
     def pending(self, tasks: Iterable[Task]) -> Iterator[Job]:
@@ -232,12 +226,12 @@ class Runner:
             key, task = keyed(asked)
             if (first := labels.setdefault(key, dict(task.labels))) != task.labels:
                 same = f"the case labelled {dict(task.labels)} is that labelled {first}"
-                self.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")
+                self.progress.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")
             history = None if self.folder is None else self.folder / f"{key}.npz"
             status = statuses.get(key)
             kept = status in ("failed", "taken") or history is None or history.exists()
             if status is not None and kept and not (self.retry and status == "failed"):
-                self.skipped += 1
+                self.progress.skipped += 1
                 continue
             statuses[key] = "taken"
             names = column_names(task)
@@ -262,22 +256,15 @@ class Runner:
     def write(self, jobs: Sequence[Job], rows: Sequence[Row]) -> None:
         """Write the rows of jobs and show how far the campaign is. What a worker has warned of is counted."""
         for text in (text for row in rows for text in row.pop("warned", ())):
-            self.warned.add(text)
+            self.progress.warned.add(text)
         self.file.add(
             [
                 {"key": job.key, "position": job.position, "version": VERSION, **job.task.labels, **row}
                 for job, row in zip(jobs, rows, strict=True)
             ]
         )
-        self.finished += len(rows)
         self.seconds += sum(row["seconds"] for row in rows)
-        self.statuses.update(row["status"] for row in rows)
-        self.outcomes.update(str(row["outcome"]) for row in rows if row.get("outcome") is not None)
-        self.progress.show(self.skipped, self.finished, self.statuses["failed"])
-
-    def close(self) -> None:
-        """Say what was warned of, and how the campaign ended."""
-        self.progress.close(self.skipped, self.statuses, self.outcomes, self.warned.lines())
+        self.progress.add(rows)
 
     def here(self, job: Job) -> None:
         """Run a job in a thread of this process.
@@ -337,13 +324,14 @@ class Runner:
             return []
         if again:
             return [again.popleft()] if again[0].deaths < DEATHS or not flying else []
-        return list(itertools.islice(pending, self.chunk()))
+        return list(islice(pending, self.chunk()))
 
     def chunk(self) -> int:
         """How many jobs are about CHUNK_SECONDS of work; one where there is a time limit."""
-        if self.limit is not None or not self.finished:
+        finished = self.progress.finished
+        if self.limit is not None or not finished:
             return 1
-        return int(np.clip(CHUNK_SECONDS * self.finished / max(self.seconds, 1e-9), 1, 64))
+        return int(np.clip(CHUNK_SECONDS * finished / max(self.seconds, 1e-9), 1, 64))
 
     def left(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
         """The jobs of a chunk without rows that are to be tried again, each alone. Others get their rows."""

@@ -15,6 +15,7 @@ from typing import Any
 
 from ...bars import OF_ALL, PLAIN, shown_bar
 from .store import Store
+from .task import Row
 
 NUMBER_IN_TEXT = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
 
@@ -127,11 +128,15 @@ FEWEST = 10
 class CampaignProgress:
     """How far a campaign is, on the standard error. Use it in a `with` statement.
 
-    `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows.
+    `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows. `skipped` tasks
+    had a row already; of the others `statuses` and `outcomes` count how they ended, and `warned` what was warned of.
     """
 
     def __init__(self, store: Path, kept: int, total: int | None) -> None:
-        self.store, self.total = store, total
+        self.total, self.skipped = total, 0
+        self.statuses: Counter[str] = Counter()
+        self.outcomes: Counter[str] = Counter()
+        self.warned = WarningCounter()
         self.started = self.spoken = time.monotonic()
         self.first: tuple[int, float] | None = None
         if kept:
@@ -139,24 +144,31 @@ class CampaignProgress:
         form = (PLAIN if total is None else OF_ALL).replace("<{remaining}", "")  # which counts the start of workers
         self.bar = shown_bar("campaign", "cases", total, delay=1, bar_format=form)
 
-    def show(self, skipped: int, finished: int, failed: int) -> None:
-        """Show how many tasks had a row already, how many have got one, and how many of these have failed."""
-        now, parts = time.monotonic(), list[str]()
+    @property
+    def finished(self) -> int:
+        """How many tasks have got a row."""
+        return self.statuses.total()
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Count rows, and show how many tasks have one, and how many of these have failed."""
+        self.statuses.update(row["status"] for row in rows)
+        self.outcomes.update(str(row["outcome"]) for row in rows if row.get("outcome") is not None)
+        now, finished, parts = time.monotonic(), self.finished, list[str]()
         if finished and self.first is None:
             self.first = finished, now
         if rate := self._rate(finished, now):
             parts.append(f"{rate:.3g} cases/s")
             if self.total is not None:
-                parts.append(f"{(self.total - skipped - finished) / rate:.0f} s left")
-        if failed:
-            parts.append(f"{failed} failed")
+                parts.append(f"{(self.total - self.skipped - finished) / rate:.0f} s left")
+        if self.statuses["failed"]:
+            parts.append(f"{self.statuses['failed']} failed")
         if not self.bar.disable:
             self.bar.set_postfix_str(", ".join(parts), refresh=False)
-            self.bar.update(skipped + finished - self.bar.n)
+            self.bar.update(self.skipped + finished - self.bar.n)
         elif now - self.spoken >= LINE_EVERY:
             self.spoken = now
             of = "" if self.total is None else f" of {self.total}"
-            self._say(", ".join([f"{skipped + finished}{of} cases", *parts]))
+            self._say(", ".join([f"{self.skipped + finished}{of} cases", *parts]))
 
     def _rate(self, finished: int, now: float) -> float:
         """Cases in a second since the first that ended, as workers start for some time; 0 for fewer than FEWEST."""
@@ -164,15 +176,14 @@ class CampaignProgress:
             return 0.0
         return (finished - self.first[0]) / (now - self.first[1])
 
-    def close(
-        self, skipped: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], warned: Sequence[str]
-    ) -> None:
+    def close(self) -> None:
         """Say what was warned of, how many tasks had a row, how the others ended, how long that took, and how many are
         left."""
         self.bar.close()
-        for line in warned:
+        for line in self.warned.lines():
             self._say(line)
-        self._say(closing(skipped, statuses, outcomes, time.monotonic() - self.started, self.total))
+        seconds = time.monotonic() - self.started
+        self._say(closing(self.skipped, self.statuses, self.outcomes, seconds, self.total))
 
     def _say(self, text: str) -> None:
         print(f"campaign: {text}", file=sys.stderr, flush=True)
