@@ -19,7 +19,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Implausible, keep, require_kind, shown, spelt
+from ..quantities import Implausible, keep, require_kind, shown, spelt, warn_of
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
 from ..result.ties import Plastic
@@ -71,7 +71,7 @@ class OfWall(Subject):
         if (e if by_theory else contacts) is None:
             raise ValueError(f"the solver {solver} needs {'e' if by_theory else 'contacts'}")
         if by_theory and e is not None and (doubt := e.doubt(case.wall, case.stop_top)):
-            warnings.warn(doubt, Implausible, stacklevel=4)
+            warn_of(doubt, Implausible)
         if contacts is not None and not by_theory:
             contacts.require_fit(case.block, side_stop=case.one_sided)
 

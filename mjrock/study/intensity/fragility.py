@@ -6,7 +6,6 @@ It is fitted to runs that overturned or did not, or to the intensities that over
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -31,6 +30,7 @@ from ...quantities import (
     require_within,
     short_repr,
     shown,
+    warn_of,
 )
 from ...result.ending import Outcome
 from ..campaign.task import Row
@@ -246,10 +246,9 @@ def fit_fragility(
     fit = _likeliest(x, fell)
     low, high = fit.tried
     if not low <= fit.median <= high:
-        warnings.warn(
+        warn_of(
             f"the median {fit.median:.4g} is extrapolated: the intensities tried are {low:.4g} to {high:.4g}; run "
-            "intensities around it",
-            stacklevel=2,
+            "intensities around it"
         )
     if groups is None:
         return fit
@@ -265,10 +264,9 @@ def fit_fragility(
     curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(number for _, number in fits)
     curves.setflags(write=False)
     if without > MOST_WITHOUT * count:
-        warnings.warn(
+        warn_of(
             f"{without} of {count} resamples of {names} groups gave no curve, only a step; a penalised fit stands "
-            "for them, and the band is wide: run intensities between those tried, or more records",
-            stacklevel=2,
+            "for them, and the band is wide: run intensities between those tried, or more records"
         )
     return replace(fit, groups=names, resamples=curves, without_curve=without)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,15 +12,14 @@ import numpy as np
 
 from ...notebook import html_of
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
-from ...problem.masonry.effects import laden
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
-from ...quantities import Array, Implausible, is_iterable, require_kind, share_said, shown, spelt
+from ...quantities import Array, Implausible, is_iterable, require_kind, share_said, shown, spelt, warn_of
 from ...result.response import Response
 from ..analysis import Analysis
 from ..campaign.campaign import results
 from .mechanism import SHARE, MechanismCheck, Verdict, verdict_rows, verdicts_of
-from .push import Push
+from .push import Push, of_centroid
 
 LEAST = 8
 """Records that are more than those of the global response, of which NTC 2018, 7.3.5, takes the mean from seven on."""
@@ -218,7 +216,7 @@ def dynamic_check(
     known = tuple(e for e in impacts if not math.isnan(e))
     check = DynamicCheck(limit_state, d_0, found, known, natural)
     if check.lacking:
-        warnings.warn(f"C8.7.1.2.1.9 asks for more: {'; '.join(check.lacking)}", Implausible, stacklevel=2)
+        warn_of(f"C8.7.1.2.1.9 asks for more: {'; '.join(check.lacking)}", Implausible)
     return check
 
 
@@ -236,9 +234,7 @@ def _moved(wall: Block, rotation: float) -> float:
 
 def _along(run: Response, case: MasonryCase, way: Array) -> float:
     """Largest displacement of the centroid of the free blocks along a direction [m], infinite where a block fell."""
-    mass = laden(case.masonry, case.effects)[0][list(case.masonry.free)]
-    along = (run.pose[:, :, : len(way)] @ way) @ mass / mass.sum()
-    return math.inf if run.fallen else max(float(along.max()), 0.0)
+    return math.inf if run.fallen else max(float(of_centroid(case, run.pose, way).max()), 0.0)
 
 
 def _cases_of(runs: Sequence[Response | Analysis], curve: Push | None) -> list[AnyCase]:

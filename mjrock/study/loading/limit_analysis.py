@@ -1,9 +1,8 @@
-"""The push that rigid masonry bears, by limit analysis: what grows, what is constant, and what stands by wedging."""
+"""The push that rigid masonry bears by limit analysis, at rest and in the poses through which its mechanism goes."""
 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -37,11 +36,23 @@ from ...quantities import (
     require_whole,
     require_within,
     shown,
+    warn_of,
 )
 from ...scene.masonry import wedged
+from .pushover import falls_to_zero
 
 NOTHING, BORNE = 1e-6, 1e-3
 """Multiplier that counts as none, and that of associated friction from which something is borne [-]."""
+STAYS = 1e-6
+"""Rate below which a line neither opens nor slides, over the largest of the mechanism [-]."""
+ROUNDED, TURNS = 1e-12, 20
+"""What lines that stay may miss, over the size of the masonry [-], and most turns of the search for it."""
+PRESSED = 1e-6
+"""Normal force of a joint that counts as none, over the largest [-]."""
+BEHIND = 0.1
+"""How far a line that closes may lie behind its face, over the tolerance of the masonry [-]."""
+HALVINGS = 40
+"""How often a step is halved at most in the search for where a line closes."""
 
 
 def collapse_multiplier(
@@ -143,19 +154,17 @@ def collapse_multiplier(
     found = limit_of(masonry, push, grown, constant, associated=dilates, ties=ties)
     found = replace(found, wedged=wedged(masonry, given))
     if found.wedged:
-        warnings.warn(
+        warn_of(
             f"{named(found.wedged)} would stand only by wedging, and slide down from joints that nothing presses "
             "together; the multiplier is that of blocks that are wedged",
             Implausible,
-            stacklevel=2,
         )
     if not dilates and (turning := _turning(found, grown, constant, ties)):
-        warnings.warn(
+        warn_of(
             f"multiplier = {abs(found.multiplier):.1g}: {named(turning)} turn about their normals without friction, "
             "since rigid faces let normal forces gather in a point; give points = 2, or associated=True for an upper "
             "bound",
             Implausible,
-            stacklevel=2,
         )
     return found
 
@@ -235,18 +244,6 @@ def horizontal(
     return np.append(given / length, 0.0) if masonry.in_space else given
 
 
-STAYS = 1e-6
-"""Rate below which a line neither opens nor slides, over the largest of the mechanism [-]."""
-ROUNDED, TURNS = 1e-12, 20
-"""What lines that stay may miss, over the size of the masonry [-], and most turns of the search for it."""
-PRESSED = 1e-6
-"""Normal force of a joint that counts as none, over the largest [-]."""
-BEHIND = 0.1
-"""How far a line that closes may lie behind its face, over the tolerance of the masonry [-]."""
-HALVINGS = 40
-"""How often a step is halved at most in the search for where a line closes."""
-
-
 @dataclass(frozen=True, eq=False)
 class LimitCurve:
     """What rigid masonry bears as its mechanism goes on.
@@ -272,10 +269,7 @@ class LimitCurve:
     @property
     def d_0(self) -> float:
         """Displacement at which nothing is borne any more [m]; NaN where the curve ends before it."""
-        if self.multiplier[-1] > 0:
-            return math.nan
-        (d, e), (borne, none) = self.displacement[-2:], self.multiplier[-2:]
-        return float(d + (e - d) * borne / (borne - none))
+        return falls_to_zero(self.displacement, self.multiplier)
 
 
 def limit_curve(

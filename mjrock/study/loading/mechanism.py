@@ -8,7 +8,6 @@ walls.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -37,6 +36,7 @@ from ...quantities import (
     short_repr,
     shown,
     takes,
+    warn_of,
 )
 from .pushover import pushover
 
@@ -229,10 +229,7 @@ class MechanismCheck:
     def linear_ratio(self) -> float | None:
         """Capacity over demand of the linear check of the SLV [-], with the ties at their strength; None where the peak
         acceleration of the demand is not known."""
-        if self.peak is None:
-            return None
-        capacity = self.linear if self.linear_tied is None else self.linear_tied
-        return capacity / self.peak if self.peak > 0 else math.inf
+        return None if self.peak is None else self.verdicts[0].ratio
 
     @property
     def ground_ratio(self) -> float:
@@ -448,11 +445,10 @@ def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[s
         if breaking.get(name, math.inf) > capacity
     ]
     if holding and capacity > alone:
-        warnings.warn(
+        warn_of(
             f"d_SLC = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
             f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
             Implausible,
-            stacklevel=4,
         )
 
 
