@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 
@@ -132,7 +132,7 @@ class Sensitivity(Drawn):
 
 
 def sensitivity(
-    build: Callable[..., Any],
+    build: Callable[..., Task],
     base: Mapping[str, object],
     vary: Mapping[str, Sequence[object]],
     store: str | Path | None = None,
@@ -191,19 +191,17 @@ def sensitivity(
 
 
 def _points(
-    build: object, base: object, vary: object, together: bool
+    build: Callable[..., Task], base: Mapping[str, object], vary: Mapping[str, Sequence[object]], together: bool
 ) -> tuple[list[dict[str, object]], tuple[tuple[str, ...], ...]]:
     """The settings of each run, those of the base first, and the names of those that differ from the base."""
     if not callable(build):
         raise TypeError(f"build = {shown(build)} is not a function of settings")
-    for name, value in (("base", base), ("vary", vary)):
-        if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-            raise TypeError(f"{name} = {shown(value)} is not a mapping of the names of settings")
-    assert isinstance(base, Mapping)
-    assert isinstance(vary, Mapping)
+    for name, settings in (("base", base), ("vary", vary)):
+        if not isinstance(settings, Mapping) or not all(isinstance(key, str) for key in settings):
+            raise TypeError(f"{name} = {shown(settings)} is not a mapping of the names of settings")
     if not vary:
         raise ValueError("vary is empty; at least one setting is needed")
-    base = defaults_of(build, vary) | dict(base)
+    base = {**defaults_of(build, vary), **base}
     choices: dict[str, list[object]] = {}
     for name, values in vary.items():
         if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
@@ -230,7 +228,7 @@ def _points(
     return points, tuple(changed)
 
 
-def defaults_of(build: Callable[..., Any], names: Iterable[str]) -> dict[str, object]:
+def defaults_of(build: Callable[..., object], names: Iterable[str]) -> dict[str, object]:
     """The defaults of these arguments of a function, of those that have one."""
     try:
         arguments = inspect.signature(build).parameters

@@ -16,7 +16,6 @@ from concurrent.futures import Future
 from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
-from typing import Any
 
 from pebble import ProcessPool
 from tqdm import tqdm
@@ -120,7 +119,8 @@ def start_worker() -> None:
 
 
 def _end_with_the_campaign() -> None:
-    parent: Any = multiprocessing.parent_process()
+    parent = multiprocessing.parent_process()
+    assert parent is not None
     parent.join()
     os._exit(1)
 

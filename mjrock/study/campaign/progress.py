@@ -11,7 +11,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TextIO
 
 from ...bars import OF_ALL, PLAIN, shown_bar
 from .store import Store
@@ -46,9 +46,16 @@ def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
     """Hand the text of every warning that would be shown to `first`, and show those for which it says so."""
     before = warnings.showwarning
 
-    def shown(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+    def shown(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
         if first(f"{category.__name__}: {message}"):
-            before(message, category, *place, **more)
+            before(message, category, filename, lineno, file, line)
 
     warnings.showwarning = shown
     try:

@@ -189,7 +189,8 @@ def carry_out(task: Task, history: Path | None) -> Row:
     return row | {"seconds": time.perf_counter() - started}
 
 
-def _named(what: str, value: object) -> Any:
+def _named(what: str, value: object) -> Value:
+    """A value as a table holds it; a ValueError that names it for one that no table holds."""
     try:
         return table_value(value)
     except ValueError as error:

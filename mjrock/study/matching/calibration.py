@@ -11,17 +11,17 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Annotated, Any, Unpack
+from typing import Annotated, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from ...problem.damping.forms import BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
 from ...problem.damping.law import HIGHEST_XI, LEAST_XI, REACH_MARGIN, DampingLaw
 from ...problem.damping.restitution import Restitution
 from ...quantities import (
     Array,
+    Flags,
     Within,
     keep,
     keep_declared,
@@ -285,7 +285,7 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row]) -> Regressi
         fitted: Form = form(*values, r_squared=math.nan)
         return np.asarray(np.clip(fitted.xi(groups, loss), *bounds))
 
-    def fit(kept: NDArray[np.bool_], begin: Array) -> Any:
+    def fit(kept: Flags, begin: Array) -> OptimizeResult:
         def residuals(values: Array) -> Array:
             return np.asarray(np.log(predict(values) / xi)[kept])
 
