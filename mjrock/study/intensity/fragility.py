@@ -252,12 +252,7 @@ def fit_fragility(
         )
     if groups is None:
         return fit
-    labels = labels_of(groups)
-    if labels.shape != x.shape:
-        raise ValueError(
-            f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
-        )
-    names, group = group_numbers(labels)
+    names, group = group_numbers(labels_for(groups, len(x)))
     draws = drawn(names, resamples, seed)
     count, at_once = len(draws), max(1, MOST_VALUES // len(x))
     fits = [resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
@@ -318,21 +313,18 @@ def drawn(groups: int, resamples: int, seed: int) -> Integers:
 
 
 def labels_for(groups: ArrayLike | None, count: int) -> NDArray[np.generic]:
-    """What each of so many values belongs to, see `labels_of`; None takes each as a group of its own."""
-    labels = np.arange(count) if groups is None else labels_of(groups)
-    if labels.shape != (count,):
-        raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
-    return labels
-
-
-def labels_of(groups: ArrayLike) -> NDArray[np.generic]:
-    """What each run belongs to; TypeError or ValueError unless they are all text or all numbers, without NaN."""
+    """The group of each of so many values; None takes each as a group of its own. TypeError or ValueError unless they
+    are all text or all numbers, without NaN."""
+    if groups is None:
+        return np.arange(count)
     takes = "the name or the number of the group of each run"
     labels = require_plain("groups", groups, takes, "biufU")
     if labels.dtype.kind == "U" and not all(isinstance(label, str) for label in np.asarray(groups, dtype=object).flat):
         raise TypeError(f"groups = {shown(groups)} holds text and numbers; it takes {takes}, all of one kind")
     if labels.dtype.kind == "f" and np.isnan(labels).any():
         raise ValueError(f"groups holds nan; it takes {takes}")
+    if labels.shape != (count,):
+        raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
     return labels
 
 

@@ -31,6 +31,12 @@ from ..campaign.task import Row
 from .fragility import Fragility, fit_fragility, labels_for, lost
 
 Build = Callable[[float], Analysis]
+"""Makes the analysis of a scale."""
+GROWTH = 1.25
+"""Ratio of neighbouring scales while a bracket is searched [-]. A wall may stand again above a scale that overturns it:
+a finer ratio misses fewer of such islands."""
+LARGEST_SCALE, LEAST_SCALE = 1e3, 1e-6
+"""Scales beyond which the search for a bracket gives up, over the scale it starts at [-]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -207,33 +213,20 @@ def built(build: Build, scale: float, name: str) -> Analysis:
     return analysis
 
 
-GROWTH = 1.25
-"""Ratio of neighbouring scales while a bracket is searched [-]. A wall may stand again above a scale that overturns it:
-a finer ratio misses fewer of such islands."""
-LARGEST_SCALE, LEAST_SCALE = 1e3, 1e-6
-"""Scales beyond which the search for a bracket gives up, over the scale it starts at [-]."""
-
-NAMES = (
-    "solver", "law", "capacity_g", "capacity_scale", "stands_at_g", "stands_down_to_g", "stands_above_g", "runs",
-    "message",
-)  # fmt: skip
-"""The columns of a row."""
-
-
-def bracket(falls: Callable[[float], bool], start: float = 1.0, growth: float = GROWTH) -> tuple[float, float]:
+def bracket(falls: Callable[[float], bool], start: float = 1.0) -> tuple[float, float]:
     """Two neighbouring scales of which the lower leaves a wall standing and the upper overturns it.
 
-    From `start` the scale goes up by `growth` until the wall falls, or down until it stands; ValueError if it stands at
-    LARGEST times the start, or falls at LEAST times the start.
+    From `start` the scale goes up by GROWTH until the wall falls, or down until it stands; ValueError if it stands at
+    LARGEST_SCALE times the start, or falls at LEAST_SCALE times the start.
     """
     low = high = start
     if falls(start):
-        while falls(low := high / growth):
+        while falls(low := high / GROWTH):
             if low < LEAST_SCALE * start:
                 raise ValueError(f"the wall overturns at every scale from {start:g} down to {low:g}")
             high = low
         return low, high
-    while not falls(high := low * growth):
+    while not falls(high := low * GROWTH):
         if high > LARGEST_SCALE * start:
             raise ValueError(f"the wall stands at every scale from {start:g} up to {high:g}; no capacity is found")
         low = high
@@ -253,7 +246,7 @@ def lowest(falls: Callable[[float], bool], low: float, high: float, below: int, 
     """Two neighbouring scales, as those given, below which the wall has stood at so many weaker ones in a row.
 
     From `low` the scale goes down by `spacing` [-] at a time. Where the wall falls, that scale is the upper one of the
-    two, and the count begins again. ValueError if it falls at LEAST times `low` or less.
+    two, and the count begins again. ValueError if it falls at LEAST_SCALE times `low` or less.
     """
     scale, stood, least = low, 0, LEAST_SCALE * low
     while stood < below:
@@ -302,7 +295,10 @@ class Capacity:
         ValueError: for a value outside its range, or a case whose ground does not move horizontally.
     """
 
-    COLUMNS: ClassVar[tuple[str, ...]] = NAMES
+    COLUMNS: ClassVar[tuple[str, ...]] = (
+        "solver", "law", "capacity_g", "capacity_scale", "stands_at_g", "stands_down_to_g", "stands_above_g", "runs",
+        "message",
+    )  # fmt: skip
     PEAK: ClassVar[str] = "capacity_g"
     """The column that a study of sensitivity looks at."""
 

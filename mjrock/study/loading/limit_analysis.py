@@ -318,7 +318,7 @@ def limit_curve(
         if ended := _ended(d, multiplier, to, found):
             break
         stay = path.staying(pose, found)
-        if slides := path.sliding(pose, found, stay):
+        if slides := path.sliding(found, stay):
             ended = f"{named(slides)} slide"
             break
         pose = path.further(pose, found, stay, min(step, to - d))
@@ -351,11 +351,12 @@ def _ended(d: float, multiplier: float, to: float, found: Collapse) -> str:
 
 
 class Stay(NamedTuple):
-    """Which closed lines do not open in a mechanism, which of them do not slide, and which open, shape (m,) each."""
+    """Which closed lines do not open in a mechanism, which of them do not slide, and which closed lines slide, shape
+    (m,) each."""
 
     closed: Flags
     stuck: Flags
-    opens: Flags
+    slides: Flags
 
 
 class Path(NamedTuple):
@@ -407,20 +408,16 @@ class Path(NamedTuple):
         along = np.hypot.reduce([self.rates(moves, way) @ velocity for way in lines.across])
         least = STAYS * max(float(np.abs(normal[closed]).max(initial=0.0)), float(np.abs(velocity).max()))
         still = closed & (np.abs(normal) <= least)
-        return Stay(still, still & (along <= least), closed & ~still)
+        return Stay(still, still & (along <= least), closed & (along > STAYS * np.abs(velocity).max()))
 
-    def sliding(self, pose: Array, found: Collapse, stay: Stay) -> list[str]:
+    def sliding(self, found: Collapse, stay: Stay) -> list[str]:
         """Names of the joints that press, rub and slide at each line that does not open, or at all that do."""
-        lines, moves, velocity = self.masonry.lines, Moves.of(self.masonry, pose), found.motion.ravel()
-        along = np.hypot.reduce([self.rates(moves, way) @ velocity for way in lines.across])
-        rubs = (along > STAYS * np.abs(velocity).max()) & (stay.opens | stay.closed)
-        names = []
-        for number, joint in enumerate(self.masonry.joints):
-            own = lines.joint == number
-            pressed = found.forces is not None and found.forces.normal[number] > PRESSED * found.forces.normal.max()
-            if pressed and self.masonry.joint_friction[number] > 0 and rubs[own].any() and not (own & stay.stuck).any():
-                names.append(joint.name)
-        return names
+        if found.forces is None:
+            return []
+        joints, normal = range(len(self.masonry.joints)), found.forces.normal
+        rub = (normal > PRESSED * normal.max()) & (self.masonry.joint_friction > 0)
+        slide, stick = (np.isin(joints, self.masonry.lines.joint[which]) for which in (stay.slides, stay.stuck))
+        return [self.masonry.joints[number].name for number in np.flatnonzero(rub & slide & ~stick)]
 
     def further(self, pose: Array, found: Collapse, stay: Stay, step: float) -> Array:
         """The pose a step further [m], or up to where a line closes."""

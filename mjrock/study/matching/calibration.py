@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Unpack
 
@@ -34,7 +34,6 @@ from ...quantities import (
 from ..campaign.campaign import CampaignOptions, completed
 from ..campaign.task import VERSION, Row
 from .match import (
-    AMPLITUDE_RANGE,
     K_N_RANGE,
     R_RANGE,
     SLENDERNESS_RANGE,
@@ -187,15 +186,6 @@ def calibrate(
         errors={"base": base.errors, "side": side.errors},
     )
     return Calibration(law, base, side, base_tasks, base_rows, side_tasks, side_rows)
-
-
-def sweep(start: Combination) -> list[tuple[str, Combination]]:
-    """Combinations that differ from `start` in one parameter, at five values through its range of Table 1."""
-    swept: list[tuple[str, Combination]] = []
-    ranges = {"R": R_RANGE, "slenderness": SLENDERNESS_RANGE, "k_base": K_N_RANGE, "k_side": K_N_RANGE}
-    for name, (low, high) in (ranges | {"amplitude": AMPLITUDE_RANGE}).items():
-        swept += [(name, replace(start, **{name: float(value)})) for value in np.geomspace(low, high, 5)]
-    return swept
 
 
 STARTS: dict[type, tuple[float, ...]] = {
