@@ -86,9 +86,8 @@ if TYPE_CHECKING:
     from .study.intensity.fragility import Fragility, PairedRatio, fit_capacities, fit_fragility, lost, paired_ratio
     from .study.intensity.ida import Capacity, ida, overturning_intensity
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
-    from .study.loading.dynamic import DynamicCheck, dynamic_check
+    from .study.loading.code_check import DynamicCheck, MechanismCheck, dynamic_check, mechanism_check
     from .study.loading.limit_analysis import LimitCurve, collapse_multiplier, limit_curve
-    from .study.loading.mechanism import MechanismCheck, mechanism_check
     from .study.loading.push import Push, push
     from .study.loading.pushover import pushover
     from .study.matching.calibration import Plan, calibrate

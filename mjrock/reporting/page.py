@@ -20,7 +20,7 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
-from ..study.loading.dynamic import signals_of
+from ..study.loading.code_check import signals_of
 from . import subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .pictures import PANELS, Run, capacity_curves, histories, strip

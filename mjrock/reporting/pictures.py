@@ -19,7 +19,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array
 from ..result.response import Response
-from ..study.loading.mechanism import MechanismCheck
+from ..study.loading.code_check import MechanismCheck
 from .texts import Words
 from .verdicts import Mechanism, told_name
 

@@ -31,7 +31,7 @@ from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
 from ..study.intensity.fragility import Fragility
-from ..study.loading.dynamic import displacements_of
+from ..study.loading.code_check import d_0_of, displaced
 from .markup import Markup, element, table
 from .pictures import SMALL, WIDE, Run, wall_drawn
 from .texts import DASH, FOUND, GIVEN, Words, texts
@@ -141,7 +141,8 @@ class ReportedWall(Reported):
 
     def largest(self, response: Response) -> float:
         """Of the centroid as the wall turns about its toe, as the dynamic check has it."""
-        return displacements_of(response.of_wall[0], [response.peak_over_alpha])[1][0]
+        wall = response.of_wall[0].wall
+        return displaced(wall, response.peak_over_alpha * wall.alpha)
 
     def moved(self, response: Response) -> Array:
         """Of the centroid."""
@@ -149,7 +150,7 @@ class ReportedWall(Reported):
 
     def limit(self) -> float | None:
         """Of the wall without its ties; None of one that they alone hold."""
-        return displacements_of(self.case, ())[0] or None
+        return d_0_of(self.case) or None
 
     def result(self, response: Response, words: Words) -> list[str]:
         """How it ended, its largest displacement, that over the limit, impacts."""
