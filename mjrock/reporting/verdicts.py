@@ -10,16 +10,7 @@ import numpy as np
 
 from ..problem.wall.effect import Effect
 from ..quantities import require_kind, require_text, shown
-from ..study.loading.code_check import (
-    DAMPING,
-    FEWEST_RECORDS,
-    PERIOD,
-    SHARE,
-    DynamicCheck,
-    MechanismCheck,
-    Step,
-    Verdict,
-)
+from ..study.loading.code_check import DAMPING, MIN_RECORDS, PERIOD, SHARE, DynamicCheck, MechanismCheck, Step, Verdict
 from .markup import Markup, element, formula, table
 from .texts import DASH, FOUND, Words
 
@@ -234,9 +225,9 @@ def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
     if check.restitution:
         low, middle, high = (words.number(one, FOUND) for one in np.percentile(check.restitution, [5, 50, 95]))
         e = words("restitution_found", middle=middle, low=low, high=high, count=len(check.restitution))
-    lacks = (
-        [words("lacks_records", count=check.records, least=FEWEST_RECORDS)] if check.records < FEWEST_RECORDS else []
-    )
+    lacks = []
+    if check.records < MIN_RECORDS:
+        lacks.append(words("lacks_records", count=check.records, least=MIN_RECORDS))
     if check.in_one_polarity:
         lacks.append(words("lacks_polarity", count=check.in_one_polarity))
     if not check.natural:

@@ -62,7 +62,7 @@ PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 SHORT = 0.05
 """Period from which on the spectrum of a record is looked at where T_0 is not known [s]."""
-FEWEST_RECORDS = 8
+MIN_RECORDS = 8
 """Records that are more than those of the global response, of which NTC 2018, 7.3.5, takes the mean from seven on."""
 
 Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
@@ -548,8 +548,8 @@ class DynamicCheck:
     def lacking(self) -> tuple[str, ...]:
         """What C8.7.1.2.1.9 asks for and the runs do not have, in words."""
         count, lacking = self.records, list[str]()
-        if count < FEWEST_RECORDS:
-            more = f"and more than the {FEWEST_RECORDS - 1} of the global response (NTC 2018, 7.3.5) count"
+        if count < MIN_RECORDS:
+            more = f"and more than the {MIN_RECORDS - 1} of the global response (NTC 2018, 7.3.5) count"
             lacking.append(f"{count} records, {more}")
         if self.in_one_polarity:
             lacking.append(f"{self.in_one_polarity} of {count} records in one polarity alone")
@@ -582,7 +582,7 @@ class DynamicCheck:
     @property
     def holds(self) -> bool:
         """Whether no run exceeds d_0 and the mean of the maxima stays within the capacity."""
-        return not self.exceeded and self.mean <= self.capacity
+        return all(verdict.holds for verdict in self.verdicts)
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
