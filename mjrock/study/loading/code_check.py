@@ -53,7 +53,9 @@ from .pushover import pushover
 SHARE = {"SLV": 0.4, "SLC": 0.6}
 """Displacement capacity over that at which the curve ends [-], C8.7.1.2.1.6."""
 PERIOD = {"SLV": 1.68 * math.pi, "SLC": 1.56 * math.pi}
-"""Factor of the equivalent period [-], equations C8.7.1.10 and C8.7.1.11."""
+"""Factor of the equivalent period [-], by the equation of the limit state."""
+EQUATION = {"SLV": "C8.7.1.10", "SLC": "C8.7.1.11"}
+"""The equation of that period."""
 DAMPING = {"SLV": 0.08, "SLC": 0.10}
 """Equivalent damping ratio [-], C8.7.1.2.1.8."""
 BEHAVIOUR = 2.0
@@ -73,7 +75,7 @@ class Step(NamedTuple):
     """One step of a check.
 
     Args:
-        key: which it is, see `SAID`.
+        key: which it is, see `STEPS`.
         value: in the unit.
         clause: where it stands in the Circolare; none of a ratio.
         unit: of the value.
@@ -87,27 +89,31 @@ class Step(NamedTuple):
     of: str = ""
 
 
-SAID = {
-    "alpha_0": ("multiplier alpha_0", 4),
-    "participation": ("participating mass e*", 4),
-    "confidence_factor": ("confidence factor FC", 2),
-    "a_0": ("a_0 = alpha_0 g / (e* FC), SLD", 4),
-    "linear": ("linear SLV, q a_0 with q = 2", 4),
-    "alpha_tied": ("alpha_0, ties at their strength", 4),
-    "linear_tied": ("linear SLV, ties at their strength", 4),
-    "peak": ("peak of the demand, a_g S or a_Z", 4),
-    "linear_ratio": ("capacity over demand SLV, linear", 2),
-    "elastic_period": ("elastic branch up to the curve, T_0", 3),
-    "d_0": ("d_0", 4),
-    "yields": ("{of} yields at d", 4),
-    "breaks": ("{of} breaks at d", 4),
-    "capacity": ("d_{of} = {share:.1f} d_0", 4),
-    "period": ("T_{of}", 3),
-    "demand": ("demand, xi = {damping:.0%}", 4),
-    "ratio": ("capacity over demand {of}", 2),
-    "ground_ratio": ("a_g,SLV / a_g, at least a_g,SLD / a_g", 2),
+STEPS = {
+    "alpha_0": ("multiplier alpha_0", 4, "", "C8.7.1.1"),
+    "participation": ("participating mass e*", 4, "", "C8.7.1.5"),
+    "confidence_factor": ("confidence factor FC", 2, "", "C8.7.1.2.1.3"),
+    "a_0": ("a_0 = alpha_0 g / (e* FC), SLD", 4, "g", "C8.7.1.8"),
+    "linear": ("linear SLV, q a_0 with q = 2", 4, "g", "C8.7.1.2.1.7"),
+    "alpha_tied": ("alpha_0, ties at their strength", 4, "", "C8.7.1.1"),
+    "linear_tied": ("linear SLV, ties at their strength", 4, "g", "C8.7.1.2.1.7"),
+    "peak": ("peak of the demand, a_g S or a_Z", 4, "g", "C8.7.1.2.1.7"),
+    "linear_ratio": ("capacity over demand SLV, linear", 2, "", ""),
+    "elastic_period": ("elastic branch up to the curve, T_0", 3, "s", "C8.7.1.6"),
+    "d_0": ("d_0", 4, "m", "C8.7.1.4"),
+    "yields": ("{of} yields at d", 4, "m", ""),
+    "breaks": ("{of} breaks at d", 4, "m", ""),
+    "capacity": ("d_{of} = {share:.1f} d_0", 4, "m", "C8.7.1.2.1.6"),
+    "period": ("T_{of}", 3, "s", ""),
+    "demand": ("demand, xi = {damping:.0%}", 4, "m", "C8.7.1.2.1.8"),
+    "ratio": ("capacity over demand {of}", 2, "", ""),
+    "ground_ratio": ("a_g,SLV / a_g, at least a_g,SLD / a_g", 2, "", "C8.7.1.2.1.8"),
 }
-"""What a table says of each step, and its decimals."""
+"""The text of each step in a table, its decimals, its unit and its clause. The key of a step of the whole mechanism is
+the name of its attribute of `MechanismCheck`, that of a limit state the name of its attribute of `LimitState`."""
+OF_MECHANISM = tuple(STEPS)[: 1 + tuple(STEPS).index("d_0")]
+OF_LIMIT_STATE = "capacity", "period", "demand", "ratio"
+"""The keys of the steps of a mechanism, and of those of a limit state."""
 
 
 class Verdict(NamedTuple):
@@ -273,34 +279,20 @@ class MechanismCheck:
     @property
     def steps(self) -> tuple[Step, ...]:
         """Every step with its clause, in the order of the check."""
-        found = [
-            Step("alpha_0", self.alpha_0, "C8.7.1.1"),
-            Step("participation", self.participation, "C8.7.1.5"),
-            Step("confidence_factor", self.confidence_factor, "C8.7.1.2.1.3"),
-            Step("a_0", self.a_0 / GRAVITY, "C8.7.1.8", "g"),
-            Step("linear", self.linear / GRAVITY, "C8.7.1.2.1.7", "g"),
-        ]
-        if self.alpha_tied is not None and self.linear_tied is not None:
-            found.append(Step("alpha_tied", self.alpha_tied, "C8.7.1.1"))
-            found.append(Step("linear_tied", self.linear_tied / GRAVITY, "C8.7.1.2.1.7", "g"))
-        if self.peak is not None and self.linear_ratio is not None:
-            found.append(Step("peak", self.peak / GRAVITY, "C8.7.1.2.1.7", "g"))
-            found.append(Step("linear_ratio", self.linear_ratio))
-        if self.elastic_period is not None:
-            found.append(Step("elastic_period", self.elastic_period, "C8.7.1.6", "s"))
-        found.append(Step("d_0", self.d_0, "C8.7.1.4", "m"))
-        found += [Step("yields", d, "", "m", tie) for tie, d in self.yielding.items()]
-        found += [Step("breaks", d, "", "m", tie) for tie, d in self.breaking.items()]
+        found = [(key, "", getattr(self, key)) for key in OF_MECHANISM]
+        found += [("yields", tie, d) for tie, d in self.yielding.items()]
+        found += [("breaks", tie, d) for tie, d in self.breaking.items()]
         for name, state in self.states.items():
-            found += [
-                Step("capacity", state.capacity, "C8.7.1.2.1.6", "m", name),
-                Step("period", state.period, "C8.7.1.10" if name == "SLV" else "C8.7.1.11", "s", name),
-                Step("demand", state.demand, "C8.7.1.2.1.8", "m", name),
-                Step("ratio", state.ratio, "", "", name),
-            ]
+            found += [(key, name, getattr(state, key)) for key in OF_LIMIT_STATE]
         if self.ground_ratio > self.states["SLV"].ratio:
-            found.append(Step("ground_ratio", self.ground_ratio, "C8.7.1.2.1.8"))
-        return tuple(found)
+            found.append(("ground_ratio", "", self.ground_ratio))
+        steps = []
+        for key, of, value in found:
+            if value is not None:
+                *_, unit, clause = STEPS[key]
+                value = value / GRAVITY if unit == "g" else value
+                steps.append(Step(key, value, EQUATION[of] if key == "period" else clause, unit, of))
+        return tuple(steps)
 
     def broken_before(self, limit_state: str) -> list[str]:
         """Names of the ties that have broken at the capacity of a limit state."""
@@ -321,7 +313,7 @@ class MechanismCheck:
         said |= {"linear_ratio": linear[0].said if linear else "", "ground_ratio": f"{slv.said}, C8.7.1.2.1.8"}
         rows = []
         for step in self.steps:
-            what, digits = SAID[step.key]
+            what, digits, *_ = STEPS[step.key]
             what = what.format(of=step.of, share=SHARE.get(step.of, 0.0), damping=DAMPING.get(step.of, 0.0))
             note = said.get(f"{step.key} {step.of}".strip(), step.clause)
             if step.key == "ratio" and (gone := self.broken_before(step.of)):
