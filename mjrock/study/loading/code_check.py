@@ -75,7 +75,7 @@ class Step(NamedTuple):
     """One step of a check.
 
     Args:
-        key: which it is, see `STEPS`.
+        key: which it is, see `CHECK_STEPS`.
         value: in the unit.
         clause: where it stands in the Circolare; none of a ratio.
         unit: of the value.
@@ -89,7 +89,7 @@ class Step(NamedTuple):
     of: str = ""
 
 
-STEPS = {
+CHECK_STEPS = {
     "alpha_0": ("multiplier alpha_0", 4, "", "C8.7.1.1"),
     "participation": ("participating mass e*", 4, "", "C8.7.1.5"),
     "confidence_factor": ("confidence factor FC", 2, "", "C8.7.1.2.1.3"),
@@ -111,7 +111,7 @@ STEPS = {
 }
 """The text of each step in a table, its decimals, its unit and its clause. The key of a step of the whole mechanism is
 the name of its attribute of `MechanismCheck`, that of a limit state the name of its attribute of `LimitState`."""
-OF_MECHANISM = tuple(STEPS)[: 1 + tuple(STEPS).index("d_0")]
+OF_MECHANISM = tuple(CHECK_STEPS)[: 1 + tuple(CHECK_STEPS).index("d_0")]
 OF_LIMIT_STATE = "capacity", "period", "demand", "ratio"
 """The keys of the steps of a mechanism, and of those of a limit state."""
 
@@ -289,7 +289,7 @@ class MechanismCheck:
         steps = []
         for key, of, value in found:
             if value is not None:
-                *_, unit, clause = STEPS[key]
+                *_, unit, clause = CHECK_STEPS[key]
                 value = value / GRAVITY if unit == "g" else value
                 steps.append(Step(key, value, EQUATION[of] if key == "period" else clause, unit, of))
         return tuple(steps)
@@ -313,7 +313,7 @@ class MechanismCheck:
         said |= {"linear_ratio": linear[0].said if linear else "", "ground_ratio": f"{slv.said}, C8.7.1.2.1.8"}
         rows = []
         for step in self.steps:
-            what, digits, *_ = STEPS[step.key]
+            what, digits, *_ = CHECK_STEPS[step.key]
             what = what.format(of=step.of, share=SHARE.get(step.of, 0.0), damping=DAMPING.get(step.of, 0.0))
             note = said.get(f"{step.key} {step.of}".strip(), step.clause)
             if step.key == "ratio" and (gone := self.broken_before(step.of)):
