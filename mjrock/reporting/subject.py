@@ -1,6 +1,6 @@
-"""What a report says and shows of a wall or of masonry: inputs with their units, results, what to be careful of.
+"""What a report contains of a wall or of masonry: inputs with their units, results, limits of the results, drawings.
 
-Effects, contacts, motions, solvers and versions are told of both alike.
+Effects, contacts, motions, solvers and versions are written alike for both.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from .verdicts import REVERSED, effect_name, told_name
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
 ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
-"""What is said of a run of a solver, its unit and its digits."""
+"""Statistics of runs that a report names, with their units and their digits."""
 
 
 class Input(NamedTuple):
@@ -86,7 +86,7 @@ class Reported(Protocol):
         """Its cells in the table of runs."""
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
-        """What these results do not say."""
+        """What these results do not cover."""
 
     def by_hand(self, words: Words) -> list[tuple[str, ...]]:
         """Steps of a check by hand, where there is one."""
@@ -163,7 +163,7 @@ class ReportedWall(Reported):
         return [words(f"outcome_{response.outcome.name.lower()}"), *said]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
-        """What these results do not say."""
+        """What these results do not cover."""
         said = [words("limit_rigid")]
         shaken = [run for run in runs if run.response.case.motion is not None]
         both = {run.record for run in shaken if run.turned}
@@ -267,7 +267,7 @@ class ReportedMasonry(Reported):
         return [words(ended), *sizes, words("and_more", names=said, count=len(fell) - NAMED) if fell[NAMED:] else said]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
-        """What these results do not say."""
+        """What these results do not cover."""
         said = [words("limit_rigid_blocks"), words("limit_margin")]
         if len({run.record for run in runs if run.response.case.motion is not None}) == 1:
             said.append(words("limit_one_record"))
@@ -351,7 +351,7 @@ def of_effects(case: AnyCase, words: Words) -> list[Input]:
 
 
 def described(effect: Told, words: Words) -> str:
-    """An effect in words: each of its numbers, and what it is called; as it says itself where these are not known."""
+    """An effect in words: each of its numbers with its name; its own text where the report has no words for it."""
     if not words.or_else(f"effect_{effect.label}", ""):
         return effect.said.replace("\n", " ")
     kind: Any = type(effect)  # mypy takes a class for a thing without a hash

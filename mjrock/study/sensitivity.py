@@ -1,4 +1,4 @@
-"""How much an answer changes with what is not known: one setting at a time, and all of them together."""
+"""How much an answer changes with settings that are not known: one at a time, and all of them together."""
 
 from __future__ import annotations
 
@@ -232,7 +232,7 @@ def defaults_of(build: Callable[..., object], names: Iterable[str]) -> dict[str,
     """The defaults of these arguments of a function, of those that have one."""
     try:
         arguments = inspect.signature(build).parameters
-    except (TypeError, ValueError):  # some built-in functions tell nothing
+    except (TypeError, ValueError):  # some built-in functions have no signature
         return {}
     found = {name: arguments[name].default for name in names if name in arguments}
     return {name: value for name, value in found.items() if value is not inspect.Parameter.empty}

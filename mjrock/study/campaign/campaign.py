@@ -159,17 +159,17 @@ def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, co
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
-    """The row of each task, in the order asked, from a store that may hold other rows too; None where there is none."""
+    """The row of each task, in their order, from a store that may hold other rows too; None where there is none."""
     tasks = required_tasks(tasks)
     with Store(require_path("store", store)) as file:
         rows = {row["key"]: row for row in file.rows()}
-    with warnings.catch_warnings():  # what a task warns of as it is made was said when it ran
+    with warnings.catch_warnings():  # a task warned as it was made for the run
         warnings.simplefilter("ignore", UserWarning)
         return [rows.get(keyed(task)[0]) for task in tasks]
 
 
 def completed(tasks: Iterable[Task], store: str | Path, **options: Unpack[CampaignOptions]) -> list[Row]:
-    """The rows of the tasks, in the order asked, once a `campaign` with these options has run what the store lacks.
+    """The rows of the tasks, in their order, once a `campaign` with these options has run what the store lacks.
 
     Raises:
         RuntimeError: if a task has failed; its row in the store says how.

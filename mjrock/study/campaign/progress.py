@@ -1,4 +1,4 @@
-"""How far a campaign is: a bar or lines while it runs, what was warned of, and what its store says."""
+"""Progress of a campaign: a bar or lines while it runs, its warnings by their kinds, and the status of its store."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class WarningCounter:
         self.texts: dict[str, str] = {}
 
     def add(self, text: str, kind: str = "") -> bool:
-        """Count a warning, and say whether it is the first of its kind, by default its text without numbers."""
+        """Count a warning. Returns whether it is the first of its kind, by default its text without numbers."""
         kind = kind or NUMBER_IN_TEXT.sub("#", text)
         self.counts[kind] += 1
         return self.texts.setdefault(kind, text) is text
@@ -43,7 +43,7 @@ class WarningCounter:
 
 @contextlib.contextmanager
 def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
-    """Hand the text of every warning that would be shown to `first`, and show those for which it says so."""
+    """Pass the text of every warning that would be shown to `first`, and show those for which it returns True."""
     before = warnings.showwarning
 
     def shown(
@@ -79,8 +79,8 @@ def closing(
 ) -> str:
     """The last line of a campaign.
 
-    It says how many tasks had a row and were kept, how many of the others are done or failed and how they ended, how
-    long that took [s], and how many of the total are left, None if nobody knows.
+    It has the number of tasks whose rows were kept, how many of the others are done or failed and how they ended, the
+    time that it took [s], and how many of the total are left; a total of None is not known.
     """
     rows = kept + sum(statuses.values())
     of = "" if total is None else f" of {total}"
@@ -94,7 +94,7 @@ def closing(
 def status(path: str | Path) -> str:
     """How many rows a store holds, how they ended, how long they took and what has failed, as text.
 
-    It may be asked while the campaign runs.
+    It can be called while the campaign runs.
 
     Raises:
         ValueError, OSError: as `Store`.
@@ -129,13 +129,13 @@ def answer(argv: Sequence[str]) -> str:
 LINE_EVERY = 30.0
 """Time between two lines of a campaign without a terminal [s]."""
 FEWEST = 10
-"""Fewest cases of which a rate is said."""
+"""Fewest cases from which a rate is shown."""
 
 
 class CampaignProgress:
     """How far a campaign is, on the standard error. Use it in a `with` statement.
 
-    `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows. `skipped` tasks
+    `kept` rows are in the store already, and `total` is the number of tasks, None if it is not known. `skipped` tasks
     had a row already; of the others `statuses` and `outcomes` count how they ended, and `warned` what was warned of.
     """
 
@@ -184,8 +184,7 @@ class CampaignProgress:
         return (finished - self.first[0]) / (now - self.first[1])
 
     def close(self) -> None:
-        """Say what was warned of, how many tasks had a row, how the others ended, how long that took, and how many are
-        left."""
+        """Print the warnings by their kinds, and the last line of the campaign."""
         self.bar.close()
         for line in self.warned.lines():
             self._say(line)

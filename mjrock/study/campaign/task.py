@@ -1,4 +1,4 @@
-"""What a campaign runs: tasks, what tells them apart, the rows that they return, and the version that made them."""
+"""Tasks of a campaign, grids of them, the keys by which they are kept apart, and the rows that they return."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def fingerprint(*contents: object) -> str:
 
 
 def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
-    """Hand on the content of a value, as pieces of bytes that tell it from any other."""
+    """Add the content of a value as pieces of bytes, which are the same for equal contents alone."""
     if isinstance(value, np.generic):
         _hand_on(value.item(), add)
     elif value is None or isinstance(value, bool | str):
@@ -102,7 +102,7 @@ def _compared(kind: type) -> tuple[str, ...]:
 
 
 VERSION = f"mjrock {__version__}, MuJoCo {mujoco.__version__}"
-"""What made a row; another version makes other rows."""
+"""The programs that made a row; its task has another key with other versions."""
 
 Row = dict[str, Any]
 
@@ -110,7 +110,8 @@ Row = dict[str, Any]
 class Task(Protocol):
     """What a campaign runs: a frozen dataclass that can be pickled, whose content is its key.
 
-    `labels` tell the user which case it was, and are not part of its content; `COLUMNS` names what the call returns.
+    `labels` are columns by which the user recognizes the case, and are not part of its content; `COLUMNS` names what
+    the call returns.
     """
 
     @property
@@ -119,7 +120,7 @@ class Task(Protocol):
 
     @property
     def labels(self) -> Mapping[str, object]:
-        """Columns that tell the user which task it was."""
+        """Columns by which the user recognizes the task."""
 
     def __call__(self, history: Path | None = None) -> Row:
         """Do it, keep a time history in the file if one is given, and return the columns."""
@@ -168,7 +169,7 @@ def column_names(task: Task) -> tuple[str, ...]:
     """The columns of a task beside those of every row.
 
     A label may have the name of a column whose value it repeats, such as `solver`; it counts once. Any other two names
-    that are the same clash, and stay in the answer for the store to complain about.
+    that are the same clash, and stay in the answer: `Store.add_columns` refuses them.
     """
     labels = task.labels
     repeated = {n for n in labels if n in task.COLUMNS and getattr(task, n, None) == labels[n]}
@@ -204,7 +205,7 @@ def failed_row(error: BaseException) -> Row:
 
 
 def carry_out_all(tasks: Sequence[tuple[Task, Path | None]]) -> list[Row]:
-    """What a worker does."""
+    """The rows of tasks with the files of their histories, in another process."""
     return [carry_out(task, history) for task, history in tasks]
 
 
@@ -296,7 +297,7 @@ def labelled(task: Task, labels: Mapping[str, object]) -> Task:
 
 
 def axis_label(value: object) -> object:
-    """What a table says of the value of an axis, see `Grid`."""
+    """The label of the value of an axis, see `Grid`."""
     if isinstance(value, np.generic):
         value = value.item()
     return value if value is None or isinstance(value, str | int | float) else getattr(value, "name", spelt(value))

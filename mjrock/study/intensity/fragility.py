@@ -38,7 +38,7 @@ from ..campaign.task import Row
 FEWEST_GROUPS = 5
 """Fewest groups that are resampled."""
 MOST_WITHOUT = 0.05
-"""Share of resamples without a curve from which the user is told [-]."""
+"""Share of resamples without a curve that is warned of [-]."""
 MOST_VALUES = 4_000_000
 """Most values of resamples that are fitted at once."""
 NEWTON_STEPS = 100
@@ -57,7 +57,7 @@ SPREAD = 0.9
 class Fragility(Drawn):
     """P(overturning | intensity) = Phi(ln(intensity / median) / dispersion).
 
-    Intervals and band take the runs as independent, unless the fit was told their groups.
+    Intervals and band take the runs as independent, unless the fit has their groups.
 
     Args:
         median: intensity at which half of the walls overturn, in the unit of the intensities that were fitted.
@@ -216,7 +216,7 @@ def fit_fragility(
     """The lognormal curve of greatest likelihood for runs that overturned or did not.
 
     It is a probit model of the logarithm of the intensity, solved by Newton's method. Runs under one record at several
-    intensities, or in both polarities, are not independent. Told which record each run belongs to, the fit draws whole
+    intensities, or in both polarities, are not independent. Given the record of each run, the fit draws whole
     records with replacement and repeats itself for every draw. The curve stays the same, its intervals get wider, with
     few records once more, as Student's distribution does. Of 90 % intervals from 5, 8, 20 and 40 simulated records in
     both polarities at 13 intensities 89, 91, 90 and 90 % hold the median, 95, 95, 91 and 89 % the dispersion, and 86 to
@@ -432,7 +432,7 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
         spread = share * ndtr(-eta)
         w = weights * density**2 / spread
         information = np.stack([w.sum(axis=1), w @ u, w @ u, w @ (u * u)], axis=1).reshape(-1, 2, 2)
-        inverse = np.linalg.pinv(information, hermitian=True)  # one record drawn again and again says nothing
+        inverse = np.linalg.pinv(information, hermitian=True)  # that of one record alone is singular
         leverage = w * np.einsum("ni,mij,nj->mn", design, inverse, design)
         score = weights * (fell - share) * density / spread - 0.5 * leverage * eta
         step = np.einsum("mij,mj->mi", inverse, np.stack([score.sum(axis=1), score @ u], axis=1))
@@ -480,7 +480,7 @@ def _log(values: Array) -> Array:
 
 
 OUTCOMES = frozenset(outcome.value for outcome in Outcome)
-"""How a row says that a run ended."""
+"""The outcomes that a row can have."""
 
 
 def lost(rows: Iterable[Row]) -> Flags:

@@ -181,7 +181,7 @@ class LimitState:
     Args:
         capacity: spectral displacement that the mechanism may reach [m].
         period: equivalent period [s].
-        demand: spectral displacement that the ground motion asks for [m].
+        demand: spectral displacement that the ground motion demands [m].
     """
 
     capacity: float
@@ -420,7 +420,7 @@ def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
 
 
 def _of_wall(case: Case) -> _Mechanism:
-    """A wall that overturns, with its ties. A ValueError says if they hold it for good."""
+    """A wall that overturns, with its ties; ValueError if they hold it for good."""
     require_wall("case", case, "collapse_multiplier")
     curve = pushover(case)
     if not math.isfinite(curve.end):
@@ -517,7 +517,7 @@ class DynamicCheck:
         runs: the largest displacement of each run.
         restitution: |e| of all impacts of the responses [-], shape (n,); none is known of masonry and of rows of a
             campaign.
-        natural: whether the records were recorded; None is not known.
+        natural: whether the records are natural ones; None if it is not known.
     """
 
     limit_state: str
@@ -538,7 +538,7 @@ class DynamicCheck:
 
     @property
     def lacking(self) -> tuple[str, ...]:
-        """What C8.7.1.2.1.9 asks for and the runs do not have, in words."""
+        """What C8.7.1.2.1.9 demands and the runs lack, in words."""
         count, lacking = self.records, list[str]()
         if count < MIN_RECORDS:
             more = f"and more than the {MIN_RECORDS - 1} of the global response (NTC 2018, 7.3.5) count"
@@ -635,9 +635,9 @@ def dynamic_check(
     else is constant. A run from which a block has fallen exceeds d_0. Masonry that may go either way is checked with
     the push either way.
 
-    The clause asks for more records than the global response, natural ones that fit the spectrum together, and a
-    restitution of mechanism and slenderness. What the runs lack of it is said. That they fit the spectrum is for the
-    user, see `RecordSet.mean_over`.
+    The clause demands more records than the global response, natural ones that fit the spectrum together, and a
+    restitution of mechanism and slenderness. A warning names what the runs lack of it. Whether they fit the spectrum is
+    for the user, see `RecordSet.mean_over`.
 
     Args:
         runs: responses of one wall or masonry with the same effects, of any solver, or of a wall the `Analysis` tasks
@@ -645,7 +645,7 @@ def dynamic_check(
         limit_state: "SLV" or "SLC", whose spectrum the records fit.
         curve: of masonry, its push along the direction that is checked, until nothing is borne any more.
         store: the file of the campaign, for tasks.
-        natural: whether the records were recorded. None does not know.
+        natural: whether the records are natural ones. None if it is not known.
 
     Returns:
         The `DynamicCheck`, with `holds` and `table()`.
@@ -655,7 +655,7 @@ def dynamic_check(
             with one that ends too early, or tasks without a row.
 
     Warns:
-        Implausible: for what the clause asks for and the runs lack.
+        Implausible: for what the clause demands and the runs lack.
     """
     if not isinstance(limit_state, str) or limit_state not in SHARE:
         raise ValueError(f"limit_state = {spelt(limit_state)} is not one of {', '.join(SHARE)}")

@@ -52,7 +52,7 @@ class Plan:
         base_count, side_count: combinations for the base and for the side, 1 to 100000.
         losses: base losses -ln e_2s in multiples of Eq. 2's; e is varied independently of the slenderness.
         side_losses: the same, for which the side is matched.
-        sides: restitutions |e_side| asked of the side.
+        sides: restitutions |e_side| that the side is matched to.
         seed: of the combinations, 0 to 2147483648.
         k_n: interface stiffnesses that are covered [N/m3].
         amplitude: releases theta_0/alpha that are covered [-]. Low ones stand for later rebounds.
@@ -251,7 +251,7 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row]) -> Regressi
 
     Args:
         form: `CornerLaw` or `BedLaw` for the base, `SideLaw` for the side, the paper's `PowerLaw` for either.
-        tasks, rows: what was asked and what `completed` returned.
+        tasks, rows: the matches, and the rows that `completed` returned.
 
     Raises:
         ValueError: if fewer pairs were reached than the form has coefficients to fit.

@@ -118,7 +118,7 @@ class Match:
 
     Args:
         combination: the wall and its interfaces.
-        e: what is asked for: `e.base` two-sided, `e.lumped` one-sided.
+        e: the restitution to match: `e.base` two-sided, `e.lumped` one-sided.
         points: contact lines a face.
         xi_base: None to match the base two-sided; the damping ratio of the base to match the side one-sided.
         measure: "restitution", |e| of the first rebound, matched to the digit on the branch of high damping; or "rms",
@@ -156,7 +156,7 @@ class Match:
 
     @property
     def target(self) -> float:
-        """The restitution of the rebound that is asked for, |e| [-]."""
+        """The restitution of the rebound that is to be matched, |e| [-]."""
         return self.e.base if self.xi_base is None else abs(self.e.lumped)
 
     @property

@@ -51,7 +51,7 @@ with more a faint rebound loses more than a large one."""
 MISS_WARNED_OF = 0.02
 """Miss of |e| that is warned of, over |e| [-]: as the scatter of |e| with the phase of a touch is."""
 UNLIKE_EQ_2 = 5e-3
-"""Relative difference of e_2s to Eq. 2 from which a stiff base is said not to give it [-]."""
+"""Relative difference of e_2s to Eq. 2 from which it is warned that a stiff base does not give it [-]."""
 STRONG_ABOVE = 4.0
 """Damping ratio of the joints above the base, in the lowest mode in which the stack bends over an edge of it [-]. From
 1 on the stack does not vibrate, and from 4 on more changes the energy lost by less than 0.2 %."""
