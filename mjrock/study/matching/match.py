@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -162,12 +162,11 @@ class Match:
     @property
     def labels(self) -> Mapping[str, object]:
         """What is matched on what."""
-        combination = self.combination
         return {
             "match": self.face,
             "points": self.points,
             "measure": self.measure,
-            **{name.name: getattr(combination, name.name) for name in fields(combination)},
+            **vars(self.combination),
             "e_base": self.e.base,
             "e_side": self.e.side,
             "xi_base": self.xi_base,
@@ -223,7 +222,7 @@ class Match:
         """Search, and return the columns."""
         if self.measure == "rms":
             least = least_difference(self.difference, self.bounds)
-            return least.row | {"found": self.restitution(least.xi), "rms": least.value}
+            return least.row | {"found": self.restitution(least.xi), "rms": least.found}
         return highest_branch(self.restitution, self.target, self.bounds, whole=self.xi_base is None).row
 
 
@@ -234,14 +233,14 @@ class Closest:
     Args:
         reached: whether the target is met inside the bounds.
         xi: the damping ratio [-], the closest one where it is not.
-        value: what is measured there.
+        found: what is measured there.
         lowest, highest: the range of the measure on the branch that was searched.
         runs: how many simulations it took.
     """
 
     reached: bool
     xi: float
-    value: float
+    found: float
     lowest: float
     highest: float
     runs: int
@@ -249,15 +248,7 @@ class Closest:
     @property
     def row(self) -> Row:
         """As columns of a campaign."""
-        return {
-            "reached": int(self.reached),
-            "xi": self.xi,
-            "found": self.value,
-            "lowest": self.lowest,
-            "highest": self.highest,
-            "rms": None,
-            "runs": self.runs,
-        }
+        return vars(self) | {"reached": int(self.reached), "rms": None}
 
 
 def highest_branch(

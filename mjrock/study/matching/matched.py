@@ -177,14 +177,14 @@ def _matched(match: Match) -> float:
             return match.restitution(xi)
 
         closest = highest_branch(measured, match.target, match.bounds, whole=match.face == "base")
-    if not closest.reached and abs(closest.value - match.target) > MISS_WARNED_OF * match.target:
+    if not closest.reached and abs(closest.found - match.target) > MISS_WARNED_OF * match.target:
         warn_of(missed(match.face, closest, match.target))
     return closest.xi
 
 
 def missed(face: str, closest: Closest, target: float) -> str:
     """The text of a warning for a search that has missed its target."""
-    found = f"the closest, xi = {closest.xi:.3g}, gives {closest.value:.4g}"
+    found = f"the closest, xi = {closest.xi:.3g}, gives {closest.found:.4g}"
     return f"no damping of the {face} gives |e| = {target:.4g}; {found}"
 
 
@@ -288,7 +288,7 @@ def excess(obtained: float, target: float) -> float:
 
 def _found(face: str, closest: Closest, target: float) -> float:
     """The damping ratio that is found, with a warning where it loses another energy than that asked for."""
-    more = excess(closest.value, target)
+    more = excess(closest.found, target)
     if abs(more) > MISSED:
         warn_of(f"{missed(face, closest, target)} and loses {1 + more:.3g} of the energy that is to be lost")
     return closest.xi
