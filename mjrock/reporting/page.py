@@ -23,7 +23,7 @@ from ..study.intensity.fragility import Fragility
 from ..study.loading.code_check import signals_of
 from . import subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
-from .pictures import PANELS, Run, capacity_curves, histories, strip
+from .pictures import PANELS, Run, by_variant, capacity_curves, histories, strip
 from .subject import Reported, reported
 from .texts import DASH, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
@@ -205,9 +205,8 @@ def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanis
 def outcomes(runs: Sequence[Run], words: Words) -> str:
     """How many runs of each variant overturn."""
     said = []
-    for variant in dict.fromkeys(run.variant for run in runs):
-        own = [run.largest for run in runs if run.variant == variant]
-        count = sum(d == math.inf for d in own)
+    for variant, own in by_variant(runs).items():
+        count = sum(run.largest == math.inf for run in own)
         said.append(words("runs_overturn", name=variant or words("all_runs"), count=count, of=len(own)))
     return f"{words('falls')} {'; '.join(said)}."
 

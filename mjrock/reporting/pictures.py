@@ -70,6 +70,11 @@ class Run(NamedTuple):
         return self.variant or self.label
 
 
+def by_variant(runs: Sequence[Run]) -> dict[str, list[Run]]:
+    """The runs of each variant, in their order."""
+    return {name: [run for run in runs if run.variant == name] for name in dict.fromkeys(run.variant for run in runs)}
+
+
 def wall_drawn(case: Case, words: Words) -> Figure:
     """Section and elevation with sizes, the hinge, the mechanism that opens about it, and the names of the effects."""
     figure = Figure(figsize=(WIDE, TALL))

@@ -33,7 +33,7 @@ from ..result.ties import Plastic, overdrawn
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code_check import d_0_of, displaced
 from .markup import Markup, element, table
-from .pictures import SMALL, WIDE, Run, wall_drawn
+from .pictures import SMALL, WIDE, Run, by_variant, wall_drawn
 from .texts import DASH, FOUND, GIVEN, Words, texts
 from .verdicts import REVERSED, effect_name, told_name
 
@@ -317,13 +317,12 @@ def tied(response: Response, words: Words) -> list[str]:
 def broken_ties(runs: Sequence[Run], words: Words) -> list[str]:
     """In how many runs ties broke, by variant."""
     said = []
-    for variant in dict.fromkeys(run.variant for run in runs):
-        own = [run for run in runs if run.variant == variant and run.response.ties]
-        broke = [min(tie.broken for tie in run.response.ties.values()) for run in own]
+    for variant, own in by_variant(runs).items():
+        broke = [min(tie.broken for tie in run.response.ties.values()) for run in own if run.response.ties]
         count = sum(math.isfinite(t) for t in broke)
         if count:
             name, first = variant or words("all_runs"), words.quantity(min(broke), "s", FOUND)
-            said.append(words("ties_broke", name=name, count=count, of=len(own), t=first))
+            said.append(words("ties_broke", name=name, count=count, of=len(broke), t=first))
     return said
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import math
 import time
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -236,7 +237,7 @@ class Grid(Sequence[Task]):
 
     def __len__(self) -> int:
         """How many points there are."""
-        return int(np.prod([len(values) for values in self.axes.values()], dtype=int))
+        return math.prod(map(len, self.axes.values()))
 
     def __iter__(self) -> Iterator[Task]:
         """The tasks in order. A point that `build` fails to make becomes a task that fails with the same message."""

@@ -159,13 +159,9 @@ class Verdict(NamedTuple):
 def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     """Conditions as rows of a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
     rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
-    rows += [
-        (
-            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_said(one.ratio)),
-            *(one.said, one.clause),
-        )
-        for one in verdicts
-    ]
+    for one in verdicts:
+        numbers = f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_said(one.ratio)
+        rows.append((one.what, one.limit_state, *numbers, one.said, one.clause))
     return rows
 
 
