@@ -51,6 +51,8 @@ COVERAGE = (
 """How often the intervals hold the truth (`scripts/studies/fragility_coverage.py`)."""
 SPREAD = 0.9
 """Confidence at which the dispersions of a band have the interval of the dispersion."""
+OUTCOMES = frozenset(outcome.value for outcome in Outcome)
+"""The outcomes that a row can have."""
 
 
 @dataclass(frozen=True)
@@ -272,9 +274,9 @@ def _likeliest(x: Array, fell: Flags) -> Fragility:
     ((level, slope),) = probit(log_x, fell, np.ones((1, len(x))))
     if slope <= 0:
         raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
-    information = curvature(log_x, fell, level, slope)
+    h = _derivatives(np.where(fell, 1.0, -1.0) * (level + slope * log_x))[1]
     towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
-    covariance = np.linalg.inv(towards.T @ information @ towards)
+    covariance = np.linalg.inv(towards.T @ _information(h, log_x) @ towards)
     return Fragility(
         median=math.exp(-level / slope),
         dispersion=float(1 / slope),
@@ -395,8 +397,7 @@ def probit(log_x: Array, fell: Flags, weights: Array) -> Array:
         ratio, slant = _derivatives(sign * (fits[:, :1] + fits[:, 1:] * u))
         g, h = weights * sign * ratio, weights * slant
         gradient = np.stack([g.sum(axis=1), g @ u], axis=1)
-        hessian = np.stack([h.sum(axis=1), h @ u, h @ u, h @ (u * u)], axis=1).reshape(-1, 2, 2)
-        step = np.linalg.solve(hessian, gradient[..., None])[..., 0]
+        step = np.linalg.solve(_information(h, u), gradient[..., None])[..., 0]
         size = np.abs(step).max(axis=1, keepdims=True)
         fits += step / np.maximum(1.0, size)  # far from the summit the full step may overshoot
         if size.max() < 1e-10 * (1 + np.abs(fits).max()):
@@ -410,10 +411,14 @@ def _derivatives(z: Array) -> tuple[Array, Array]:
     return ratio, ratio * (z + ratio)
 
 
-def curvature(log_x: Array, fell: Flags, level: float, slope: float) -> Array:
-    """Minus the second derivatives of the likelihood over level and slope, shape (2, 2)."""
-    h = _derivatives(np.where(fell, 1.0, -1.0) * (level + slope * log_x))[1]
-    return np.array([[h.sum(), h @ log_x], [h @ log_x, h @ (log_x * log_x)]])
+def _information(h: Array, u: Array) -> Array:
+    """Minus the second derivatives of the likelihood over level and slope, shape (..., 2, 2).
+
+    Args:
+        h: minus the second derivative of the likelihood of each run over its score, shape (..., n).
+        u: logarithm of the intensity of each run, shape (n,).
+    """
+    return np.stack([h.sum(axis=-1), h @ u, h @ u, h @ (u * u)], axis=-1).reshape(*h.shape[:-1], 2, 2)
 
 
 def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
@@ -431,8 +436,7 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
         share, density = ndtr(eta), np.exp(-0.5 * eta * eta) / math.sqrt(2 * math.pi)
         spread = share * ndtr(-eta)
         w = weights * density**2 / spread
-        information = np.stack([w.sum(axis=1), w @ u, w @ u, w @ (u * u)], axis=1).reshape(-1, 2, 2)
-        inverse = np.linalg.pinv(information, hermitian=True)  # that of one record alone is singular
+        inverse = np.linalg.pinv(_information(w, u), hermitian=True)  # that of one record alone is singular
         leverage = w * np.einsum("ni,mij,nj->mn", design, inverse, design)
         score = weights * (fell - share) * density / spread - 0.5 * leverage * eta
         step = np.einsum("mij,mj->mi", inverse, np.stack([score.sum(axis=1), score @ u], axis=1))
@@ -477,10 +481,6 @@ def _log(values: Array) -> Array:
     """Logarithms; zero has that of minus infinity."""
     with np.errstate(divide="ignore"):
         return np.asarray(np.log(values))
-
-
-OUTCOMES = frozenset(outcome.value for outcome in Outcome)
-"""The outcomes that a row can have."""
 
 
 def lost(rows: Iterable[Row]) -> Flags:
