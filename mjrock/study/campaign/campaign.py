@@ -17,7 +17,6 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import TypedDict, Unpack, cast
 
-import numpy as np
 from pebble import ProcessExpired
 
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
@@ -28,10 +27,17 @@ from .task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
+DEATHS = 2
+"""A task during which this many worker processes have died is run alone."""
+LOOK_EVERY = 0.1
+"""Time between two looks for the row of a task that runs in this process [s]."""
 GUARD = (
     "the worker processes die as they start: they import the script that calls the campaign; let it do so "
     'below `if __name__ == "__main__":`; or give workers=1 without a time limit'
 )
+
+Submit = Callable[[list[tuple[Task, Path | None]]], Future[list[Row]]]
+"""Hands tasks over, and returns the future rows of the first of them."""
 
 
 class CampaignOptions(TypedDict, total=False):
@@ -185,15 +191,6 @@ def completed(tasks: Iterable[Task], store: str | Path, **options: Unpack[Campai
     return rows
 
 
-DEATHS = 2
-"""A task during which this many worker processes have died is run alone."""
-LOOK_EVERY = 0.1
-"""Time between two looks for the row of a task that runs in this process [s]."""
-
-Submit = Callable[[list[tuple[Task, Path | None]]], Future[list[Row]]]
-"""Hands tasks over, and returns the future rows of the first of them."""
-
-
 @dataclass
 class Job:
     """A task that is to be run, and how often a worker has died while it was in progress."""
@@ -331,7 +328,7 @@ class Runner:
         finished = self.progress.finished
         if self.limit is not None or not finished:
             return 1
-        return int(np.clip(CHUNK_SECONDS * finished / max(self.seconds, 1e-9), 1, 64))
+        return min(max(int(CHUNK_SECONDS * finished / max(self.seconds, 1e-9)), 1), 64)
 
     def left(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
         """The jobs of a chunk without rows that are to be tried again, each alone. Others get their rows."""
