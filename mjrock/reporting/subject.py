@@ -164,17 +164,16 @@ class ReportedWall(Reported):
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
-        said = [words("limit_rigid")]
         shaken = [run for run in runs if run.response.case.motion is not None]
-        both = {run.record for run in shaken if run.turned}
-        if self.case.one_sided and {run.record for run in shaken} - both:
-            said.append(words("limit_polarity"))
-        if len({run.record for run in shaken}) == 1:
-            said.append(words("limit_one_record"))
-        if not shaken:
-            said.append(words("limit_release"))
-        if {run.response.solver for run in runs} == {"analytical"}:
-            said.append(words("limit_theory"))
+        records, both = {run.record for run in shaken}, {run.record for run in shaken if run.turned}
+        applies = {
+            "limit_rigid": True,
+            "limit_polarity": self.case.one_sided and records > both,
+            "limit_one_record": len(records) == 1,
+            "limit_release": not shaken,
+            "limit_theory": {run.response.solver for run in runs} == {"analytical"},
+        }
+        said = [words(key) for key, holds in applies.items() if holds]
         still = [run for run in runs if run.response.outcome is Outcome.TIME_ENDED]
         if still:
             said.append(words("limit_still_moves", count=len(still), of=len(runs)))
