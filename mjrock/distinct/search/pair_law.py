@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...geometry.hull import Side, area_vector
-from ...problem.masonry.laws.pairs import Meets
+from ...problem.masonry.laws.dry import Meets
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
