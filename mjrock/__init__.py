@@ -56,16 +56,13 @@ if TYPE_CHECKING:
     from .problem.masonry.laws.dry import Dry, Mortar
     from .problem.masonry.limit.collapse import Collapse
     from .problem.masonry.masonry import Masonry
-    from .problem.wall.bending import VerticalBending
+    from .problem.wall.bending import HorizontalBending, VerticalBending
     from .problem.wall.block import Block
     from .problem.wall.case import Case
-    from .problem.wall.corner import Corner
-    from .problem.wall.damper import Damper, FrictionDamper
-    from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
-    from .problem.wall.horizontal_bending import HorizontalBending
+    from .problem.wall.effects import AddedMass, Damper, FrictionDamper, Load, SideStop, Thrust
     from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie, strengths_of_bar
-    from .problem.wall.wedge import Wedge
+    from .problem.wall.wedge import Corner, Wedge
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report

@@ -112,7 +112,7 @@ OWN = {
     "problem/masonry/builders/vaults.py": ("vaults",),
     "problem/wall/section.py": ("section",),
     "problem/wall/tie.py": ("tie_of_bar",),
-    "problem/wall/ties_on_wall.py": ("effects", "pushover"),
+    "problem/wall/restoring_moment.py": ("effects", "pushover"),
     "study/matching/matched.py": ("matched", "matched_masonry"),
     "study/loading/pushover.py": ("pushover",),
     "theory/arcs.py": ("arcs", "free", "analytical", "effects"),

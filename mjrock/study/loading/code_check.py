@@ -22,12 +22,11 @@ from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST_PERIOD
 from ...problem.ground.spectrum import response_spectrum
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
-from ...problem.wall.bending import VerticalBending
+from ...problem.wall.bending import HorizontalBending, VerticalBending
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
-from ...problem.wall.corner import Corner
-from ...problem.wall.horizontal_bending import HorizontalBending
-from ...problem.wall.ties_on_wall import moment_at_strength
+from ...problem.wall.restoring_moment import moment_at_strength
+from ...problem.wall.wedge import Corner
 from ...quantities import (
     GRAVITY,
     Array,

@@ -17,7 +17,7 @@ from ...notebook import Drawn
 from ...problem.damping.contacts import Contacts, Uplift
 from ...problem.masonry.case import require_wall
 from ...problem.wall.case import Case
-from ...problem.wall.ties_on_wall import pulled, yielded
+from ...problem.wall.restoring_moment import pulled, yielded
 from ...quantities import GRAVITY, ON_ITS_FACE, Array, Flags, Integers, require_increasing, require_kind, require_whole
 from ...scene.potential import Potential
 from ...scene.scene import Scene
