@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import GRAVITY, Array, Within, is_iterable, require_row, short_repr, shown, within_ranges
-from .falling import MOST_PULL, falling_damping, falling_rebound
-from .rebound import rebound_damping
+from .rebound import MOST_PULL, falling_damping, falling_rebound, rebound_damping
 
 Mass = Annotated[float | None, Within(1e-12, 1e12, "kg")]
 Modulus = Annotated[float, Within(1, 1e15, "Pa")]
