@@ -185,7 +185,7 @@ def test_ply_files_that_are_none(tmp_path):
         text.replace(b"4 0 4 6 2", b"4 0 4 6 999"), text.replace(b"4 0 4 6 2", b"2 0 4 6 2"),
     ):  # fmt: skip
         (tmp_path / "b.ply").write_bytes(broken)
-        with pytest.raises(ValueError, match=r"b.ply: .*|b.ply is not a PLY file"):
+        with pytest.raises(ValueError, match=r"b.ply: .*"):
             mr.Masonry.from_ply(tmp_path / "b.ply", ground=True)
 
 

@@ -68,11 +68,11 @@ class Mesh(NamedTuple):
 class Given(NamedTuple):
     """What a caller says of a file, see `Masonry.from_obj`."""
 
-    fixed: Sequence[str]
-    ground: bool
-    scale: float | None
-    unit: str | None
-    up: str | None
+    fixed: Sequence[str] = ()
+    ground: bool = False
+    scale: float | None = None
+    unit: str | None = None
+    up: str | None = None
     convex: str | None = None
 
     def checked(self) -> Given:

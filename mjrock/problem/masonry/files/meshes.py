@@ -1,13 +1,14 @@
 """Files of meshes: Wavefront OBJ, STL and PLY.
 
-What reads a file raises a ValueError with the path, the line where there is one, and what is wrong.
+What reads a file raises a ValueError with the line, where there is one, and what is wrong. `of_file` names the file.
 """
 
 from __future__ import annotations
 
 import struct
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import takewhile
 from pathlib import Path
 
@@ -21,13 +22,22 @@ MOST_BYTES = 500_000_000
 """Largest file that is read."""
 
 
+@contextmanager
+def of_file(path: Path) -> Iterator[None]:
+    """A ValueError that is raised within names the file first."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"path = {path}: {error}") from None
+
+
 def bytes_of(path: Path) -> bytes:
     """What a file holds, which is not empty and at most 500 MB."""
     if not path.is_file():
-        raise ValueError(f"path = {path} is not a file")
+        raise ValueError("it is not a file")
     size = path.stat().st_size
     if not 0 < size <= MOST_BYTES:
-        raise ValueError(f"path = {path} has {size} bytes; the valid range is 1 to {MOST_BYTES}")
+        raise ValueError(f"it has {size} bytes; the valid range is 1 to {MOST_BYTES}")
     return path.read_bytes()
 
 
@@ -36,7 +46,7 @@ def file_text(path: Path) -> str:
     try:
         return bytes_of(path).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(f"path = {path} is not text: it holds bytes that are not UTF-8") from None
+        raise ValueError("it is not text: it holds bytes that are not UTF-8") from None
 
 
 def read_obj(path: Path) -> list[Mesh]:
@@ -60,11 +70,9 @@ def read_obj(path: Path) -> list[Mesh]:
             elif kind == "g":
                 group = rest.strip()
         except ValueError:
-            raise ValueError(
-                f"path = {path}, line {count}: {line[:60]!r} is not a vertex or face of an OBJ file"
-            ) from None
+            raise ValueError(f"line {count}: {line[:60]!r} is not a vertex or face of an OBJ file") from None
     if not faces:
-        raise ValueError(f"path = {path} has no faces: it is not an OBJ file, or is cut short")
+        raise ValueError("it has no faces: it is not an OBJ file, or is cut short")
     things = Counter(thing for thing, _ in faces)
     places, meshes = np.array(vertices), []
     for i, ((thing, group), ring) in enumerate(faces.items()):
@@ -82,7 +90,7 @@ def read_stl(path: Path) -> list[Mesh]:
         return [_facets("body", records["v"].reshape(-1, 3).astype(float))]
     if content.lstrip()[:5].lower() != b"solid" or b"facet" not in content:
         needed = f"; its head promises {facets} facets, {84 + 50 * facets} bytes" if 0 <= facets < 10**7 else ""
-        raise ValueError(f"path = {path} is not an STL file, or is cut short: it has {len(content)} bytes{needed}")
+        raise ValueError(f"it is not an STL file, or is cut short: it has {len(content)} bytes{needed}")
     meshes: list[Mesh] = []
     name, is_open = "body", False
     corners: list[tuple[float, float, float]] = []
@@ -95,14 +103,14 @@ def read_stl(path: Path) -> list[Mesh]:
             try:
                 corners.append(_triple(words[1:]))
             except ValueError:
-                raise ValueError(f"path = {path}, line {count}: {line[:60]!r} is not a vertex of an STL file") from None
+                raise ValueError(f"line {count}: {line[:60]!r} is not a vertex of an STL file") from None
         elif kind in ("endfacet", "endsolid") and len(corners) % 3:
-            raise ValueError(f"path = {path}, line {count}: a facet of an STL file has three vertices")
+            raise ValueError(f"line {count}: a facet of an STL file has three vertices")
         elif kind == "endsolid":
             meshes.append(_facets(name, np.reshape(corners, (-1, 3))))
             is_open = False
     if is_open or not meshes:
-        raise ValueError(f"path = {path} is cut short: the solid {name} does not end")
+        raise ValueError(f"it is cut short: the solid {name} does not end")
     return meshes
 
 
@@ -121,7 +129,7 @@ def read_ply(path: Path) -> list[Mesh]:
     head, end, body = content.partition(b"end_header")
     lines = [line.split() for line in head.decode("latin-1").splitlines()]
     if not end or not lines or lines[0] != ["ply"]:
-        raise ValueError(f"path = {path} is not a PLY file, or is cut short: it has no header from ply to end_header")
+        raise ValueError("it is not a PLY file, or is cut short: it has no header from ply to end_header")
     try:
         order = PLY_ORDER[next(line[1] for line in lines if line[:1] == ["format"])]
         take = _words(body) if not order else _numbers(body[body.index(b"\n") + 1 :], order)
@@ -141,7 +149,7 @@ def read_ply(path: Path) -> list[Mesh]:
             raise ValueError("a face is not three or more of the vertices")
     except (KeyError, IndexError, ValueError, TypeError, OverflowError, StopIteration, struct.error) as error:
         raise ValueError(
-            f"path = {path} is not a PLY file of vertices and faces, or is cut short: {type(error).__name__} {error}"
+            f"it is not a PLY file of vertices and faces, or is cut short: {type(error).__name__} {error}"
         ) from None
     return [Mesh("body", places, faces)]
 
