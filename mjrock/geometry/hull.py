@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -104,10 +105,15 @@ class Convex:
         return float((self.offsets - (points @ self.normals.T).min(axis=0)).min())
 
     @cached_property
+    def edge_ends(self) -> Array:
+        """Ends of the edges [m], each once, shape (edges, 2, 3)."""
+        pairs = {(min(edge), max(edge)) for face in self.faces for edge in face_edges(face)}
+        return self.corners[np.array(sorted(pairs))]
+
+    @cached_property
     def edges(self) -> Array:
         """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
-        pairs = {(min(i, j), max(i, j)) for face in self.faces for i, j in zip(face, face[1:] + face[:1], strict=True)}
-        ways = np.array([self.corners[j] - self.corners[i] for i, j in sorted(pairs)])
+        ways = self.edge_ends[:, 1] - self.edge_ends[:, 0]
         return unlike_ways(ways / np.linalg.norm(ways, axis=1)[:, None])
 
     @cached_property
@@ -192,6 +198,16 @@ def _around(ring: Array, middle: Array) -> tuple[list[int], Array]:
     return np.roll(order, -first).tolist(), normal / np.linalg.norm(normal)
 
 
+def face_edges(face: tuple[int, ...]) -> list[tuple[int, int]]:
+    """The edges of a face, in its order."""
+    return list(pairwise((*face, face[0])))
+
+
+def triangles_of(faces: Iterable[tuple[int, ...]]) -> list[tuple[int, int, int]]:
+    """The triangles of faces with their first corners."""
+    return [(face[0], i, j) for face in faces for i, j in pairwise(face[1:])]
+
+
 def area_vector(ring: Array) -> Array:
     """The normal of a plane polygon, as long as its area, shape (3,); the ring is counterclockwise about it, (n, 3)."""
     about = ring - ring[0]
@@ -228,8 +244,7 @@ def bulk_of(corners: Array, faces: tuple[tuple[int, ...], ...]) -> Bulk:
         faces: numbers of the corners of each face, counterclockwise as seen from outside.
     """
     origin = corners.mean(axis=0)
-    triangles = np.array([(face[0], i, j) for face in faces for i, j in pairwise(face[1:])])
-    edges = corners[triangles] - origin  # one tetrahedron each: three edges from the origin
+    edges = corners[triangles_of(faces)] - origin  # one tetrahedron each: three edges from the origin
     determinants = np.linalg.det(edges)
     volume = float(determinants.sum()) / 6
     sums = edges.sum(axis=1)

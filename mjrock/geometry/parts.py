@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain, combinations, pairwise
+from itertools import chain, combinations
 
 import numpy as np
 
 from ..quantities import Array
-from .hull import Convex, Hull, area_vector, bulk_of, hull_of
+from .convex import kept_of
+from .hull import Convex, Hull, area_vector, bulk_of, face_edges, hull_of, triangles_of
 
 ON_PLANE = 1e-6
 """Distance from a plane below which a corner lies on it, over the extent of the body [-]."""
@@ -36,7 +37,7 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
     """
     origin, extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
     about = (corners - origin) / extent
-    fans = [about[[(face[0], i, j) for i, j in pairwise(face[1:])]] for face in faces]
+    fans = [about[triangles_of([face])] for face in faces]
     triangles = np.concatenate(fans)
     plane = [np.ptp(about[list(face)] @ _normal(about[list(face)])) <= ON_PLANE for face in faces]
     sides = [[about[list(face)]] if flat else [*fan] for face, fan, flat in zip(faces, fans, plane, strict=True)]
@@ -94,14 +95,7 @@ def _kept(polygon: Array, normal: Array, offset: float) -> Array:
         return np.zeros((0, 3))
     if above.min() >= -ON_PLANE:
         return polygon
-    points = []
-    for i in range(len(polygon)):
-        j = (i + 1) % len(polygon)
-        if above[i] >= 0:
-            points.append(polygon[i])
-        if (above[i] >= 0) != (above[j] >= 0):
-            points.append(polygon[i] + above[i] / (above[i] - above[j]) * (polygon[j] - polygon[i]))
-    return np.array(points)
+    return kept_of(polygon, above)
 
 
 def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
@@ -110,7 +104,7 @@ def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
     above = np.where(np.abs(above) <= ON_PLANE, 0.0, above)
     points = list(cell[above >= 0])
     for face in hull.faces:
-        for i, j in zip(face, (*face[1:], face[0]), strict=True):
+        for i, j in face_edges(face):
             if i < j and above[i] * above[j] < 0:
                 points.append(cell[i] + above[i] / (above[i] - above[j]) * (cell[j] - cell[i]))
     return np.array(points)
@@ -169,7 +163,7 @@ def creases_of(parts: Sequence[Convex]) -> Array:
     An edge of a part is cut at the corners of other parts that lie on it. A piece of it is shown unless the points
     around it lie all within the body, or those of one half of a circle do: its surface is plane there.
     """
-    edges = np.concatenate([_edges(part) for part in parts])
+    edges = np.concatenate([part.edge_ends for part in parts])
     if len(parts) == 1:
         return edges
     corners = np.concatenate([part.corners for part in parts])
@@ -185,13 +179,6 @@ def creases_of(parts: Sequence[Convex]) -> Array:
         within |= (probes @ part.normals.T <= part.offsets + ALONG_EDGE * extent).all(axis=2)
     count = within.sum(axis=1)
     return np.asarray(pieces[(count < PROBES) & (np.abs(count - PROBES // 2) > 1)])
-
-
-def _edges(part: Convex) -> Array:
-    """Ends of the edges of a part [m], each once, shape (n, 2, 3)."""
-    rings = ((face, (*face[1:], face[0])) for face in part.faces)
-    pairs = {(min(i, j), max(i, j)) for ring, after in rings for i, j in zip(ring, after, strict=True)}
-    return part.corners[np.array(sorted(pairs))]
 
 
 def _cut(edge: Array, corners: Array, near: float) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
-from itertools import pairwise
 from operator import index
 from typing import Annotated, NamedTuple
 
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....geometry.graph import connected_parts
-from ....geometry.hull import THINNEST, Hull, bulk_of, hull_of
+from ....geometry.hull import THINNEST, Hull, bulk_of, face_edges, hull_of, triangles_of
 from ....geometry.parts import convex_parts
 from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown, warn_of
 from ..blocks.compound import Compound, SolidBlock
@@ -232,11 +231,6 @@ def is_plate(body: Mesh) -> bool:
     return bool(len(about) < 4 or thick <= THINNEST * np.ptp(about, axis=0).max())
 
 
-def face_edges(face: tuple[int, ...]) -> list[tuple[int, int]]:
-    """The edges of a face, in its order."""
-    return list(zip(face, (*face[1:], face[0]), strict=True))
-
-
 def oriented(body: Mesh) -> Mesh:
     """A closed body with all its faces counterclockwise from outside, whichever way they turn."""
     faces = list(body.faces)
@@ -260,12 +254,8 @@ def oriented(body: Mesh) -> Mesh:
 
 def enclosed_by(body: Mesh) -> float:
     """Volume that the faces of a closed body enclose, negative where they are clockwise as seen from outside [m3]."""
-    return float(np.linalg.det(triangles_of(body) - body.vertices.mean(axis=0)).sum()) / 6
-
-
-def triangles_of(body: Mesh) -> Array:
-    """The triangles of the faces of a body with their first vertices [m], shape (n, 3, 3)."""
-    return np.asarray(body.vertices[[(face[0], i, j) for face in body.faces for i, j in pairwise(face[1:])]])
+    triangles = body.vertices[triangles_of(body.faces)]
+    return float(np.linalg.det(triangles - body.vertices.mean(axis=0)).sum()) / 6
 
 
 class Bound(NamedTuple):
@@ -299,7 +289,10 @@ class Bound(NamedTuple):
         places, extent = self.body.vertices, float(np.ptp(self.body.vertices, axis=0).max())
         on = places[[self.hull.corners[face[0]] for face in self.hull.faces]]
         offsets = (on * self.hull.normals).sum(axis=1)
-        off = (np.abs(ring @ self.hull.normals.T - offsets).max(axis=0).min() for ring in triangles_of(self.body))
+        off = (
+            np.abs(ring @ self.hull.normals.T - offsets).max(axis=0).min()
+            for ring in places[triangles_of(self.body.faces)]
+        )
         return bool(max(off) <= SAME_PLANE * extent)
 
 
