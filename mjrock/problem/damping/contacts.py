@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -159,14 +159,16 @@ OfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")
 """Stiffness of the side stop of a wall, None without one."""
 Rubbing = Annotated[float | None, Within(0, 10)]
 """Coefficient of friction of an interface, see `Interface`."""
-AnyLaw = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
+OwnLaw = Callable[[Block, Restitution, float], tuple[float, float]]
+"""A law of the user, called as law(wall, e, k_base) to give the damping ratios of base and side."""
+AnyLaw = DampingLaw | OwnLaw
 
 
-def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
+def _predicted(law: OwnLaw, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """The two damping ratios of a law of the user, or a TypeError that names the law."""
     asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
-        given = law(wall, e, k_base)
+        given: object = law(wall, e, k_base)
     except TypeError as error:
         raise TypeError(f"{asked}: {error}") from None
     if not is_iterable(given) or not isinstance(given, Sequence | np.ndarray) or len(given) != 2:

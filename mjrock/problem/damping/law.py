@@ -13,7 +13,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from ...quantities import (
     keep,
     require_array,
     require_kind,
+    require_one_of,
     require_path,
     require_real,
     require_stiffness,
@@ -95,7 +96,7 @@ class Form(Protocol):
     def r_squared(self) -> float:
         """R2 of the damping ratio over the matched simulations that it was fitted to [-]."""
 
-    def xi(self, groups: Groups, loss: Numbers) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
         """The damping ratio [-] that loses `loss` = -ln|e| in the impact of this formula; floats or arrays."""
 
 
@@ -119,7 +120,7 @@ class PowerLaw:
         factor = slenderness**self.slenderness_exponent * k_n**self.stiffness_exponent
         return float(-self.coefficient * factor * math.log(abs(e)))
 
-    def xi(self, groups: Groups, loss: Numbers) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
         """As `Form.xi`."""
         factor = groups.slenderness**self.slenderness_exponent * groups.k_n**self.stiffness_exponent
         return self.coefficient * factor * loss
@@ -148,21 +149,21 @@ class CornerLaw:
     growth: float
     r_squared: float = math.nan
 
-    def _parts(self, groups: Groups) -> tuple[Any, Any, Any]:
+    def _parts(self, groups: Groups) -> tuple[Numbers, Numbers, Numbers]:
         w = groups.work
         most = groups.housner + self.floor * w
         least = np.maximum(0.0, groups.housner - self.bounce * np.sqrt(w) / groups.slenderness)
         steepness = w**self.work_exponent * groups.slenderness**self.slenderness_exponent
         return most, least, self.scale * steepness * (1 + self.growth * w)
 
-    def xi(self, groups: Groups, loss: Numbers) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
         """As `Form.xi`; infinite where no damping loses as much, zero or less where none loses as little."""
         most, least, scale = self._parts(groups)
         left = np.maximum(0.0, most - loss) / (most - least)
         with np.errstate(divide="ignore"):
             return -scale * np.log(left)
 
-    def loss(self, groups: Groups, xi: Numbers) -> Any:
+    def loss(self, groups: Groups, xi: Numbers) -> Numbers:
         """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
         most, least, scale = self._parts(groups)
         return most - (most - least) * np.exp(-xi / scale)
@@ -187,16 +188,16 @@ class BedLaw:
     exponent: float
     r_squared: float = math.nan
 
-    def _parts(self, groups: Groups) -> tuple[Any, Any]:
+    def _parts(self, groups: Groups) -> tuple[Numbers, Numbers]:
         w = groups.work
         return self.inertia * groups.housner + self.weight * w, self.scale * w**self.exponent
 
-    def xi(self, groups: Groups, loss: Numbers) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
         """As `Form.xi`."""
         amplitude, scale = self._parts(groups)
         return scale * np.expm1(np.minimum(loss / amplitude, 50.0))
 
-    def loss(self, groups: Groups, xi: Numbers) -> Any:
+    def loss(self, groups: Groups, xi: Numbers) -> Numbers:
         """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
         amplitude, scale = self._parts(groups)
         return amplitude * np.log1p(xi / scale)
@@ -223,7 +224,7 @@ class SideLaw:
     softening: float
     r_squared: float = math.nan
 
-    def xi(self, groups: Groups, loss: Numbers) -> Any:
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
         """As `Form.xi`."""
         total = loss + self.base_share * groups.base_loss
         factor = groups.slenderness**self.slenderness_exponent * groups.side_ratio**self.ratio_exponent
@@ -426,13 +427,10 @@ class DampingLaw:
         path = require_path("path", path)
         try:
             text = tomllib.loads(require_file(path).read_text(encoding="utf-8"))
-            values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
+            values = text | {key: tuple(value) for key, value in text.items() if isinstance(value, list)}
             for part in ("base", "side"):
                 given = dict(text[part])
-                name = given.pop("form")
-                if name not in FORMS:
-                    raise ValueError(f"form = {name!r} is not one of {', '.join(FORMS)}")
-                values[part] = FORMS[name](**given)
+                values[part] = FORMS[require_one_of("form", given.pop("form"), FORMS)](**given)
             return cls(**values)
         except KeyError as error:
             raise ValueError(f"{path} is not a damping law: {error} is missing") from None

@@ -11,9 +11,9 @@ together. A linear contact has its indentation under one force, or lasts as long
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -144,9 +144,9 @@ def _compliance(E: Modulus, nu: Ratio) -> float:
 
 def _ratios(heights: object) -> tuple[Array, float]:
     """e of every bounce [-], and the mean height of the releases [m]."""
-    nested = isinstance(heights, list | tuple) and any(is_iterable(row) for row in heights)
-    nested = nested or (isinstance(heights, np.ndarray) and heights.ndim > 1)
-    several: Any = heights if nested else [heights]
+    several: Iterable[object] = [heights]
+    if isinstance(heights, list | tuple | np.ndarray) and any(map(is_iterable, heights)):
+        several = heights
     drops = [require_row("heights", row, "height") for row in several]
     for drop in drops:
         if len(drop) < 2:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 import numpy as np
 import scipy
@@ -23,6 +23,7 @@ from ...quantities import (
     keep,
     require_flag,
     require_kind,
+    require_one_of,
     require_path,
     require_reals,
     require_size,
@@ -101,10 +102,10 @@ class GroundMotion:
     def __hash__(self) -> int:
         return hash((self.dt, (self.accel + 0.0).tobytes()))  # -0.0 equals 0.0, and must hash as it does
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}  # what is cached stays at home
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
+    def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
         self.accel.setflags(write=False)
 
@@ -614,9 +615,8 @@ def without_baseline(accel: Array, dt: float, baseline: str) -> Array:
     Raises:
         ValueError: for another baseline than one of BASELINES.
     """
-    if not isinstance(baseline, str) or baseline not in BASELINES:
-        raise ValueError(f"baseline = {shown(baseline)}; the valid ones are {', '.join(BASELINES)} and None")
-    powers = np.linspace(0, 1, len(accel))[:, None] ** np.arange(BASELINES[baseline] + 1)
+    degree = BASELINES[require_one_of("baseline", baseline, BASELINES)]
+    powers = np.linspace(0, 1, len(accel))[:, None] ** np.arange(degree + 1)
     velocities = np.column_stack([integral(power, dt) for power in powers.T])
     factors = np.linalg.lstsq(velocities, integral(accel, dt), rcond=None)[0]
     return np.asarray(accel - powers @ factors)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...files import require_file
-from ...quantities import GRAVITY, Array, require_path, require_reals, require_within, spelt
+from ...quantities import GRAVITY, Array, require_one_of, require_path, require_reals, require_within
 
 FINEST, COARSEST = 1e-5, 1.0
 """Bounds of the time step of a motion [s]."""
@@ -127,14 +127,7 @@ def factor_of(unit: str | float) -> float:
     """How many m/s2 a unit is: one of UNITS, or that number itself, as of the counts of an instrument."""
     if isinstance(unit, int | float) and not isinstance(unit, bool):
         return require_within("unit", unit, 1e-15, 1e3, "m/s2")
-    return named_factor("unit", unit, ACCELERATION_UNITS)
-
-
-def named_factor(name: str, unit: object, units: Mapping[str, float]) -> float:
-    """The factor of one of some units; a ValueError with their names for any other."""
-    if not isinstance(unit, str) or unit not in units:
-        raise ValueError(f"{name} = {spelt(unit)} is not one of {', '.join(units)}")
-    return units[unit]
+    return ACCELERATION_UNITS[require_one_of("unit", unit, ACCELERATION_UNITS)]
 
 
 def stated_units(text: str) -> list[str]:

@@ -20,6 +20,7 @@ from ...quantities import (
     require_array,
     require_increasing,
     require_kind,
+    require_one_of,
     require_reals,
     require_row,
     require_within,
@@ -293,18 +294,11 @@ def code_spectrum(
         >>> round(float(spectrum(0.3, 0.05)), 2)
         6.0
     """
-    codes = "NTC 2018", *SITE_EC8
-    if not isinstance(code, str) or code not in codes:
-        raise ValueError(f"code = {spelt(code)} is not one of {', '.join(codes)}")
-    if not isinstance(soil, str) or soil not in SITE_NTC:
-        raise ValueError(f"soil = {spelt(soil)} is not one of {', '.join(SITE_NTC)}")
-    if not isinstance(topography, str) or topography not in TOPOGRAPHY_NTC:
-        raise ValueError(f"topography = {spelt(topography)} is not one of {', '.join(TOPOGRAPHY_NTC)}")
+    require_one_of("code", code, ("NTC 2018", *SITE_EC8))
+    require_one_of("soil", soil, SITE_NTC)
+    require_one_of("topography", topography, TOPOGRAPHY_NTC)
     if ag < PROBABLY_IN_G:
-        warn_of(
-            f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?",
-            Implausible,
-        )
+        warn_of(f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?", Implausible)
     if code in SITE_EC8:
         for name, value in (("F0", F0), ("Tc", Tc)):
             if value is not None:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, require_whole, require_within
+from ...quantities import Array, require_one_of, require_whole, require_within
 from .records import (
     ACCELERATION_UNITS,
     AS_ASCII,
@@ -31,7 +31,6 @@ from .records import (
     Trace,
     factor_of,
     in_message,
-    named_factor,
     number,
     split_columns,
     stated_units,
@@ -200,7 +199,7 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
         TypeError, ValueError: for an unknown unit, uneven times, a column that is not there, a choice that the caller
             has to make, and where the file says another thing than the caller.
     """
-    scale = named_factor("time_unit", wanted.time_unit, TIME_UNITS)
+    scale = TIME_UNITS[require_one_of("time_unit", wanted.time_unit, TIME_UNITS)]
     if wanted.unit is not None:
         factor_of(wanted.unit)
     dt = wanted.dt

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from operator import index
 from typing import Annotated, NamedTuple
@@ -14,7 +14,17 @@ from numpy.typing import ArrayLike
 from ....geometry.graph import connected_parts
 from ....geometry.hull import THINNEST, Hull, bulk_of, face_edges, hull_of, triangles_of
 from ....geometry.parts import convex_parts
-from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown, warn_of
+from ....quantities import (
+    Array,
+    Within,
+    named,
+    require_flag,
+    require_one_of,
+    require_reals,
+    require_text,
+    shown,
+    warn_of,
+)
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import FARTHEST_VERTEX, MOST_VERTICES
 from ..blocks.polyhedron import Polyhedron
@@ -77,7 +87,7 @@ class Given(NamedTuple):
     def checked(self) -> Given:
         """Itself; a TypeError or ValueError names what is wrong."""
         if self.convex is not None:
-            _one_of("convex", self.convex, CONVEX)
+            require_one_of("convex", self.convex, CONVEX)
         _ = self.matrix()
         return self._replace(fixed=names_of_list("fixed", self.fixed), ground=require_flag("ground", self.ground))
 
@@ -95,15 +105,8 @@ class Given(NamedTuple):
         if self.unit is not None:
             if self.scale is not None:
                 raise ValueError(f"unit = {shown(self.unit)} and scale = {self.scale:g} are both given; give one")
-            scale = LENGTH_UNITS[_one_of("unit", self.unit, LENGTH_UNITS)]
-        return scale * np.array(UPWARDS[_one_of("up", usual if self.up is None else self.up, UPWARDS)])
-
-
-def _one_of(name: str, value: str, known: Collection[str]) -> str:
-    """A name; a ValueError lists those that are known if it is another."""
-    if not isinstance(value, str) or value not in known:
-        raise ValueError(f"{name} = {shown(value)} is none of {', '.join(known)}")
-    return value
+            scale = LENGTH_UNITS[require_one_of("unit", self.unit, LENGTH_UNITS)]
+        return scale * np.array(UPWARDS[require_one_of("up", usual if self.up is None else self.up, UPWARDS)])
 
 
 def names_of_list(what: str, given: Sequence[str]) -> Sequence[str]:
