@@ -25,19 +25,23 @@ from .records import (
     COUNT,
     DECIMAL,
     FINEST,
+    SPREADSHEETS,
     Parse,
     Trace,
+    Wanted,
+    all_numbers,
     binary_kind,
     factor_of,
     in_message,
-    number,
     numbers,
+    parse_table,
+    require_visible,
     samples,
     stated_units,
     step,
+    table_lines,
     value_of,
 )
-from .tables import SPREADSHEETS, Wanted, parse_table, table_lines
 
 AT2_UNIT = re.compile(
     r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
@@ -106,9 +110,7 @@ def parse_esm(lines: list[str]) -> list[Trace]:
     if not re.fullmatch(COUNT, head["NDATA"]):
         raise ValueError(f"NDATA is {in_message(head['NDATA'])}; it has to be the number of samples")
     place = list(head).index("SAMPLING_INTERVAL_S") + 1
-    dt = require_within(
-        f"line {place}: time step dt", number(head["SAMPLING_INTERVAL_S"], place), FINEST, COARSEST, "s"
-    )
+    dt = step(head["SAMPLING_INTERVAL_S"], place)
     values = samples(lines, ESM_LINES, int(head["NDATA"]), list(head).index("NDATA") + 1)
     return [Trace(ESM_UNITS[unit] * values, dt, head)]
 
@@ -213,29 +215,24 @@ def channels(lines: Sequence[str]) -> Iterator[Channel]:
     have that width.
     """
     text: list[str] = []
-    i = 0
-    while i < len(lines):
-        if hidden := BREAK.search(lines[i]):
-            raise ValueError(f"line {i + 1} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
-        head = SAMPLE_COUNT.fullmatch(lines[i])
-        text += [lines[i]] if re.search("[a-zA-Z]{2}", lines[i]) else []
-        i += 1
-        if head is None:
-            continue
-        values: list[float] = []
-        place, stated = i, WIDTH.search(lines[i - 1])
-        width = int(stated[1]) if stated else 0
-        while i < len(lines) and len(values) < int(head[1]):
-            row = _columns(lines[i], width) if width else lines[i]
-            values += numbers(row, i + 1)
-            i += 1
-        if len(values) != int(head[1]):
-            raise ValueError(f"{len(values)} samples; line {place} states {head[1]}")
-        yield Channel(place, "\n".join(text), np.array(values))
-        text = []
+    rest = iter(enumerate(lines, 1))
+    for place, line in rest:
+        require_visible(line, place)
+        text += [line] if re.search("[a-zA-Z]{2}", line) else []
+        if head := SAMPLE_COUNT.fullmatch(line):
+            values: list[float] = []
+            while len(values) < int(head[1]) and (row := next(rest, None)):
+                values += numbers(_columns(row[1], line), row[0])
+            if len(values) != int(head[1]):
+                raise ValueError(f"{len(values)} samples; line {place} states {head[1]}")
+            yield Channel(place, "\n".join(text), np.array(values))
+            text = []
 
 
-def _columns(line: str, width: int) -> str:
+def _columns(line: str, announced: str) -> str:
+    """A line whose columns are set apart, where the line that announces it states their width."""
+    stated = WIDTH.search(announced)
+    width = int(stated[1]) if stated else 0
     return " ".join(line[k : k + width] for k in range(0, len(line.rstrip()), width)) if width else line
 
 
@@ -265,9 +262,8 @@ def _cosmos_step(lines: Sequence[str], place: int) -> float:
     heads = [i for i in range(place) if re.match(r"\s*\d+ Real-header values follow", lines[i], AS_ASCII)]
     if not heads:
         raise ValueError(f"line {place} states no time step, and no header of real numbers stands before it")
-    width = WIDTH.search(lines[heads[-1]])
     rows = itertools.takewhile(lambda i: not re.search("[|a-zA-Z]", lines[i]), range(heads[-1] + 1, place))
-    values = [x for i in rows for x in numbers(_columns(lines[i], int(width[1]) if width else 0), i + 1)]
+    values = [x for i in rows for x in numbers(_columns(lines[i], lines[heads[-1]]), i + 1)]
     if len(values) < 62:
         raise ValueError(f"line {heads[-1] + 1}: {len(values)} numbers follow; the 62nd is the time step [ms]")
     return values[61] / 1000
@@ -315,7 +311,7 @@ def _geonet_component(lines: list[str], first: int) -> Trace:
         )
     count, (place, every) = int(said["count"][1][1]), said["step"]
     after = first + GEONET_HEAD
-    values = np.array([x for number_of, line in enumerate(lines[after:], after + 1) for x in numbers(line, number_of)])
+    values = np.array(all_numbers(lines, after))
     if len(values) not in (count, 3 * count):
         raise ValueError(
             f"{len(values)} samples from line {after + 1} on; line {said['count'][0]} states {count}, of accelerations "
@@ -329,8 +325,7 @@ def parse_smc(lines: list[str]) -> list[Trace]:
     """The record of an SMC file of the USGS: a corrected accelerogram at a stated rate, in cm/s2."""
     if len(lines) < SMC_HEAD or not re.match(r"\s*2 CORRECTED ACCELEROGRAM", lines[0], AS_ASCII):
         raise ValueError(f"line 1 is {in_message(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
-    whole = [x for i in range(11, 17) for x in numbers(lines[i], i + 1)]
-    real = [x for i in range(17, SMC_HEAD) for x in numbers(lines[i], i + 1)]
+    whole, real = all_numbers(lines, 11, 17), all_numbers(lines, 17, SMC_HEAD)
     if len(whole) != 48 or len(real) != 50:
         raise ValueError(f"lines 12 to 27 hold {len(whole)} whole and {len(real)} real numbers; they are 48 and 50")
     rate = require_within("line 18: samples a second", real[1], 1 / COARSEST, 1 / FINEST, "Hz")

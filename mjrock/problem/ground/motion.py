@@ -36,8 +36,7 @@ from ...quantities import (
 )
 from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
 from .oscillator import building_modes, oscillator_steps, total_acceleration
-from .records import COARSEST, FINEST, Parse, Trace, checked_record, read, text_lines
-from .tables import Wanted, parse_table, table_lines
+from .records import COARSEST, FINEST, Parse, Trace, Wanted, checked_record, parse_table, read, table_lines, text_lines
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""

@@ -10,7 +10,6 @@ import copy
 import fnmatch
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, get_args
@@ -21,9 +20,8 @@ from numpy.typing import ArrayLike
 from ...quantities import Array, keep, named, require_kind, require_path, require_text, shown, spelt
 from .formats import recognised
 from .motion import GroundMotion, motion_of
-from .records import read
+from .records import Wanted, parse_table, read, table_lines
 from .spectrum import SpectrumOfCode, factor_to_spectrum, response_spectrum
-from .tables import Wanted, parse_table, table_lines
 
 VERTICAL = re.compile(r"(?:[A-Z][GHLNJ])?[ZVU]|UP|DO?W?N|VERT?(?:ICAL)?|VRT|U-?D|VT", re.IGNORECASE)
 CHANNEL_CODE = re.compile(r"([A-Z][GHLNJ])([ENXYLTZVU123])", re.IGNORECASE)
@@ -188,10 +186,12 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     `repr` says which components each record has, and by what `records_in` found that they go together, in `by`.
     """
 
-    @cached_property
-    def by(self) -> dict[str, str]:
+    def __init__(
+        self, records: Mapping[str, tuple[GroundMotion, ...]] | None = None, by: Mapping[str, str] | None = None
+    ) -> None:
+        super().__init__(records or {})
+        self.by = dict(by or {})
         """By what the components of a record were found to go together: "header", "names" or "one file"."""
-        return {}
 
     def __repr__(self) -> str:
         lines = [f"<RecordSet of {len(self)} records>"]
@@ -232,7 +232,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         if alone := [name for name, components in self.items() if not _level(components)]:
             raise ValueError(f"{named(alone)}: no horizontal component; del records[{alone[0]!r}] leaves it out")
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
-        return _found(scaled, self.by)
+        return RecordSet(scaled, self.by)
 
     def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
         """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
@@ -325,7 +325,7 @@ def records_in(
         unused = key if key not in found else next(iter(tokens))
         found[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
         found.by |= {unused: by} if len(tokens) > 1 else {}
-    return _found(dict(sorted(found.items())), found.by)
+    return RecordSet(dict(sorted(found.items())), found.by)
 
 
 def _directed(motion: GroundMotion, token: str) -> GroundMotion:
@@ -342,16 +342,9 @@ def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
     return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
 
 
-def _found(records: Mapping[str, tuple[GroundMotion, ...]], by: Mapping[str, str]) -> RecordSet:
-    """A set of records that something told to go together."""
-    made = RecordSet(records)
-    made.by.update(by)
-    return made
-
-
 def _joined(one: Mapping[str, tuple[GroundMotion, ...]], other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:
     """The records of two sets; those of the second where both have one of a name."""
-    return _found({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
+    return RecordSet({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
 
 
 def scaled_together(
