@@ -23,8 +23,8 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
     """The corners of convex parts that fill a closed body, shape (n, 3) each.
 
     The hull of the body is cut by the plane of the largest face that goes through it, each piece by that of the largest
-    face within it, and so on. A piece that no face goes through is whole or empty, which the winding number about
-    its centroid says. Neighbours whose union is convex are then put together.
+    face within it, and so on. A piece that no face goes through is whole or empty, by the winding number about its
+    centroid. Neighbours whose union is convex are then put together.
 
     Args:
         corners: of the body [m], shape (n, 3).
@@ -150,7 +150,7 @@ def _volume(points: Array) -> float:
 
 
 PROBES = 72
-"""Points around an edge at which the body is asked for."""
+"""Points around an edge that are tested for lying within the body."""
 ASIDE_OF_EDGE = 1e-3
 """Distance of these points from the edge, over the extent of the body [-]."""
 ALONG_EDGE = 1e-6

@@ -90,7 +90,7 @@ class Interface:
         face: width of the face across the lines: the thickness for the base, the height for the side stop [m],
             1e-3 to 1000.
         length: length of the lines along the wall [m], 1e-3 to 1000.
-        frequency: what the damping ratio refers to, see `reference_frequency` [rad/s], 1e-3 to 1e9.
+        frequency: the frequency of the damping ratio, see `reference_frequency` [rad/s], 1e-3 to 1e9.
         points: number of contact lines, 2 to 1000.
         friction: coefficient of friction of every line [-], 0 to 10, or None. A base of None holds: it does not slide,
             as rocking theory has it. A side of None is smooth.
@@ -191,7 +191,7 @@ def required_law(law: AnyLaw | str | None, points: int = 2) -> AnyLaw:
 def _doubts(
     law: DampingLaw, points: int, k_side: float | None, friction: float | None, side_friction: float | None
 ) -> Iterator[str]:
-    """What speaks against a law for contacts that it was not fitted for, in words."""
+    """Why a law does not hold for contacts that it was not fitted for, in words."""
     if law.points not in (None, points):
         yield f"{law.name} was fitted for {law.points} contact lines a face, not {points}"
     if law.points is None and k_side is not None:
@@ -214,7 +214,7 @@ class Contacts:
         base: the base, over the thickness of the wall.
         side: the side stop over the whole inner face, or None for a wall that never meets one.
         law: name of the damping law, recorded in the generated model.
-        stop_top: height that the side stop reaches for which the damping was chosen [m]; None does not say.
+        stop_top: height that the side stop reaches for which the damping was chosen [m]; None if unknown.
     """
 
     base: Interface
@@ -295,11 +295,11 @@ class Contacts:
     ) -> Contacts:
         """Interfaces of `wall` whose damping ratios the law predicts, in the chosen layout.
 
-        By default the base holds and the side is smooth, which is what the laws were fitted for.
+        By default the base holds and the side is smooth. The laws were fitted for such walls.
         `mjrock.matched_contacts` finds the damping for another friction.
 
         Args:
-            wall, e: the wall, and the restitution that is asked for.
+            wall, e: the wall, and the restitution of the interfaces.
             k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
             law: a law or its name; None takes CALIBRATED for two lines and CALIBRATED_BED for more. A law of your own
                 is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` and `amplitude` too.
@@ -313,7 +313,7 @@ class Contacts:
         Warns:
             UserWarning: what the law warns of; where it was fitted for another number of lines or another friction; and
                 one-sided where it was fitted in another code, as PUBLISHED was, or where the base is so soft that the
-                rebound that `e` asks for lifts no edge.
+                rebound of `e` lifts no edge.
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)

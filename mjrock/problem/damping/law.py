@@ -54,9 +54,9 @@ class Groups:
         work: softness * 0.75 / (phi (2 - phi)) with phi = theta_0/alpha of the release [-]: the work of the weight on
             the springs of the base, over the energy that arrives. For a release at alpha/2 it is the softness itself.
         side_ratio: interface stiffness of the side over that of the base [-].
-        housner: -ln e_2s of Eq. 2, the loss that conservation of angular momentum asks for [-].
-        base_loss: -ln e_2s, what is asked for [-].
-        side_loss: -ln |e_side|, what is asked for [-].
+        housner: -ln e_2s of Eq. 2, the loss by conservation of angular momentum [-].
+        base_loss: -ln e_2s, the required loss of an impact on the base [-].
+        side_loss: -ln |e_side|, the required loss of an impact on the side stop [-].
     """
 
     slenderness: Numbers
@@ -253,10 +253,10 @@ class DampingLaw:
     """A formula for the base and one for the side, their source, and the ranges they were fitted over.
 
     Calling a law gives `(xi_base, xi_side)` as fractions, and warns (UserWarning) outside the fitted ranges, or where
-    no damping of the base loses as much or as little as is asked for. It then gives the closest damping.
+    no damping of the base loses as much or as little as is required. It then gives the closest damping.
 
     Args:
-        name: what a generated model records.
+        name: its name, which generated models record.
         source: where the coefficients come from.
         base: formula of the base, of e_2s.
         side: formula of the side stop, of e_side.
@@ -264,7 +264,7 @@ class DampingLaw:
         slenderness_range: h/b covered by the fit [-].
         k_n_range: interface stiffnesses covered by the fit [N/m3].
         side_range: |e_side| covered by the fit [-].
-        points: contact lines a face that the law was fitted for, or None where the source does not say.
+        points: contact lines a face that the law was fitted for, or None where the source does not state them.
         scalable: whether size and density enter through dimensionless groups alone. `R_range` is then no limit, and
             `k_n_range` holds for walls of 2000 kg/m3 and goes with the density.
         runs: matched simulations behind base and side.
@@ -313,7 +313,7 @@ class DampingLaw:
 
         Args:
             wall: the wall.
-            e: the restitution asked for.
+            e: the required restitution.
             k_n: interface stiffness of the base [N/m3].
             k_side: interface stiffness of the side [N/m3]; that of the base where it is None.
             amplitude: rotation over alpha that the wall comes from [-], in (0, 1].
@@ -344,9 +344,9 @@ class DampingLaw:
         return xi_base, float(self.side.xi(groups, groups.side_loss))
 
     def reach(self, wall: Block, k_n: float, amplitude: float = 0.5) -> tuple[float, float]:
-        """The lowest and the highest e_2s that a base of `k_n` [N/m3] can be given, as far as the law knows.
+        """The lowest and the highest e_2s that a base of `k_n` [N/m3] can have by the law.
 
-        They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
+        They belong to damping ratios of 0.3 and 0.001; the published law has no limit.
         """
         require_kind("wall", wall, Block)
         k_n = require_stiffness("k_n", k_n)
@@ -360,12 +360,12 @@ class DampingLaw:
     def covers(
         self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
     ) -> bool:
-        """Whether the law can be expected to give what is asked for.
+        """Whether the law can be expected to give the required restitution.
 
         It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
-        least MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE times as
-        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base. The
-        arguments are those of a call.
+        least REACH_MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE
+        times as far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the
+        base. The arguments are those of a call.
         """
         require_kind("e", e, Restitution)
         k_side = None if k_side is None else require_stiffness("k_side", k_side)
@@ -441,8 +441,8 @@ class DampingLaw:
 def rebound_over_uplift(wall: Block, e: Restitution, k_n: float, amplitude: float) -> float:
     """Rotation of the first rebound from a side stop over that at which an edge of the wall lifts off its base [-].
 
-    The wall is released from `amplitude` theta_0/alpha on a base of `k_n` [N/m3], and rebounds as `e` says. Below 1
-    that rebound lifts no edge: it is an elastic motion of the base. One that lifts an edge is larger than `e` says.
+    The wall is released from `amplitude` theta_0/alpha on a base of `k_n` [N/m3], and rebounds with `e`. Below 1
+    that rebound lifts no edge: it is an elastic motion of the base. One that lifts an edge is larger than that of `e`.
     """
     released = float(wall.potential_energy(amplitude * wall.alpha))
     rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha

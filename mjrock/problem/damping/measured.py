@@ -1,4 +1,4 @@
-"""A contact from what is measured: heights of bounces, times of contact, or the elasticity of a round body.
+"""A contact from measurements: heights of bounces, times of contact, or the elasticity of a round body.
 
 A body that is dropped from h and bounces to h' has e = sqrt(h' / h), gravity counted, because it passes the surface
 with sqrt(2 g h) and sqrt(2 g h'). Its contact lasts for a time T, which gives omega = D(xi, g / (omega v)) / T with the
@@ -76,7 +76,7 @@ def measured_contact(
 
     Raises:
         TypeError, ValueError: for a value outside its range, fewer than two heights in a drop, a bounce that is higher
-            than what it came from, or times without a mass.
+            than the height before it, or times without a mass.
     """
     ratios, release = _ratios(heights)
     e, low, high = _interval(ratios, confidence, 0.0, 1.0)

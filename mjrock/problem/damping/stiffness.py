@@ -196,11 +196,11 @@ connected; its Table C8.5.II has factors for better ones. E is that of masonry t
 
 @dataclass(frozen=True)
 class StiffnessRange:
-    """What is known of an interface stiffness.
+    """The range of an interface stiffness.
 
     Args:
         low, best, high: k_n [N/m3].
-        basis: what it was made of, in words.
+        basis: the data that it comes from, in words.
     """
 
     low: float

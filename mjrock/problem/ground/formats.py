@@ -118,7 +118,7 @@ def parse_esm(lines: list[str]) -> list[Trace]:
 def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
     """An ESM file of accelerations [m/s2] every dt seconds, which states its own unit, step, and number of samples.
 
-    A ValueError says where the header has a field that such a file cannot have.
+    A ValueError is raised for a field of the header that such a file cannot have.
     """
     stated = {
         "SAMPLING_INTERVAL_S": repr(dt),
@@ -161,7 +161,7 @@ def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
         raise ValueError(
             f"{instead}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
         )
-    numbers(head[3] or "", 2)  # what the other columns say is not used
+    numbers(head[3] or "", 2)  # the other columns are not used
     return [Trace(factor_of(unit) * samples(lines, 2, int(head[1])), step(head[2], 2), {})]
 
 
@@ -342,7 +342,7 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
 
     Raises:
         ImportError: if ObsPy is missing.
-        ValueError: for a file that ObsPy does not know, a record with gaps, or no unit.
+        ValueError: for a file that ObsPy cannot read, a record with gaps, or no unit.
     """
     try:
         import obspy
@@ -382,7 +382,7 @@ class Format(NamedTuple):
     """A format of text.
 
     Args:
-        name: what it is called.
+        name: its name.
         signs: what one of its first lines holds, and no other format's.
         parse: its parser.
     """
@@ -413,8 +413,8 @@ SEISMOLOGY = re.compile(r"TIMESERIES |WID[12] |BEGIN GSE2")
 
 
 def recognised(path: Path, unit: str | float | None) -> list[Trace]:
-    """The traces of a file of any format, which its first lines tell; of a table whose header states its step and unit;
-    and of a file of seismology by ObsPy."""
+    """The traces of a file: of a format that its first lines show, of a table whose header states its step and unit, or
+    of a file of seismology by ObsPy."""
     start = path.read_bytes()[:4096]
     kind = None if path.suffix.lower() in SPREADSHEETS or start.startswith(UTF_16) else binary_kind(start)
     if kind and (kind != BINARY or importlib.util.find_spec("obspy")):

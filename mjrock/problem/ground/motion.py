@@ -59,12 +59,12 @@ class GroundMotion:
     """Horizontal acceleration of the base with the sign of Eq. 1: a negative one opens the wall.
 
     Between samples it is linear, before the first and after the last the ground is quiet. A one-sided wall takes the
-    two polarities differently: ask for both of `polarities`.
+    two polarities differently: run both of `polarities`.
 
     Args:
         accel: accelerations [m/s2], shape (n,), n at least 2.
         dt: time step of the samples [s], 1e-5 to 1.
-        name: what it is called in tables and pictures.
+        name: its name in tables and pictures.
         header: the fields of the header of its file, such as the event and the station, where that has some.
 
     Raises:
@@ -102,7 +102,7 @@ class GroundMotion:
         return hash((self.dt, (self.accel + 0.0).tobytes()))  # -0.0 equals 0.0, and must hash as it does
 
     def __getstate__(self) -> dict[str, object]:
-        return {field.name: getattr(self, field.name) for field in fields(self)}  # what is cached stays at home
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # without cached values
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
@@ -252,7 +252,7 @@ class GroundMotion:
         With both, the baseline is taken off before the filter and again after it, which leaves some of its own where
         its zeros before and after the record are cut off.
 
-        `residual_velocity` and `residual_displacement` of both say what it has done, and `mr.plotting.record` draws
+        `residual_velocity` and `residual_displacement` of both show its effect, and `mr.plotting.record` draws
         them beside each other.
 
         Args:
@@ -435,7 +435,7 @@ class GroundMotion:
     def from_file(
         cls, path: str | PathLike[str], component: str | None = None, *, unit: str | float | None = None
     ) -> GroundMotion:
-        """A component of a file of any format that states its time step, which its first lines tell.
+        """A component of a file of any format that states its time step. Its first lines show the format.
 
         PEER AT2, ESM and ITACA, K-NET and KiK-net, GeoNet V1A and V2A, SMC, CSMIP and COSMOS V1 and V2; a table whose
         header states step and unit; SAC, miniSEED and more by ObsPy (the extra `obspy`), which know no unit.
@@ -515,8 +515,8 @@ class GroundMotion:
         tabs set the columns apart. A header and lines that begin with #, % or // are skipped. A comma may be a decimal
         point.
 
-        What the header states, and numbers before the samples, are held against what is given here. The error says what
-        `skip` reads.
+        The header, and numbers before the samples, are compared with the arguments. The error shows the values
+        of `skip` for either reading.
 
         Args:
             path: the file. Of a spreadsheet (.xlsx, .xls, .ods; the extra `frames`) it is the sheet with numbers.
@@ -602,7 +602,7 @@ def _samples(value: int, span: float, least: int) -> int:
 
 
 def integral(accel: Array, dt: float) -> Array:
-    """Integral from zero of what is linear between its samples, at each of them, shape (n,)."""
+    """Integral from zero of a motion that is linear between its samples, at each of them, shape (n,)."""
     return np.concatenate(([0.0], np.cumsum(0.5 * dt * (accel[1:] + accel[:-1]))))
 
 

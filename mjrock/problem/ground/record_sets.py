@@ -56,7 +56,7 @@ class RecordFiles(NamedTuple):
     Args:
         key: the name of the record.
         tokens: the direction of each component, the horizontal ones first, by the name of its file.
-        by: what told that they go together, in words.
+        by: how they were found to go together, in words.
     """
 
     key: str
@@ -102,7 +102,7 @@ def of_one_record(tokens: Sequence[str]) -> bool:
 
 
 def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
-    """Which files are components of one record, by their names and the headers of what is in them.
+    """Which files are components of one record, by their names and their headers.
 
     Raises:
         ValueError: for a name that goes with others in more than one way.
@@ -132,7 +132,7 @@ def _by_header(headers: Mapping[str, Mapping[str, str]]) -> Iterator[RecordFiles
 
 
 def _by_names(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
-    """Files whose names differ in their direction alone, and whose headers do not tell them apart."""
+    """Files whose names differ in their direction alone, and whose headers do not differ."""
     sets: dict[str, dict[str, str]] = {}
     for name in headers:
         for token, key in _candidates(name):
@@ -146,7 +146,7 @@ def _by_names(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
 
 
 def _identity(name: str, header: Mapping[str, str]) -> tuple[str, ...]:
-    """What tells the records of headers and of PEER, which numbers them in the names of its files, apart."""
+    """The fields of a header that are the same for all components of a record, with the number of PEER in its name."""
     number = re.search(r"RSN\d+", name, re.IGNORECASE)
     return (number[0].upper() if number else "", *(header.get(field, "") for field in IDENTITY))
 
@@ -183,7 +183,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     """Records by name: the components of each, the horizontal ones first, a vertical one last where there is one.
 
     A component whose header has a vertical one in STREAM, such as HNZ or UP, is never taken for a horizontal one.
-    `repr` says which components each record has, and by what `records_in` found that they go together, in `by`.
+    `repr` shows the components of each record, and how `records_in` found that they go together, as `by` has it.
     """
 
     def __init__(
@@ -191,7 +191,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     ) -> None:
         super().__init__(records or {})
         self.by = dict(by or {})
-        """By what the components of a record were found to go together: "header", "names" or "one file"."""
+        """How the components of a record were found to go together: "header", "names" or "one file"."""
 
     def __repr__(self) -> str:
         lines = [f"<RecordSet of {len(self)} records>"]

@@ -4,9 +4,9 @@ A parser takes the lines of a file and returns its traces. A number has ASCII di
 1.5D-02. A ValueError with the line says where the samples are not as many as the file states, and where a word on a
 line of numbers is not a finite number.
 
-A table, in text or a spreadsheet, has columns of times and accelerations, or samples in rows. What the caller says and
-what the file says are held against each other: counts, steps and units in its header, a column of times beside a time
-step, numbers that stand alone before the samples. A ValueError names the line and both readings.
+A table, in text or a spreadsheet, has columns of times and accelerations, or samples in rows. The arguments are
+compared with the file: counts, steps and units in its header, a column of times beside a time step, numbers that stand
+alone before the samples. A ValueError names the line and both readings.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Trace(NamedTuple):
     Args:
         accel: accelerations [m/s2], shape (n,).
         dt: time step [s].
-        header: what the file says of it, under the names of fields that ESM has, such as STATION_CODE and STREAM.
+        header: its fields in the file, by the names that ESM gives them, such as STATION_CODE and STREAM.
     """
 
     accel: Array
@@ -77,7 +77,7 @@ Parse = Callable[[list[str]], list[Trace]]
 def checked_record(accel: ArrayLike, dt: float) -> tuple[Array, float]:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
-    A TypeError or ValueError says unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
+    A TypeError or ValueError is raised unless they are a row of at least 2 finite numbers, and the step 1e-5 to 1 s.
     """
     values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
     if values.ndim != 1 or len(values) < 2:
@@ -90,7 +90,7 @@ def checked_record(accel: ArrayLike, dt: float) -> tuple[Array, float]:
 
 
 def read(path: str | PathLike[str], traces: Callable[[Path], list[Trace]]) -> list[Trace]:
-    """The traces that a reader finds in a file; a ValueError with its name says if it is not one of the format."""
+    """The traces that a reader finds in a file; a ValueError with its name for a file of another format."""
     path = require_path("path", path)
     try:
         with np.errstate(over="ignore"):  # a number that is too large in m/s2 is named
@@ -240,7 +240,7 @@ HEAD_COUNT = re.compile(
 
 
 class Wanted(NamedTuple):
-    """What a caller says of a table.
+    """The arguments that describe a table.
 
     Args:
         unit: of the accelerations, one of UNITS or how many m/s2 it is; None takes that of the header.
@@ -248,7 +248,7 @@ class Wanted(NamedTuple):
         dt: the time step in that unit; None takes that of the column of times or of the header.
         columns: those to read, by number from 0 or name: the times first, unless a step is given. "rows" for samples in
             rows. None where there is one choice only.
-        skip: the first lines to leave out; None finds the header and holds what it says against all this.
+        skip: the first lines to leave out; None finds the header and compares it with the other arguments.
     """
 
     unit: str | float | None = None
@@ -267,7 +267,7 @@ class Stated(NamedTuple):
 
 @dataclass(frozen=True)
 class RecordTable:
-    """The rows of numbers of a file, and what its header says.
+    """The rows of numbers of a file, and its header.
 
     Args:
         head: the lines before the rows, by their number.
@@ -324,7 +324,7 @@ def table_lines(path: Path) -> list[str]:
     """The lines of a text, or those of the only sheet with numbers of a spreadsheet, its cells set apart by tabs.
 
     Raises:
-        ImportError: for a spreadsheet where pandas, or what it reads the format by, is missing.
+        ImportError: for a spreadsheet where pandas, or its library for the format, is missing.
         ValueError: for a spreadsheet with numbers on several sheets or on none.
     """
     if path.suffix.lower() not in SPREADSHEETS:
@@ -357,7 +357,7 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
 
     Raises:
         TypeError, ValueError: for an unknown unit, uneven times, a column that is not there, a choice that the caller
-            has to make, and where the file says another thing than the caller.
+            has to make, and where the file contradicts the arguments.
     """
     scale = TIME_UNITS[require_one_of("time_unit", wanted.time_unit, TIME_UNITS)]
     if wanted.unit is not None:

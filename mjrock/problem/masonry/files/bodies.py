@@ -63,8 +63,8 @@ class Mesh(NamedTuple):
         name: of the mesh in its file.
         vertices: [m], shape (n, 3).
         faces: numbers of the vertices of each, in order around it.
-        fixed: whether the file says that it is a support.
-        density: what the file says [kg/m3], or None.
+        fixed: whether the file marks it as a support.
+        density: that of the file [kg/m3], or None.
     """
 
     name: str
@@ -75,7 +75,7 @@ class Mesh(NamedTuple):
 
 
 class Given(NamedTuple):
-    """What a caller says of a file, see `Masonry.from_obj`."""
+    """The arguments that describe a file, see `Masonry.from_obj`."""
 
     fixed: Sequence[str] = ()
     ground: bool = False
@@ -158,8 +158,8 @@ def mesh_bodies(mesh: Mesh) -> list[Mesh]:
     """The closed bodies of a mesh, and plane plates that are open.
 
     Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
-    touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
-    is divided.
+    touch are separate where they are written one after the other. Closed parts that have no vertex in common are
+    separate bodies.
 
     Raises:
         ValueError: for a body that is open and no plate, or for too many.
@@ -286,7 +286,7 @@ class Bound(NamedTuple):
 
     @property
     def is_convex(self) -> bool:
-        """Whether the faces enclose what the hull does, and each of their triangles lies on a face of the hull."""
+        """Whether the faces enclose the volume of the hull, and each of their triangles lies on a face of the hull."""
         if abs(self.enclosed / self.of_hull - 1) > SAME_VOLUME:
             return False
         places, extent = self.body.vertices, float(np.ptp(self.body.vertices, axis=0).max())
@@ -302,7 +302,7 @@ class Bound(NamedTuple):
 def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[SolidBlock]:
     """The blocks of meshes of a file; names that several have are numbered.
 
-    The density is that of meshes whose file says none [kg/m3]. Fixed are the names given, and what a file calls a
+    The density is that of meshes whose file has none [kg/m3]. Bodies are fixed that are named, or are marked as a
     support.
 
     Raises:

@@ -71,8 +71,8 @@ def _inside(thing: object) -> Any:
 def _parts(content: Part | list[Part]) -> list[tuple[object, Part]]:
     """The blocks of a model, an assembly or a list with their keys, or the only one.
 
-    Assemblies are graphs whose nodes hold the blocks. Those of COMPAS 0 are blocks beside a network, which says what
-    is a support.
+    Assemblies are graphs whose nodes hold the blocks. Those of COMPAS 0 are blocks beside a network, which has the
+    supports.
     """
     if isinstance(content, list):
         if not all(isinstance(_inside(part), dict) for part in content):

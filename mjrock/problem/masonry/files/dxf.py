@@ -1,4 +1,4 @@
-"""Drawings in DXF: closed polylines are the outlines of blocks, and layers say what these are."""
+"""Drawings in DXF: closed polylines are the outlines of blocks, and layers give their kind."""
 
 from __future__ import annotations
 
@@ -228,7 +228,7 @@ def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfL
 
     Args:
         drawing: the outlines and their unit.
-        given: what the caller says of the file; layers, and names of blocks, are fixed.
+        given: the arguments that describe the file; layers, and names of blocks, are fixed.
         density: [kg/m3].
         length: out of the plane [m].
 

@@ -199,7 +199,7 @@ def _triple(words: Sequence[str]) -> tuple[float, float, float]:
 
 
 def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
-    """Blocks as the text of an OBJ file, one object each. A ValueError says which name it cannot hold."""
+    """Blocks as the text of an OBJ file, one object each. A ValueError names a block whose name it cannot hold."""
     lines, before = ["# metres, z upwards"], 1
     for block, name in zip(blocks, names, strict=True):
         if "#" in name or name.endswith("\\") or name.strip() != name:
