@@ -28,7 +28,7 @@ from ...quantities import (
 )
 from ..wall.block import Block
 from ..wall.case import Case
-from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named, rebound_over_uplift
+from .law import CALIBRATED, CALIBRATED_BED, Amplitude, DampingLaw, law_named, rebound_over_uplift
 from .restitution import ANOTHER_WALL, Restitution
 
 LAWS_END = 0.3
@@ -289,7 +289,7 @@ class Contacts:
         k_side: OfSide = None,
         law: AnyLaw | str | None = None,
         points: PointCount = 2,
-        amplitude: Annotated[float, Within(1e-3, 1, name="amplitude theta_0/alpha")] = 0.5,
+        amplitude: Amplitude = 0.5,
         friction: Rubbing = None,
         side_friction: Rubbing = None,
     ) -> Contacts:

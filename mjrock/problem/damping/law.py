@@ -13,23 +13,25 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import Protocol, Self
+from typing import Annotated, Protocol, Self
 
 import numpy as np
 
 from ...files import require_file, write_text
 from ...quantities import (
     Array,
+    Stiffness,
+    Within,
     keep,
     require_array,
     require_kind,
     require_one_of,
     require_path,
     require_real,
-    require_stiffness,
     require_within,
     short_repr,
     warn_of,
+    within_ranges,
 )
 from ..wall.block import Block
 from .restitution import Restitution
@@ -246,6 +248,10 @@ POSITIVE = ("coefficient", "scale", "floor", "bounce", "inertia", "weight")
 """Coefficients of the formulas that cannot be negative."""
 DENSITY = 2000.0
 """Density of the walls that laws are fitted on [kg/m3]."""
+StiffnessOfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3")]
+"""Stiffness of a side stop, None for that of the base."""
+Amplitude = Annotated[float, Within(1e-3, 1, name="amplitude theta_0/alpha")]
+"""Rotation over alpha from which a wall is released."""
 
 
 @dataclass(frozen=True)
@@ -306,31 +312,28 @@ class DampingLaw:
         (low, high), (softest, stiffest) = self.slenderness_range, self.k_n_range
         return f"<DampingLaw {self.name}: h/b {low:g} to {high:g}, k_n {softest:g} to {stiffest:g} N/m3{lines}>"
 
+    @within_ranges
     def __call__(
-        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+        self, wall: Block, e: Restitution, k_n: Stiffness, k_side: StiffnessOfSide = None, amplitude: Amplitude = 0.5
     ) -> tuple[float, float]:
         """Damping ratios of base and side [-]; the published law depends on neither `k_side` nor `amplitude`.
 
         Args:
             wall: the wall.
             e: the required restitution.
-            k_n: interface stiffness of the base [N/m3].
-            k_side: interface stiffness of the side [N/m3]; that of the base where it is None.
-            amplitude: rotation over alpha that the wall comes from [-], in (0, 1].
+            k_n: interface stiffness of the base [N/m3], 1e4 to 1e14.
+            k_side: interface stiffness of the side [N/m3], 1e4 to 1e14; that of the base where it is None.
+            amplitude: rotation over alpha that the wall comes from [-], 1e-3 to 1.
 
         Raises:
             ValueError: for a value outside its range, or if `e.side` is zero (its logarithm has no value).
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
-        k_n = require_stiffness("k_n", k_n)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
-        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         groups = Groups.of(wall, e, k_n, k_side, amplitude)
-        outside = self._outside(wall, e, k_n, k_side)
-        if outside:
+        if outside := self._outside(wall, e, k_n, k_side):
             warn_of(f"{self.name}: outside the range of the fit: {'; '.join(outside)}")
         xi_base = float(self.base.xi(groups, groups.base_loss))
         if self.scalable:
@@ -343,34 +346,44 @@ class DampingLaw:
             xi_base = min(max(xi_base, LEAST_XI), HIGHEST_XI)
         return xi_base, float(self.side.xi(groups, groups.side_loss))
 
-    def reach(self, wall: Block, k_n: float, amplitude: float = 0.5) -> tuple[float, float]:
-        """The lowest and the highest e_2s that a base of `k_n` [N/m3] can have by the law.
+    @within_ranges
+    def reach(self, wall: Block, k_n: Stiffness, amplitude: Amplitude = 0.5) -> tuple[float, float]:
+        """The lowest and the highest e_2s that a base can have by the law [-].
 
         They belong to damping ratios of 0.3 and 0.001; the published law has no limit.
+
+        Args:
+            wall, k_n, amplitude: as those of `__call__`.
+
+        Raises:
+            ValueError: for a value outside its range.
         """
         require_kind("wall", wall, Block)
-        k_n = require_stiffness("k_n", k_n)
-        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         loss = getattr(self.base, "loss", None)
         if loss is None:
             return 0.0, 1.0
         groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
         return math.exp(-float(loss(groups, HIGHEST_XI))), math.exp(-float(loss(groups, LEAST_XI)))
 
+    @within_ranges
     def covers(
-        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+        self, wall: Block, e: Restitution, k_n: Stiffness, k_side: StiffnessOfSide = None, amplitude: Amplitude = 0.5
     ) -> bool:
         """Whether the law can be expected to give the required restitution.
 
         It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
         least REACH_MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE
         times as far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the
-        base. The arguments are those of a call.
+        base.
+
+        Args:
+            wall, e, k_n, k_side, amplitude: as those of `__call__`.
+
+        Raises:
+            ValueError: for a value outside its range.
         """
         require_kind("e", e, Restitution)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         low, high = self.reach(wall, k_n, amplitude)
-        k_n, amplitude = float(k_n), float(amplitude)
         margin = REACH_MARGIN * (high - low)
         return (
             not self._outside(wall, e, k_n, k_side)
