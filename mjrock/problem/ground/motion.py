@@ -46,8 +46,10 @@ DRIFT = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
 """Fields of a header that name its record."""
-LARGEST_PULSE = 1e4
-"""Bound of the amplitude of a pulse [m/s2]."""
+Amplitude = Annotated[float, Within(-1e4, 1e4, "m/s2")]
+"""Largest acceleration of a pulse, with its sign."""
+Span = Annotated[float, Within(0.01, 100, "s")]
+"""Period or duration of a pulse."""
 BASELINES = {"constant": 0, "linear": 1, "quadratic": 2}
 """Degree of the polynomial of accelerations that is taken off, by name."""
 ORDER = 4
@@ -307,13 +309,19 @@ class GroundMotion:
         return GroundMotion(floor, h, f"{self.name} on a floor", self.header)
 
     @classmethod
-    def sine(cls, amplitude: float, period: float, cycles: float = 1.0, samples: int = 400) -> Self:
-        """A sine pulse of `amplitude` [m/s2] and `period` [s], `samples` to a cycle. A positive one starts inwards.
+    @within_ranges
+    def sine(cls, amplitude: Amplitude, period: Span, cycles: float = 1.0, samples: int = 400) -> Self:
+        """A sine pulse with `samples` to a cycle. A positive one starts inwards.
+
+        Args:
+            amplitude: of the acceleration [m/s2], -1e4 to 1e4.
+            period: of the sine [s], 0.01 to 100.
+            cycles: number of periods [-], 0.5 to 1000.
+            samples: steps to a period, so many that a step has 1e-5 to 1 s.
 
         Raises:
-            ValueError: for a period outside 0.01 to 100 s, cycles outside 0.5 to 1000, or steps outside 1e-5 to 1 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, period = _amplitude(amplitude), _span("period", period)
         cycles, samples = require_within("cycles", cycles, 0.5, 1e3), _samples(samples, period, 2)
         count = math.ceil(cycles * samples)
         require_size("the number of samples", count + 1, "choose fewer cycles or fewer samples to a cycle")
@@ -322,32 +330,42 @@ class GroundMotion:
         return cls(accel, cycles * period / count, f"sine {amplitude:g} m/s2, {period:g} s")
 
     @classmethod
-    def half_sine(cls, amplitude: float, duration: float, samples: int = 400) -> Self:
-        """Half a sine of `amplitude` [m/s2] over `duration` [s], in `samples` steps. A positive one pushes inwards.
+    @within_ranges
+    def half_sine(cls, amplitude: Amplitude, duration: Span, samples: int = 400) -> Self:
+        """Half a sine in `samples` steps, at least 2. A positive one pushes inwards.
+
+        Args:
+            amplitude: of the acceleration [m/s2], -1e4 to 1e4.
+            duration: of the half [s], 0.01 to 100.
+            samples: so many that a step has 1e-5 to 1 s.
 
         Raises:
-            ValueError: for a duration outside 0.01 to 100 s, fewer than 2 samples, or steps outside 1e-5 to 1 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, duration = _amplitude(amplitude), _span("duration", duration)
         samples = _samples(samples, duration, 2)
         accel = amplitude * np.sin(np.pi * np.arange(samples + 1) / samples)
         return cls(accel, duration / samples, f"half sine {amplitude:g} m/s2, {duration:g} s")
 
     @classmethod
-    def rectangular(cls, amplitude: float, duration: float) -> Self:
-        """A constant `amplitude` [m/s2] from zero to `duration` [s], exactly. A positive one pushes inwards.
+    @within_ranges
+    def rectangular(cls, amplitude: Amplitude, duration: Span) -> Self:
+        """A constant acceleration from zero to `duration`, exactly. A positive one pushes inwards.
+
+        Args:
+            amplitude: of the acceleration [m/s2], -1e4 to 1e4.
+            duration: of the pulse [s], 0.01 to 100.
 
         Raises:
-            ValueError: for a duration outside 0.01 to 100 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, duration = _amplitude(amplitude), _span("duration", duration)
         steps = math.ceil(duration)
         name = f"rectangular {amplitude:g} m/s2, {duration:g} s"
         return cls(np.full(steps + 1, amplitude), duration / steps, name)
 
     @classmethod
-    def ricker(cls, amplitude: float, period: float, antisymmetric: bool = False, samples: int = 400) -> Self:
-        """A Ricker wavelet whose largest |acceleration| is `amplitude` [m/s2], with `samples` to a `period` [s].
+    @within_ranges
+    def ricker(cls, amplitude: Amplitude, period: Span, antisymmetric: bool = False, samples: int = 400) -> Self:
+        """A Ricker wavelet.
 
         With t from the middle of the wavelet and T the period, the reciprocal of the frequency at which its Fourier
         spectrum peaks,
@@ -359,10 +377,15 @@ class GroundMotion:
         1.75 T, where less than 1e-6 A is left. The motion starts at time zero. A positive one has its large lobe, or
         the first of its two, inwards. The small lobe before it, of 0.45 A or 0.27 A, goes outwards.
 
+        Args:
+            amplitude: A, the largest |acceleration|, with its sign [m/s2], -1e4 to 1e4.
+            period: T [s], 0.01 to 100.
+            antisymmetric: whether it is the antisymmetric one.
+            samples: steps to a period, at least 10, so many that a step has 1e-5 to 1 s.
+
         Raises:
-            ValueError: for a period outside 0.01 to 100 s, fewer than 10 samples, or steps outside 1e-5 to 1 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, period = _amplitude(amplitude), _span("period", period)
         samples = _samples(samples, period, 10)
         kind = "antisymmetric" if require_flag("antisymmetric", antisymmetric) else "symmetric"
         half = math.ceil((1.75 if antisymmetric else 1.35) * samples)
@@ -586,14 +609,6 @@ def _instants(t: ArrayLike) -> Array:
     if np.isnan(times).any():
         raise ValueError("t holds nan; it takes one or more times [s]")
     return times
-
-
-def _amplitude(value: float) -> float:
-    return require_within("amplitude", value, -LARGEST_PULSE, LARGEST_PULSE, "m/s2")
-
-
-def _span(name: str, value: float) -> float:
-    return require_within(name, value, 1e-2, 100.0, "s")
 
 
 def _samples(value: int, span: float, least: int) -> int:

@@ -30,7 +30,14 @@ from ...quantities import (
     within_ranges,
 )
 from .motion import GroundMotion
-from .oscillator import LONGEST_PERIOD, SHORTEST_PERIOD, building_modes, oscillator_steps, relative_displacement
+from .oscillator import (
+    LONGEST_PERIOD,
+    SHORTEST_PERIOD,
+    building_modes,
+    one_or_row,
+    oscillator_steps,
+    relative_displacement,
+)
 
 LEAST_ETA = 0.55
 """Least correction for damping [-], NTC 2018 equation 3.2.4 and EN 1998-1 equation 3.6."""
@@ -383,9 +390,7 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     """
     require_kind("motion", motion, GroundMotion)
     damping = require_within("damping", damping, 0.0, 0.9)
-    T = require_row("periods", np.atleast_1d(require_reals("periods", periods, "periods [s]")), "period [s]")
-    for period in T:
-        require_within("periods", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
+    T = one_or_row("periods", periods, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
     largest = np.array([_largest(motion, float(period), damping) for period in T])
     return ResponseSpectrum(T, largest, damping)
 
