@@ -28,15 +28,24 @@ from ...quantities import (
 )
 from ..wall.block import Block
 from ..wall.case import Case
-from .law import CALIBRATED, CALIBRATED_BED, Amplitude, DampingLaw, law_named, rebound_over_uplift
+from .law import CALIBRATED, CALIBRATED_BED, HIGHEST_XI, Amplitude, DampingLaw, law_named, rebound_over_uplift
 from .restitution import ANOTHER_WALL, Restitution
 
-LAWS_END = 0.3
-"""Highest damping ratio that the laws predict and searches try [-], see `DampingLaw`."""
-
-
+HOLDS_NEARLY = 10.0
+"""Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
 PointCount = Annotated[int, Within(2, 1000, name="contact points", whole=True)]
 """Contact lines of a face."""
+OfInterface = Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")]
+"""Stiffness of an interface."""
+OfBase = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
+"""Stiffness of the base of a wall."""
+OfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")]
+"""Stiffness of the side stop of a wall, None without one."""
+Rubbing = Annotated[float | None, Within(0, 10)]
+"""Coefficient of friction of an interface, see `Interface`."""
+OwnLaw = Callable[[Block, Restitution, float], tuple[float, float]]
+"""A law of the user, called as law(wall, e, k_base) to give the damping ratios of base and side."""
+AnyLaw = DampingLaw | OwnLaw
 
 
 @within_ranges
@@ -53,9 +62,7 @@ def contact_lines(face: float, points: PointCount) -> tuple[Array, Array]:
 
 
 @within_ranges
-def reference_frequency(
-    wall: Block, k_n: Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")], points: int = 2
-) -> float:
+def reference_frequency(wall: Block, k_n: OfInterface, points: int = 2) -> float:
     """The frequency omega [rad/s] that turns a damping ratio into a dashpot, c_i = (2 xi / omega) k_i.
 
     omega = sqrt(K_rot / I_base): the wall rocking in full contact about the centre of its base, K_rot = sum k_i x_i^2
@@ -76,8 +83,12 @@ def reference_frequency(
     require_kind("wall", wall, Block)
     positions, widths = contact_lines(2 * wall.half_base, points)
     K_rot = float(np.sum(k_n * widths * wall.base_length * positions**2))
-    arm = math.hypot(wall.centroid_height, wall.centroid_offset)
-    return math.sqrt(K_rot / (wall.inertia + wall.mass * arm**2))
+    return math.sqrt(K_rot / base_inertia(wall))
+
+
+def base_inertia(wall: Block) -> float:
+    """Moment of inertia of a wall about the middle of its base [kg m2]."""
+    return wall.inertia + wall.mass * math.hypot(wall.centroid_height, wall.centroid_offset) ** 2
 
 
 @dataclass(frozen=True)
@@ -99,19 +110,19 @@ class Interface:
         ValueError: for a value outside its range.
     """
 
-    k_n: Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")]
+    k_n: OfInterface
     xi: Annotated[float, Within(0, 100, name="damping ratio xi")]
     face: Annotated[float, Within(1e-3, 1000, "m")]
     length: Annotated[float, Within(1e-3, 1000, "m")]
     frequency: Annotated[float, Within(1e-3, 1e9, "rad/s", "reference frequency")]
     points: PointCount = 2
-    friction: Annotated[float | None, Within(0, 10)] = None
+    friction: Rubbing = None
 
     def __post_init__(self) -> None:
         keep_declared(self)
-        if self.xi > LAWS_END * (1 + 1e-9):
+        if self.xi > HIGHEST_XI * (1 + 1e-9):
             warn_of(
-                f"xi = {self.xi:g} is {self.xi:.0%} of critical, and the laws end at {LAWS_END:.0%}; "
+                f"xi = {self.xi:g} is {self.xi:.0%} of critical, and the laws end at {HIGHEST_XI:.0%}; "
                 "damping ratios are fractions",
                 Implausible,
             )
@@ -149,19 +160,6 @@ class Interface:
     def K_rot(self) -> float:
         """Rotational stiffness about the centre of the face in full contact, sum k_i x_i^2 [N m/rad]."""
         return float(np.sum(self.stiffness * self.positions**2))
-
-
-HOLDS_NEARLY = 10.0
-"""Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
-OfBase = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
-"""Stiffness of the base of a wall."""
-OfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")]
-"""Stiffness of the side stop of a wall, None without one."""
-Rubbing = Annotated[float | None, Within(0, 10)]
-"""Coefficient of friction of an interface, see `Interface`."""
-OwnLaw = Callable[[Block, Restitution, float], tuple[float, float]]
-"""A law of the user, called as law(wall, e, k_base) to give the damping ratios of base and side."""
-AnyLaw = DampingLaw | OwnLaw
 
 
 def _predicted(law: OwnLaw, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:

@@ -26,7 +26,7 @@ from ...quantities import (
     within_ranges,
 )
 from ..wall.block import Block
-from .contacts import PointCount, contact_lines, reference_frequency
+from .contacts import PointCount, base_inertia, contact_lines, reference_frequency
 
 Modulus = Annotated[float, Within(1e5, 1e12, "Pa", "modulus E")]
 """Young's modulus of mortar, masonry or stone."""
@@ -113,9 +113,7 @@ def measured_stiffness(
     require_kind("wall", wall, Block)
     omega = 2 * math.pi * frequency
     unit = reference_frequency(wall, UNIT_STIFFNESS, points) ** 2 / UNIT_STIFFNESS
-    arm = math.hypot(wall.centroid_height, wall.centroid_offset)
-    inertia = wall.inertia + wall.mass * arm**2
-    falling = wall.weight * wall.centroid_height / inertia
+    falling = wall.weight * wall.centroid_height / base_inertia(wall)
     return require_stiffness("k_n of the measured frequency", (omega**2 + falling) / unit)
 
 
