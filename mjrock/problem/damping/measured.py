@@ -152,9 +152,7 @@ def _ratios(heights: object) -> tuple[Array, float]:
         if len(drop) < 2:
             raise ValueError(f"heights of a drop are {drop.tolist()}; a release and at least one bounce are needed")
         if drop.min() <= 0 or drop.max() > 1e6 or (np.diff(drop) > 0).any():
-            raise ValueError(
-                f"heights = {drop.tolist()} m have to be positive, and no bounce higher than the one before"
-            )
+            raise ValueError(f"heights = {drop.tolist()} m have to be positive, and no bounce higher than the last")
     ratios = np.concatenate([np.sqrt(drop[1:] / drop[:-1]) for drop in drops])
     return ratios, float(np.mean([drop[0] for drop in drops]))
 

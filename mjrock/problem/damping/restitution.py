@@ -158,9 +158,7 @@ class Restitution:
         lumped = require_real("lumped restitution", lumped)
         base = cls.from_geometry(wall).base
         if not -(base**2) <= lumped < 0:
-            raise ValueError(
-                f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0 for this wall"
-            )
+            raise ValueError(f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0")
         return cls(base=base, side=lumped / base**2)
 
 

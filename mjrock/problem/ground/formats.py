@@ -134,9 +134,7 @@ def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
     lines = [f"{name}: {value}" for name, value in fields.items()]
     fit = all(ESM_FIELD.fullmatch(line) and not BREAK.search(line) for line in lines)
     if len(lines) != ESM_LINES or not fit or any(name != name.upper() for name in fields):
-        raise ValueError(
-            f"header = {in_message(str(dict(header)))}: at most 58 fields of one line, named as in an ESM file"
-        )
+        raise ValueError(f"header = {in_message(str(dict(header)))}: at most 58 fields of one line, as in an ESM file")
     return "\n".join([*lines, *(repr(value) for value in (accel / ESM_UNITS["cm/s^2"]).tolist())]) + "\n"
 
 
@@ -158,9 +156,7 @@ def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
         instead = f"line 2 is {in_message(lines[1])}" if len(lines) > 1 else "1 line"
-        raise ValueError(
-            f"{instead}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
-        )
+        raise ValueError(f"{instead}: not the plain text of a SAC record, whose line 2 begins with count and dt")
     numbers(head[3] or "", 2)  # the other columns are not used
     return [Trace(factor_of(unit) * samples(lines, 2, int(head[1])), step(head[2], 2), {})]
 
@@ -289,9 +285,7 @@ def parse_geonet(lines: list[str]) -> list[Trace]:
     """
     heads = [i for i, line in enumerate(lines) if re.match("(Unc|C)orrected accelerogram .*GNS", line)]
     if not heads or heads[0] != 0:
-        raise ValueError(
-            f"line 1 is {in_message(lines[0])}: not a GeoNet file, which begins Corrected accelerogram, GNS Science"
-        )
+        raise ValueError(f"line 1 is {in_message(lines[0])}: not a GeoNet file, Corrected accelerogram, GNS Science")
     return [_geonet_component(lines[: heads[k + 1]] if k + 1 < len(heads) else lines, i) for k, i in enumerate(heads)]
 
 
@@ -306,9 +300,7 @@ def _geonet_component(lines: list[str], first: int) -> Trace:
     for place, line in enumerate(lines[first : first + 16], first + 1):
         said |= {name: (place, found) for name, pattern in patterns.items() if (found := pattern.fullmatch(line))}
     if missing := [name for name in patterns if name not in said]:
-        raise ValueError(
-            f"lines {first + 1} to {first + 16} state no {missing[0]}: not the header of a GeoNet component"
-        )
+        raise ValueError(f"lines {first + 1} to {first + 16} state no {missing[0]}: no header of a GeoNet component")
     count, (place, every) = int(said["count"][1][1]), said["step"]
     after = first + GEONET_HEAD
     values = np.array(all_numbers(lines, after))

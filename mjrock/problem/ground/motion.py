@@ -184,9 +184,7 @@ class GroundMotion:
             ValueError: for a value outside its range, both or neither, or a peak of a motion that has none.
         """
         if (factor is None) == (peak is None):
-            raise ValueError(
-                f"scaled takes either a factor or a peak [m/s2]; factor = {spelt(factor)}, peak = {spelt(peak)}"
-            )
+            raise ValueError(f"factor = {spelt(factor)}, peak = {spelt(peak)}: give either a factor or a peak [m/s2]")
         if peak is None:
             multiple = require_within("factor", factor, -1e6, 1e6)
             return GroundMotion(multiple * self.accel, self.dt, f"{self.name} x {multiple:g}", self.header)

@@ -340,9 +340,7 @@ def table_lines(path: Path) -> list[str]:
     texts = {name: ["\t".join(map(_cell, row)).rstrip() for row in sheet.to_numpy()] for name, sheet in sheets.items()}
     full = [name for name, lines in texts.items() if sum(bool(DATA.match(line)) for line in lines) > 1]
     if len(full) != 1:
-        raise ValueError(
-            f"{len(full)} of its sheets have rows of numbers, {in_message(', '.join(full))}; save one as CSV"
-        )
+        raise ValueError(f"{len(full)} sheets have rows of numbers, {in_message(', '.join(full))}; save one as CSV")
     return texts[full[0]]
 
 

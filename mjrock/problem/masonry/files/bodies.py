@@ -342,9 +342,7 @@ def _support(body: Mesh, middle: Array) -> Mesh:
     if not is_plate(body) or not _open_edges(body):
         return body
     if not body.fixed:
-        raise ValueError(
-            f"body {body.name} is open: it is a plane plate; name it in fixed, and it is the face of a support"
-        )
+        raise ValueError(f"body {body.name} is open: it is a plane plate; name it in fixed to make a support")
     about = body.vertices.mean(axis=0)
     normal = np.linalg.svd(body.vertices - about)[2][-1]
     away = -np.sign(normal @ (middle - about)) or 1.0

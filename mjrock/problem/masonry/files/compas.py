@@ -42,8 +42,7 @@ def read_compas(path: Path) -> list[Mesh]:
         raise ValueError(f"it is not JSON, or is cut short: {error}") from None
     except (KeyError, TypeError, AttributeError):
         raise ValueError(
-            "it is not a COMPAS model: it has no data.elements, no data.graph as an assembly has, and is no list of "
-            "meshes"
+            "it is not a COMPAS model: it has no data.elements, no data.graph as an assembly, and is no list of meshes"
         ) from None
     materials = content.get("materials") or {} if isinstance(content, dict) else {}
     meshes = []

@@ -148,9 +148,7 @@ def read_ply(path: Path) -> list[Mesh]:
         if not all(len(face) > 2 and min(face) >= 0 and max(face) < len(places) for face in faces):
             raise ValueError("a face is not three or more of the vertices")
     except (KeyError, IndexError, ValueError, TypeError, OverflowError, StopIteration, struct.error) as error:
-        raise ValueError(
-            f"it is not a PLY file of vertices and faces, or is cut short: {type(error).__name__} {error}"
-        ) from None
+        raise ValueError(f"it is not a PLY file of faces, or is cut short: {type(error).__name__} {error}") from None
     return [Mesh("body", places, faces)]
 
 
@@ -203,10 +201,7 @@ def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
     lines, before = ["# metres, z upwards"], 1
     for block, name in zip(blocks, names, strict=True):
         if "#" in name or name.endswith("\\") or name.strip() != name:
-            raise ValueError(
-                f"the block {name!r} has a # in its name, a backslash at its end or a blank at one of its ends, which "
-                "an OBJ file does not hold"
-            )
+            raise ValueError(f"the block {name!r} has a # in its name, a backslash at its end or a blank at an end")
         lines.append(f"o {name}")
         lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in block.vertices]
         lines += ["f " + " ".join(str(before + i) for i in face) for face in block.faces]
