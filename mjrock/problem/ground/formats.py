@@ -284,9 +284,9 @@ def parse_geonet(lines: list[str]) -> list[Trace]:
     In V2A velocities and displacements follow, which are passed over.
     """
     heads = [i for i, line in enumerate(lines) if re.match("(Unc|C)orrected accelerogram .*GNS", line)]
-    if not heads or heads[0] != 0:
+    if heads[:1] != [0]:
         raise ValueError(f"line 1 is {in_message(lines[0])}: not a GeoNet file, Corrected accelerogram, GNS Science")
-    return [_geonet_component(lines[: heads[k + 1]] if k + 1 < len(heads) else lines, i) for k, i in enumerate(heads)]
+    return [_geonet_component(lines[:end], first) for first, end in itertools.pairwise([*heads, len(lines)])]
 
 
 def _geonet_component(lines: list[str], first: int) -> Trace:

@@ -36,7 +36,7 @@ from ...quantities import (
 )
 from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
 from .oscillator import building_modes, oscillator_steps, total_acceleration
-from .records import COARSEST, FINEST, Parse, Trace, Wanted, checked_record, parse_table, read, table_lines, text_lines
+from .records import COARSEST, FINEST, Parse, Trace, Wanted, checked_record, read, table_traces, text_lines
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
@@ -555,7 +555,7 @@ class GroundMotion:
             ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step, or what their
                 decimals round), what is not a finite number, and for doubts, with the line and both readings.
         """
-        traces = read(path, lambda file: parse_table(table_lines(file), Wanted(unit, time_unit, dt, columns, skip)))
+        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip))
         if len(traces) > 1:
             raise ValueError(f"{path}: columns has {len(traces)} accelerations; components_in reads them all")
         return motion_of(traces[0], path)

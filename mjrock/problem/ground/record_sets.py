@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from ...quantities import Array, keep, named, require_kind, require_path, require_text, shown, spelt
 from .formats import recognised
 from .motion import GroundMotion, motion_of
-from .records import Wanted, parse_table, read, table_lines
+from .records import Wanted, read, table_traces
 from .spectrum import SpectrumOfCode, factor_to_spectrum, response_spectrum
 
 VERTICAL = re.compile(r"(?:[A-Z][GHLNJ])?[ZVU]|UP|DO?W?N|VERT?(?:ICAL)?|VRT|U-?D|VT", re.IGNORECASE)
@@ -177,6 +177,8 @@ def _bare(token: str) -> str:
 
 MOST_SHOWN = 8
 """Most records that `repr` of a set names."""
+Records = Mapping[str, tuple[GroundMotion, ...]]
+"""Components of records by the names of these."""
 
 
 class RecordSet(dict[str, tuple[GroundMotion, ...]]):
@@ -186,11 +188,9 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     `repr` shows the components of each record, and how `records_in` found that they go together, as `by` has it.
     """
 
-    def __init__(
-        self, records: Mapping[str, tuple[GroundMotion, ...]] | None = None, by: Mapping[str, str] | None = None
-    ) -> None:
-        super().__init__(records or {})
-        self.by = dict(by or {})
+    def __init__(self, records: Records | tuple[()] = (), by: Mapping[str, str] | tuple[()] = ()) -> None:
+        super().__init__(records)
+        self.by: dict[str, str] = dict(by)
         """How the components of a record were found to go together: "header", "names" or "one file"."""
 
     def __repr__(self) -> str:
@@ -200,11 +200,11 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
             lines.append(f"  {name}: {streams}{f' (by {self.by[name]})' if name in self.by else ''}")
         return "\n".join(lines + (["  ..."] if len(self) > MOST_SHOWN else []))
 
-    def __or__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
+    def __or__(self, other: Records) -> RecordSet:  # type: ignore[override]
         """The records of both; those of the second where both have one of a name."""
         return _joined(self, other) if isinstance(other, Mapping) else NotImplemented
 
-    def __ror__(self, other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:  # type: ignore[override]
+    def __ror__(self, other: Records) -> RecordSet:  # type: ignore[override]
         """The records of both; those of this set where both have one of a name."""
         return _joined(other, self) if isinstance(other, Mapping) else NotImplemented
 
@@ -270,11 +270,10 @@ def components_in(
         ImportError: for a format whose library is missing.
         ValueError: as `GroundMotion.from_file` and `GroundMotion.from_csv`.
     """
-    wanted = Wanted(unit, time_unit, dt, columns, skip)
     if (dt, columns, skip) == (None, None, None):
         traces = read(path, lambda file: recognised(file, unit))
     else:
-        traces = read(path, lambda file: parse_table(table_lines(file), wanted))
+        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip))
     motions = (motion_of(trace, path) for trace in traces)
     return tuple(sorted(motions, key=lambda motion: order(motion.header.get("STREAM", ""))))
 
@@ -342,7 +341,7 @@ def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
     return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
 
 
-def _joined(one: Mapping[str, tuple[GroundMotion, ...]], other: Mapping[str, tuple[GroundMotion, ...]]) -> RecordSet:
+def _joined(one: Records, other: Records) -> RecordSet:
     """The records of two sets; those of the second where both have one of a name."""
     return RecordSet({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
 

@@ -344,6 +344,11 @@ def table_lines(path: Path) -> list[str]:
     return texts[full[0]]
 
 
+def table_traces(path: str | PathLike[str], wanted: Wanted) -> list[Trace]:
+    """The accelerations of a file that is a table, see `parse_table`."""
+    return read(path, lambda file: parse_table(table_lines(file), wanted))
+
+
 def _cell(value: object) -> str:
     return "" if value != value else " ".join(str(value).split())
 

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import struct
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -133,15 +132,10 @@ def read_ply(path: Path) -> list[Mesh]:
     try:
         order = PLY_ORDER[next(line[1] for line in lines if line[:1] == ["format"])]
         take = _words(body) if not order else _numbers(body[body.index(b"\n") + 1 :], order)
-        rows: dict[str, list[dict[str, list[float]]]] = {}
-        for line in lines:
-            if line[:1] == ["element"]:
-                name, count, kinds = line[1], int(line[2]), list[tuple[str, list[str]]]()
-                if not 0 <= count <= len(content):
-                    raise ValueError(f"{count} of {name} in {len(content)} bytes")
-                rows[name], kinds = [], [(p[-1], p[1:-1]) for p in _properties(lines, name)]
-                for _ in range(count):
-                    rows[name].append({each: _value(take, kind) for each, kind in kinds})
+        elements = _elements(lines)
+        if (most := max(count for count, _ in elements.values())) > len(content):
+            raise ValueError(f"{most} rows in {len(content)} bytes")
+        rows = {name: [_row(take, kinds) for _ in range(count)] for name, (count, kinds) in elements.items()}
         places = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]])
         key = "vertex_indices" if "vertex_indices" in rows["face"][0] else "vertex_index"
         faces = [tuple(map(int, row[key])) for row in rows["face"]]
@@ -152,18 +146,25 @@ def read_ply(path: Path) -> list[Mesh]:
     return [Mesh("body", places, faces)]
 
 
-def _properties(lines: Sequence[list[str]], element: str) -> list[list[str]]:
-    """The lines of the properties of an element of a PLY file."""
-    start = next(i for i, line in enumerate(lines) if line[:2] == ["element", element])
-    rest = (line for line in lines[start + 1 :] if line[:1] != ["comment"])
-    return list(takewhile(lambda line: line[:1] == ["property"], rest))
+def _elements(lines: Sequence[list[str]]) -> dict[str, tuple[int, dict[str, list[str]]]]:
+    """How many rows each element of a PLY file has, and the types of its properties by their names."""
+    elements: dict[str, tuple[int, dict[str, list[str]]]] = {}
+    name = ""
+    for line in lines:
+        if line[:1] == ["element"]:
+            name = line[1]
+            elements[name] = int(line[2]), {}
+        elif line[:1] == ["property"]:
+            elements[name][1][line[-1]] = line[1:-1]
+    return elements
 
 
-def _value(take: Callable[[str], float], kind: Sequence[str]) -> list[float]:
-    """A property of a row of a PLY file: one number, or a list with its length before it."""
-    if kind[0] != "list":
-        return [take(kind[0])]
-    return [take(kind[2]) for _ in range(int(take(kind[1])))]
+def _row(take: Callable[[str], float], kinds: Mapping[str, list[str]]) -> dict[str, list[float]]:
+    """A row of a PLY file: of each property one number, or a list with its length before it."""
+    row = {}
+    for name, (kind, *of_list) in kinds.items():
+        row[name] = [take(of_list[1]) for _ in range(int(take(of_list[0])))] if of_list else [take(kind)]
+    return row
 
 
 def _words(body: bytes) -> Callable[[str], float]:
