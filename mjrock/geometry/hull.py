@@ -142,11 +142,11 @@ def hull_of(points: Array) -> Hull:
     centred = (points - points.mean(axis=0)) / extent
     thickness = float(np.ptp(centred @ np.linalg.svd(centred, full_matrices=False)[2][-1]))
     if not thickness > THINNEST:
-        raise ValueError(f"lie in a plane: they are {thickness * extent:.3g} m thick")
+        raise ValueError(f"vertices lie in a plane: they are {thickness * extent:.3g} m thick")
     try:
         facets = scipy.spatial.ConvexHull(centred)
     except scipy.spatial.QhullError:
-        raise ValueError(f"enclose no body: they are {thickness * extent:.3g} m thick") from None
+        raise ValueError(f"vertices enclose no body: they are {thickness * extent:.3g} m thick") from None
     sets = _coplanar(centred, facets)
     number_of_faces = np.zeros(len(points), dtype=int)
     for members in sets:
@@ -162,7 +162,7 @@ def hull_of(points: Array) -> Hull:
             faces.append(tuple(int(number[ring[i]]) for i in order))
             normals.append(normal)
     if len(faces) < 4:
-        raise ValueError(f"enclose no body: they are {thickness * extent:.3g} m thick")
+        raise ValueError(f"vertices enclose no body: they are {thickness * extent:.3g} m thick")
     outwards = np.array(normals) + 0.0  # no negative zeros
     offsets = np.array([centred[corners[list(face)]].mean(axis=0) for face in faces])
     depth = (np.einsum("fi,fi->f", outwards, offsets) - centred @ outwards.T).min(axis=1)

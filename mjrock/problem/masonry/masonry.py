@@ -83,10 +83,10 @@ from .drawing import (
     touches_told,
     with_sizes,
 )
-from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
+from .files.bodies import Given, Mesh, Scale, about, blocks_of, meshes_of, names_of_list
 from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
-from .files.meshes import obj_text, of_file, read_obj, read_ply, read_stl
+from .files.meshes import obj_text, read_obj, read_ply, read_stl
 from .laws.bond import Bond
 from .laws.dry import Dry, Properties
 from .laws.joint_table import (
@@ -1099,7 +1099,7 @@ class Masonry(Drawn):
         """
         given, path = Given(fixed, ground, scale, unit, up, convex).checked(), require_path("path", path)
         asked = None if layers is None else names_of_list("layers", layers)
-        with of_file(path):
+        with about(f"path = {path}"):
             drawing = read_dxf(path, asked)
             try:
                 blocks = polygons_of(drawing, given, density, length)
@@ -1140,7 +1140,7 @@ class Masonry(Drawn):
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
         given, path = given.checked(), require_path("path", path)
-        with of_file(path):
+        with about(f"path = {path}"):
             return cls._of_meshes(read(path), density, given, options)
 
     @classmethod

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from operator import index
 from typing import Annotated, NamedTuple
 
@@ -26,7 +26,7 @@ from ....quantities import (
     warn_of,
 )
 from ..blocks.compound import Compound, SolidBlock
-from ..blocks.polygon import FARTHEST_VERTEX, MOST_VERTICES
+from ..blocks.polygon import MOST_VERTICES, require_near
 from ..blocks.polyhedron import Polyhedron
 from ..builders.in_plane import MOST_BODIES
 
@@ -72,6 +72,15 @@ class Mesh(NamedTuple):
     faces: MeshFaces
     fixed: bool = False
     density: float | None = None
+
+
+@contextmanager
+def about(what: str, *others: type[Exception]) -> Iterator[None]:
+    """A ValueError, or one of other errors, that is raised within becomes a ValueError that names a file or body."""
+    try:
+        yield
+    except (ValueError, *others) as error:
+        raise ValueError(f"{what}: {error}") from None
 
 
 class Given(NamedTuple):
@@ -272,10 +281,8 @@ class Bound(NamedTuple):
     @classmethod
     def of(cls, body: Mesh) -> Bound:
         """A ValueError names a body whose vertices bound none."""
-        try:
+        with about(f"body {body.name}"):
             hull = hull_of(body.vertices)
-        except ValueError as error:
-            raise ValueError(f"body {body.name}: vertices {error}") from None
         body = oriented(body)
         return cls(body, hull, enclosed_by(body), bulk_of(body.vertices[list(hull.corners)], hull.faces).volume)
 
@@ -323,11 +330,8 @@ def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[Soli
             raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(names[:10])}")
     bodies = [body._replace(fixed=body.fixed or body.name in fixed) for body in bodies]
     for body in bodies:
-        if not (np.abs(body.vertices) <= FARTHEST_VERTEX).all():  # a NaN is not
-            raise ValueError(
-                f"body {body.name}: vertices holds a coordinate outside the valid range {-FARTHEST_VERTEX:g} to "
-                f"{FARTHEST_VERTEX:g} m"
-            )
+        with about(f"body {body.name}"):
+            require_near(body.vertices)
     middle = np.concatenate([body.vertices for body in bodies]).mean(axis=0)
     bounds = [Bound.of(_support(body, middle)) for body in bodies]
     dented = sorted((bound for bound in bounds if not bound.is_convex), key=lambda bound: -bound.added)
@@ -370,12 +374,10 @@ def _say_dented(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | 
 def _whole(bound: Bound, density: float) -> Polyhedron:
     """The hull of a body as a block."""
     body, corners = bound.body, bound.body.vertices[list(bound.hull.corners)]
-    if len(corners) > MOST_VERTICES:
-        raise ValueError(f"body {body.name}: its hull has {len(corners)} corners; a block has at most {MOST_VERTICES}")
-    try:
+    with about(f"body {body.name}", TypeError):
+        if len(corners) > MOST_VERTICES:
+            raise ValueError(f"its hull has {len(corners)} corners; a block has at most {MOST_VERTICES}")
         return Polyhedron(corners, density if body.density is None else body.density, body.fixed, body.name)
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"body {body.name}: {error}") from None
 
 
 def _cut(bound: Bound, density: float) -> SolidBlock:

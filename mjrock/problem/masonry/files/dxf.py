@@ -15,7 +15,7 @@ from ....quantities import Array, P, Result, named, shown, warn_of
 from ..blocks.compound import Compound, FlatBlock, SolidBlock
 from ..blocks.polygon import InwardsError, Polygon
 from ..builders.in_plane import MOST_BODIES
-from .bodies import Given, Mesh, block_name, blocks_of
+from .bodies import Given, Mesh, about, block_name, blocks_of
 from .meshes import bytes_of
 
 if TYPE_CHECKING:
@@ -259,15 +259,14 @@ def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfL
         if np.ptp(corners[:, 1]) > CLOSED_WITHIN * np.ptp(corners, axis=0).max():
             raise ValueError(f"{begins}: it is not in the plane of the drawing; up='z' takes one in the plane x, z")
         ring = corners[:, [0, 2]]
-        try:
-            polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
-        except InwardsError as error:
-            if given.convex is None:
-                raise ValueError(f"{begins}: {error}; convex='parts' cuts it, and convex='hull' fills it") from None
-            places, faces = prism(ring, 1.0)
-            dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
-        except (ValueError, TypeError) as error:
-            raise ValueError(f"{begins}: {error}") from None
+        with about(begins, TypeError):
+            try:
+                polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
+            except InwardsError as error:
+                if given.convex is None:
+                    raise ValueError(f"{error}; convex='parts' cuts it, and convex='hull' fills it") from None
+                places, faces = prism(ring, 1.0)
+                dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
     meshes = [mesh for mesh, _ in dented.values()]
     for block in blocks_of(meshes, 2000.0, Given(convex=given.convex)) if meshes else ():
         polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])

@@ -1,14 +1,13 @@
 """Files of meshes: Wavefront OBJ, STL and PLY.
 
-What reads a file raises a ValueError with the line, where there is one, and what is wrong. `of_file` names the file.
+What reads a file raises a ValueError with the line, where there is one, and what is wrong.
 """
 
 from __future__ import annotations
 
 import struct
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,15 +18,6 @@ from .bodies import Mesh, block_name, used
 
 MOST_BYTES = 500_000_000
 """Largest file that is read."""
-
-
-@contextmanager
-def of_file(path: Path) -> Iterator[None]:
-    """A ValueError that is raised within names the file first."""
-    try:
-        yield
-    except ValueError as error:
-        raise ValueError(f"path = {path}: {error}") from None
 
 
 def bytes_of(path: Path) -> bytes:
