@@ -75,11 +75,11 @@ class Mesh(NamedTuple):
 
 
 @contextmanager
-def about(what: str, *others: type[Exception]) -> Iterator[None]:
-    """A ValueError, or one of other errors, that is raised within becomes a ValueError that names a file or body."""
+def about(what: str, errors: tuple[type[Exception], ...] = (ValueError,)) -> Iterator[None]:
+    """An error that is raised within becomes a ValueError that names a file or body first."""
     try:
         yield
-    except (ValueError, *others) as error:
+    except errors as error:
         raise ValueError(f"{what}: {error}") from None
 
 
@@ -374,7 +374,7 @@ def _say_dented(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | 
 def _whole(bound: Bound, density: float) -> Polyhedron:
     """The hull of a body as a block."""
     body, corners = bound.body, bound.body.vertices[list(bound.hull.corners)]
-    with about(f"body {body.name}", TypeError):
+    with about(f"body {body.name}", (ValueError, TypeError)):
         if len(corners) > MOST_VERTICES:
             raise ValueError(f"its hull has {len(corners)} corners; a block has at most {MOST_VERTICES}")
         return Polyhedron(corners, density if body.density is None else body.density, body.fixed, body.name)

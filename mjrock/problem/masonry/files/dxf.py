@@ -259,7 +259,7 @@ def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfL
         if np.ptp(corners[:, 1]) > CLOSED_WITHIN * np.ptp(corners, axis=0).max():
             raise ValueError(f"{begins}: it is not in the plane of the drawing; up='z' takes one in the plane x, z")
         ring = corners[:, [0, 2]]
-        with about(begins, TypeError):
+        with about(begins, (ValueError, TypeError)):
             try:
                 polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
             except InwardsError as error:
