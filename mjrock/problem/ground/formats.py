@@ -81,6 +81,11 @@ GEONET_STEP = re.compile(rf"(?:.*\bat\s+{DECIMAL}\s*s(?:ec)?\s+intervals|.*inter
 GEONET_COUNT = re.compile(rf"Number of points\s+{COUNT}\b.*", AS_ASCII)
 GEONET_HEAD = 26
 """Lines of the header of a component of GeoNet: 16 of text and 10 of numbers."""
+SEISMOGRAM = {
+    "NETWORK": "network", "STATION_CODE": "station", "LOCATION": "location", "STREAM": "channel",
+    "DATE_TIME_FIRST_SAMPLE": "starttime",
+}  # fmt: skip
+"""Fields of the header of a seismogram, as ObsPy names them."""
 SMC_HEAD = 27
 """Lines of the header of an SMC file: 11 of text, 6 of whole numbers and 10 of real ones; then its comments."""
 
@@ -352,22 +357,12 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     ids = [trace.id for trace in stream]
     if broken := [name for name in ids if ids.count(name) > 1]:
         raise ValueError(f"{broken[0]} has a gap or an overlap: {ids.count(broken[0])} pieces; one is needed")
-    return [
-        Trace(
-            factor_of(unit) * np.asarray(trace.data, dtype=float),
-            float(trace.stats.delta),
-            {
-                name: value
-                for name, value in (
-                    ("NETWORK", trace.stats.network), ("STATION_CODE", trace.stats.station),
-                    ("LOCATION", trace.stats.location), ("STREAM", trace.stats.channel),
-                    ("DATE_TIME_FIRST_SAMPLE", str(trace.stats.starttime)),
-                )
-                if value
-            },
-        )
-        for trace in stream
-    ]  # fmt: skip
+    traces = []
+    for trace in stream:
+        said = {name: str(getattr(trace.stats, field)) for name, field in SEISMOGRAM.items()}
+        header = {name: value for name, value in said.items() if value}
+        traces.append(Trace(factor_of(unit) * np.asarray(trace.data, dtype=float), float(trace.stats.delta), header))
+    return traces
 
 
 class Format(NamedTuple):
