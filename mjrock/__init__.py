@@ -33,18 +33,33 @@ if TYPE_CHECKING:
     from .engine.simulation import simulate
     from .engine.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
-    from .problem.damping.contacts import Contacts
-    from .problem.damping.forms import PowerLaw
-    from .problem.damping.inputs import MASONRY_TYPES, MasonryType, StiffnessRange, crushed_inset, stiffness_range
-    from .problem.damping.interface import Interface, reference_frequency
-    from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+    from .problem.damping.contacts import Contacts, Interface, reference_frequency
+    from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, PowerLaw
     from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
     from .problem.damping.restitution import Restitution, ScatteredRestitution
-    from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
-    from .problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, code_spectrum
+    from .problem.damping.stiffness import (
+        MASONRY_TYPES,
+        MasonryType,
+        StiffnessRange,
+        crushed_inset,
+        joint_stiffness,
+        layered_stiffness,
+        measured_stiffness,
+        stiffness_range,
+        wall_stiffness,
+    )
     from .problem.ground.motion import GroundMotion
     from .problem.ground.record_sets import RecordSet, components_in, records_in, scaled_together
-    from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
+    from .problem.ground.spectrum import (
+        CodeSpectrum,
+        FloorSpectrum,
+        PointSpectrum,
+        ResponseSpectrum,
+        code_spectrum,
+        response_spectrum,
+        scaled_to_sa,
+        scaled_to_spectrum,
+    )
     from .problem.masonry.actuator import Actuator
     from .problem.masonry.blocks.compound import Compound
     from .problem.masonry.blocks.joints import Joint
@@ -121,10 +136,12 @@ __all__ = [
     "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
-IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)
+IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (\([^)]*|.+)", re.MULTILINE)
 """What a type checker imports above: a module and its public names."""
 HOME = {
-    name: module for module, names in IMPORTED.findall(Path(__file__).read_text("utf-8")) for name in names.split(", ")
+    name: module
+    for module, names in IMPORTED.findall(Path(__file__).read_text("utf-8"))
+    for name in re.findall(r"\w+", names)
 }
 """The module of each public name."""
 

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
-from ..problem.damping.falling import rebound_at
-from ..problem.damping.rebound import rebound_restitution
+from ..problem.damping.rebound import rebound_at, rebound_restitution
 from ..quantities import Array, named
 from .felt import ACTUATOR, JOINT, TENDON, EffectiveMass
 from .meeting import Pose

@@ -11,8 +11,7 @@ import mujoco
 
 from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_values, row
 from ..method import METHOD
-from ..problem.damping.falling import MOST_PULL, falling_damping
-from ..problem.damping.rebound import rebound_damping
+from ..problem.damping.rebound import MOST_PULL, falling_damping, rebound_damping
 from ..quantities import Array, named, require_whole, require_within, shown, spelt
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled_model

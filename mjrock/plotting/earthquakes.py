@@ -11,10 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from ..problem.ground.code_spectrum import SpectrumOfCode
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
-from ..problem.ground.spectrum import response_spectrum
+from ..problem.ground.spectrum import SpectrumOfCode, response_spectrum
 from ..quantities import GRAVITY, require_kind
 from ..study.intensity.fragility import Fragility
 from .arguments import equal_rows, finite_row, kind, listed, picture

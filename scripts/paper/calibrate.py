@@ -15,8 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from mjrock import Restitution, Store, plotting
-from mjrock.problem.damping.forms import PowerLaw
-from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI
+from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI, PowerLaw
 from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
 from mjrock.study.matching.match import K_N_RANGE, REFERENCE, Combination, Match

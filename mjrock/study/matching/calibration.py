@@ -2,7 +2,7 @@
 
 For each combination of wall, stiffness and release, and for each restitution that is asked for, a `Match` finds the
 damping ratio: first two-sided for the base, then one-sided for the side with the damping of the base presumed. The
-matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.forms`, see
+matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.law`, see
 `mjrock.study.matching.regression`.
 """
 
@@ -14,8 +14,7 @@ from typing import Annotated, Unpack
 
 import numpy as np
 
-from ...problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
-from ...problem.damping.law import HIGHEST_XI, LEAST_XI, DampingLaw
+from ...problem.damping.law import HIGHEST_XI, LEAST_XI, BedLaw, CornerLaw, DampingLaw, Form, SideLaw
 from ...problem.damping.restitution import Restitution
 from ...quantities import (
     Within,

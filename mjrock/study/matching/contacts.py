@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...bars import Bar
-from ...problem.damping.contacts import Contacts, OfBase, OfSide, Rubbing
-from ...problem.damping.interface import PointCount
+from ...problem.damping.contacts import Contacts, OfBase, OfSide, PointCount, Rubbing
 from ...problem.damping.restitution import Restitution
 from ...problem.wall.block import Block
 from ...problem.wall.effects import SideStop

@@ -11,7 +11,7 @@ import warnings
 import numpy as np
 
 from ...engine.simulation import simulate
-from ...problem.damping.interface import reference_frequency
+from ...problem.damping.contacts import reference_frequency
 from ...problem.damping.restitution import Restitution
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.laws.joint_table import ByName

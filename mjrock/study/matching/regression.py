@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from ...problem.damping.forms import BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
-from ...problem.damping.law import REACH_MARGIN
+from ...problem.damping.law import REACH_MARGIN, BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
 from ...quantities import Array
 from ..campaign.task import Row
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Combination, Match
