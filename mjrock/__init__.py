@@ -93,22 +93,17 @@ if TYPE_CHECKING:
     from .scene.wall import wall_scene
     from .study.analysis import Analysis, MasonryAnalysis
     from .study.campaign.campaign import campaign, results
-    from .study.campaign.grid import Grid
     from .study.campaign.store import Store
-    from .study.intensity.capacities import PairedRatio, fit_capacities, lost, paired_ratio
-    from .study.intensity.capacity import Capacity
-    from .study.intensity.fragility import Fragility, fit_fragility
-    from .study.intensity.ida import ida, overturning_intensity
+    from .study.campaign.task import Grid
+    from .study.intensity.fragility import Fragility, PairedRatio, fit_capacities, fit_fragility, lost, paired_ratio
+    from .study.intensity.ida import Capacity, ida, overturning_intensity
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
-    from .study.loading.dynamic import DynamicCheck, dynamic_check
-    from .study.loading.limit_analysis import collapse_multiplier
-    from .study.loading.limit_curve import LimitCurve, limit_curve
-    from .study.loading.mechanism import MechanismCheck, mechanism_check
+    from .study.loading.code_check import DynamicCheck, MechanismCheck, dynamic_check, mechanism_check
+    from .study.loading.limit_analysis import LimitCurve, collapse_multiplier, limit_curve
     from .study.loading.push import Push, push
     from .study.loading.pushover import pushover
     from .study.matching.calibration import Plan, calibrate
-    from .study.matching.contacts import as_theory, matched_contacts
-    from .study.matching.masonry import matched_masonry
+    from .study.matching.matched import as_theory, matched_contacts, matched_masonry
     from .study.sensitivity import Sensitivity, sensitivity
     from .theory.analytical import solve_analytical
     from .theory.impact import RigidImpact, rigid_impact

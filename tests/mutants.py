@@ -113,7 +113,7 @@ OWN = {
     "problem/wall/section.py": ("section",),
     "problem/wall/tie.py": ("tie_of_bar",),
     "problem/wall/restoring_moment.py": ("effects", "pushover"),
-    "study/matching/masonry.py": ("matched_masonry",),
+    "study/matching/matched.py": ("matched", "matched_masonry"),
     "study/loading/pushover.py": ("pushover",),
     "theory/arcs.py": ("arcs", "free", "analytical", "effects"),
     "theory/impact.py": ("impact",),
