@@ -30,13 +30,12 @@ from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
-from .bodies import Bodies, round_length
+from .bodies import Bodies, Update, frame_view, outlines, round_length, ties_of_masonry, together
 from .forces import forces_on, require_shown
 from .histories import acceleration, rotation, ties
-from .perspective import TITLED, fill, solids, ties_in_view
-from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
-from .solids import Solids
+from .solids import TITLED, Solids, fill, solids, ties_in_view
 from .style import Drawing, titled
+from .wall import surroundings
 
 
 class Filmed(Protocol):
@@ -445,7 +444,7 @@ def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tupl
 
 def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None, box: BboxBase) -> list[Update]:
     """Draw bodies and what they meet."""
-    updates = [blocks(ax, bodies) if isinstance(bodies, Bodies) else solids(ax, bodies, box)]
+    updates = [outlines(ax, bodies) if isinstance(bodies, Bodies) else solids(ax, bodies, box)]
     if case is not None:
         updates.append(filmed(case).around(ax, bodies))
     elif isinstance(bodies, Bodies):

@@ -14,7 +14,7 @@ from ..problem.masonry.blocks.joints import Joint
 from ..quantities import Array, Integers, shown
 from ..result.bodies import Moving
 from ..result.response import Response
-from .section import FORCE, Update
+from .bodies import FORCE, Update
 
 SHOWN = ("thrust", "bars", "cracks")
 """How forces are shown."""
@@ -171,12 +171,12 @@ def edges_of(outline: Array) -> Array:
     return np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
 
 
-def forces_on(ax: Axes, response: Response, bodies: Moving, how: str, *, animated: bool = True) -> Update:
+def forces_on(ax: Axes, response: Response, bodies: Moving, how: str) -> Update:
     """Draw the forces of the joints on blocks that are drawn already, and write the force of the scale."""
     acting = Acting(response, bodies)
     cracks = how == "cracks"
     colour, capstyle = (CRACKED, "butt") if cracks else (FORCE, "round")
-    strokes = Strokes([], colors=colour, zorder=7, animated=animated, capstyle=capstyle)
+    strokes = Strokes([], colors=colour, zorder=7, animated=True, capstyle=capstyle)
     ax.add_collection(strokes, autolim=False)
     said = f"line {WIDEST:g} pt wide" if how == "thrust" else f"bar {LONGEST * acting.extent:.2g} m long"
     if cracks:

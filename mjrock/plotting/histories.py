@@ -13,9 +13,8 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
-from .arguments import kind, listed, picture
-from .figures import BLACK, GREEN, ORANGE, Picture
-from .style import below_figure, figure_of, several, short, styles_of, wrapped
+from .picture import kind, listed, picture
+from .style import BLACK, GREEN, ORANGE, Picture, below_figure, figure_of, several, short, styles_of, wrapped
 
 TIME = "time $t$ [s]"
 MOST = 6

@@ -18,14 +18,11 @@ from ..study.intensity.fragility import Fragility
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity
-from .earthquakes import fragility
-from .figures import png
 from .histories import history
 from .masonry import blocks, mechanism
-from .pushing import push, pushover
-from .sketch import sketch
-from .style import figure_of, wrapped
-from .tornado import tornado
+from .studies import fragility, push, pushover, tornado
+from .style import figure_of, png, wrapped
+from .wall import sketch
 
 MOST_BLOCKS = 3000
 """Blocks up to which masonry is drawn unasked, which takes some seconds."""

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..plotting.bodies import Bodies
-from ..plotting.sketch import elevation, section
 from ..plotting.style import OWN, Look, legend_below, several
+from ..plotting.wall import elevation, section
 from ..problem.wall.case import Case
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from ..problem.wall.case import Case
@@ -23,7 +24,7 @@ from ..quantities import (
 )
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
-from .figures import Picture
+from .style import Drawing, Picture, several, wrapped
 
 P = ParamSpec("P")
 Drawer = TypeVar("Drawer", bound=Callable[..., Any])
@@ -202,3 +203,20 @@ def picture(**own: Check) -> Checked:
         return checked
 
     return decorated
+
+
+@picture()
+def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
+    """A figure with one Axes, drawn by `draw`."""
+    figure = Picture(figsize=size, layout="constrained")
+    draw(figure.subplots())
+    return figure
+
+
+@picture()
+def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
+    """Several drawings, each on an Axes of its own under its title."""
+    figure, axes = several(len(drawings), columns, (4.4, 3.4))
+    for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
+        draw(ax).set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
+    return figure
