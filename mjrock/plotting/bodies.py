@@ -140,21 +140,14 @@ class Bodies:
         if response.case.in_space:
             response.of_masonry.masonry.require_plane("Bodies")
         magnify = require_within("magnify", magnify, 0.01, 1e4)
-        return cls.at_poses(response.case, response.t, response.pose, magnify, limits)
+        return cls.of_moving(replace(response.moving, magnify=magnify), limits)
 
     @classmethod
-    def at_poses(
-        cls,
-        case: AnyCase,
-        t: Array,
-        pose: Array,
-        magnify: float = 1.0,
-        limits: ArrayLike | None = None,
-    ) -> Bodies:
-        """The bodies of a case at times [s] and poses, see `Moving`."""
-        free = [solid.body >= 0 for solid in case.standing.solids]
-        colours = colours_of(case.standing)[free]
-        return cls(Moving(case, t, pose, magnify), colours, required_limits(limits, "xz"))
+    def of_moving(cls, moving: Moving, limits: ArrayLike | None = None) -> Bodies:
+        """The bodies of a case."""
+        standing = moving.case.standing
+        free = [solid.body >= 0 for solid in standing.solids]
+        return cls(moving, colours_of(standing)[free], required_limits(limits, "xz"))
 
     @classmethod
     def loose(
@@ -302,9 +295,9 @@ def outlines(ax: Axes, bodies: Bodies) -> Update:
 
 
 def frame_view(ax: Axes, bodies: Bodies) -> None:
-    """Set limits that every frame fits into, with a margin."""
+    """Set limits that every frame fits into, with a margin unless they are given."""
     low, high = bodies.extent()
-    margin = 0.06 * float((high - low).max())
+    margin = 0.0 if bodies.limits is not None else 0.06 * float((high - low).max())
     ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
 
 
@@ -316,7 +309,7 @@ def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     for name, tie in case.links.items():
         place = edge, case.held_by(tie)[1] + tie.rise
         ax.annotate(name, place, (4, 4), textcoords="offset points", fontsize=8, color=tie.colour)
-    if updates:
+    if updates and bodies.limits is None:
         ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
     return together(updates)
 

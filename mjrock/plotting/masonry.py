@@ -89,7 +89,7 @@ def blocks(
         solids(ax, bodies, ax.bbox)(0)
         fill(ax, bodies, ax.bbox)
     else:
-        flat = Bodies.at_poses(case, time, placed, magnified, limits)
+        flat = Bodies.of_moving(moving, limits)
         outlines(ax, flat)(0)
         if joints and pose is None:
             _joints(ax, case.masonry.plane_joints)
@@ -171,8 +171,6 @@ def thrust(
     updates.append(forces_on(ax, response, bodies.moving, "thrust"))
     together(updates)(0)
     still(ax)
-    if bodies.limits is not None:
-        ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
     return ax
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -26,7 +25,7 @@ from .wall import sketch
 
 MOST_BLOCKS = 3000
 """Blocks up to which masonry is drawn unasked, which takes some seconds."""
-PICTURES: dict[type, Callable[[Any, str], Figure | Axes | None]] = {
+PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Case: sketch,
     MasonryCase: lambda case, said: _masonry(case.masonry, said),
     Masonry: lambda masonry, said: _masonry(masonry, said),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
+from typing import Concatenate, ParamSpec, Protocol, TypeVar, cast, overload
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,7 +16,6 @@ from ..quantities import (
     Array,
     require_kind,
     require_reals,
-    require_row,
     require_text,
     require_whole,
     require_within,
@@ -27,7 +26,7 @@ from ..study.intensity.fragility import Fragility
 from .style import Drawing, Picture, several, wrapped
 
 P = ParamSpec("P")
-Drawer = TypeVar("Drawer", bound=Callable[..., Any])
+Drawer = TypeVar("Drawer", bound=Callable[..., object])
 Check = Callable[[str, object], object]
 """Raises a TypeError or ValueError with the name and the value of an invalid argument."""
 MOST_COLUMNS = 50
@@ -44,11 +43,6 @@ def row(name: str, value: object) -> None:
     given = require_reals(name, value, "a row of at least one real number")
     if given.ndim != 1 or not given.size:
         raise ValueError(f"{name} has the shape {given.shape}; a row of at least one real number is needed")
-
-
-def finite_row(name: str, value: object) -> None:
-    """A row of at least one finite number."""
-    require_row(name, value, "number")
 
 
 def table(name: str, value: object) -> None:
@@ -126,11 +120,6 @@ def drawing(name: str, value: object) -> None:
         raise TypeError(f"{name} = {shown(value)} is not a function that draws on an Axes")
 
 
-def number(name: str, value: object) -> None:
-    """A finite number."""
-    require_within(name, value, -1e9, 1e9)
-
-
 CHECKS: dict[str, Check] = {
     "ax": kind(Axes),
     "case": kind(Case),
@@ -145,7 +134,7 @@ CHECKS: dict[str, Check] = {
     "peaks": table,
     "responses": listed(of_wall),
     "title": require_text,
-    "until": number,
+    "until": lambda name, value: require_within(name, value, -1e9, 1e9),
 }
 """The check of each argument that means the same in every picture."""
 
@@ -184,12 +173,12 @@ def picture(**own: Check) -> Checked:
     One that draws on an Axes makes a figure where it is not given one.
     """
 
-    def decorated(draw: Any) -> Any:
+    def decorated(draw: Callable[..., object]) -> Callable[..., object]:
         signature = inspect.signature(draw)
         on_axes = next(iter(signature.parameters)) == "ax"
 
         @functools.wraps(draw)
-        def checked(*given: Any, ax: Axes | None = None, **options: Any) -> Any:
+        def checked(*given: object, ax: Axes | None = None, **options: object) -> object:
             if ax is not None:
                 given = (ax, *given)
             elif on_axes and not (given and isinstance(given[0], Axes)):
@@ -202,7 +191,7 @@ def picture(**own: Check) -> Checked:
 
         return checked
 
-    return decorated
+    return cast(Checked, decorated)
 
 
 @picture()

@@ -16,12 +16,12 @@ from ..problem.ground.code_spectrum import SpectrumOfCode
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
-from ..quantities import GRAVITY, named, require_kind, require_text
+from ..quantities import GRAVITY, named, require_kind, require_row, require_text
 from ..study.intensity.fragility import Fragility
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity, setting_text
-from .picture import equal_rows, finite_row, kind, listed, mapping, picture
+from .picture import equal_rows, kind, listed, mapping, picture
 from .style import BLUE, ORANGE, OWN, PALETTE, STYLES, folded, power_of_ten
 
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
@@ -35,6 +35,11 @@ def of_records(name: str, value: object) -> None:
 def one_or_more(name: str, value: object) -> None:
     """A motion, at least one of them, or a set of records."""
     of_records(name, [value] if isinstance(value, GroundMotion) else value)
+
+
+def finite_row(name: str, value: object) -> None:
+    """A row of at least one finite number."""
+    require_row(name, value, "number")
 
 
 @picture(motions=one_or_more)

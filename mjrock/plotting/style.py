@@ -107,18 +107,21 @@ def short(label: str) -> str:
     return textwrap.shorten(label, 24, placeholder=" ...")
 
 
-def below_figure(figure: Figure, ax: Axes, ncols: int = 3, **options: Any) -> None:
+def below_figure(figure: Figure, ax: Axes, ncols: int = 3, fontsize: float | None = None) -> None:
     """The legend of an Axes below its figure."""
-    legend_below(figure, *ax.get_legend_handles_labels(), ncols, **options)
+    legend_below(figure, *ax.get_legend_handles_labels(), ncols, fontsize)
 
 
-def legend_below(figure: Figure, handles: Sequence[Artist], labels: Sequence[str], ncols: int, **options: Any) -> None:
+def legend_below(
+    figure: Figure, handles: Sequence[Artist], labels: Sequence[str], ncols: int, fontsize: float | None = None
+) -> None:
     """A legend below a figure, in at most `ncols` columns and no more than its width has room for.
 
-    A legend of many lines makes the figure higher.
+    A legend of many lines makes the figure higher. The size of its text is given in pt.
     """
     for columns in range(max(1, min(ncols, len(labels))), 0, -1):
-        legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, **options)
+        look: Look = {"loc": "outside lower center", "ncols": columns, "frameon": False, "fontsize": fontsize}
+        legend = figure.legend(handles, labels, **look)
         box = legend.get_window_extent()
         if columns == 1 or box.width <= 0.98 * figure.bbox.width:
             break

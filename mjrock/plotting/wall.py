@@ -16,6 +16,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored, Effect, Point
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array, require_flag, require_text
+from ..result.bodies import Moving
 from .bodies import FORCE, GROUND_COLOUR, STONE, Bodies, Update, anchored, outlines, still, together
 from .picture import anything, picture
 from .style import WIDEST, Look, Picture, figure_of, titled
@@ -66,6 +67,8 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
         note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
     updates += [_force(ax, case, effect, force, bodies) for effect, force in forces]
     updates += [_mass(ax, case, added, bodies) for added in case.wall.masses if added.told is not None]
+    if bodies.limits is not None:
+        ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
     return together(updates)
 
 
@@ -223,7 +226,7 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
 def section(ax: Axes, case: Case, stop: str = "stop") -> None:
     """The wall and all that it meets and carries, its thickness, and the height of the stop, which has a name."""
     wall, height = case.wall, 2 * case.block.h
-    bodies = Bodies.at_poses(case, np.zeros(1), np.zeros((1, 1, 3)))
+    bodies = Bodies.of_moving(Moving(case, np.zeros(1), np.zeros((1, 1, 3))))
     outlines(ax, bodies)(0)
     surroundings(ax, case, bodies)(0)
     for text in list(ax.texts):

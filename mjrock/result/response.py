@@ -268,13 +268,9 @@ class Response(Drawn):
             ValueError: for a time outside the run.
             AttributeError: for a wall.
         """
-        case, k = self.of_masonry, sample_at(self.t, t)
-        moving = Moving(case, self.t, self.pose).at([k])
-        places = [moving.displaced(i, centroid[None])[0, 0] for i, centroid in enumerate(case.masonry.centroids)]
-        turns = np.eye(1, self.pose.shape[2] - len(places[0])) if self.in_space else np.zeros((1, 1))
-        turns = np.repeat(turns, len(places), axis=0)
-        turns[list(case.masonry.free)] = self.pose[k, :, len(places[0]) :]
-        return np.hstack([places, turns])
+        centroids, moving = self.of_masonry.masonry.centroids, self.moving.at([sample_at(self.t, t)])
+        places = [moving.displaced(i, centroid[None])[0, 0] for i, centroid in enumerate(centroids)]
+        return np.hstack([places, moving.poses[0, :, centroids.shape[1] :]])
 
     @property
     def opening(self) -> Array:

@@ -24,8 +24,8 @@ from ...problem.masonry.effects import laden
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effect import Effect
 from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown
+from ...result.problem import required_start
 from ...result.response import End, Response, State
-from ...result.start import required_start
 from .limit_analysis import horizontal
 
 PIECES, POINTS, SAMPLES = 100, 4, 5
