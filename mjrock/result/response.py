@@ -19,16 +19,14 @@ from ..problem.wall.case import Case
 from ..problem.wall.standing import in_space
 from ..quantities import Array, require_path, require_within
 from .bodies import Moving, bodies_of, frames_at, openings
-from .compas import results_text
 from .ending import Outcome
+from .files import results_text, texts_of_bodies, texts_of_joints, write_gltf, write_series
 from .forces import Forces
-from .gltf import write_gltf
 from .joint_motion import JointMotion
 from .ledger import Ledger
 from .motion import Motion, sample_at
 from .rocking import Impact, Rocking, largest_rotations, restitution_of
 from .ties import Plastic, TieMotion, motion_of_ties
-from .vtk import texts_of_bodies, texts_of_joints, write_series
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
