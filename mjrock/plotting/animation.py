@@ -90,7 +90,7 @@ class FilmedMasonry:
 
 
 def filmed(case: AnyCase) -> FilmedWall | FilmedMasonry:
-    """A case as a film sees it."""
+    """A case as a film shows it."""
     return FilmedMasonry(case) if isinstance(case, MasonryCase) else FilmedWall(case)
 
 
@@ -105,7 +105,7 @@ WIDE = 8.0
 LOWEST, HIGHEST, OTHERWISE = 2.0, 6.0, 4.5
 """Heights of what shows masonry, which fills it in between, and of a film of a wall or of other bodies [inch]."""
 STRIP, CLOCK = 1.3, 0.4
-"""Heights of a strip below the bodies and of what is said above them [inch]."""
+"""Heights of a strip below the bodies and of the text above them [inch]."""
 HELD = 1.0
 """How much longer than others a GIF shows its last frame, after which it begins anew [s]."""
 JUST = 1 - 1e-9

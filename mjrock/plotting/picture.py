@@ -1,4 +1,4 @@
-"""Checks of the arguments of pictures, which go by their names: `ax` is an Axes in each of them, `title` a text."""
+"""Checks of the arguments of pictures by their names: `ax` is an Axes in each, `title` a text. Figures of panels."""
 
 from __future__ import annotations
 
@@ -38,18 +38,15 @@ def kind(*kinds: type) -> Check:
     return lambda name, value: require_kind(name, value, *kinds)
 
 
-def row(name: str, value: object) -> None:
-    """A row of at least one real number."""
-    given = require_reals(name, value, "a row of at least one real number")
-    if given.ndim != 1 or not given.size:
-        raise ValueError(f"{name} has the shape {given.shape}; a row of at least one real number is needed")
+def shaped(axes: int, needed: str) -> Check:
+    """A check for real numbers along so many axes, at least one number."""
 
+    def checked(name: str, value: object) -> None:
+        given = require_reals(name, value, needed)
+        if given.ndim != axes or not given.size:
+            raise ValueError(f"{name} has the shape {given.shape}; {needed} is needed")
 
-def table(name: str, value: object) -> None:
-    """Real numbers in rows and columns."""
-    given = require_reals(name, value, "real numbers in rows and columns")
-    if given.ndim != 2 or not given.size:
-        raise ValueError(f"{name} has the shape {given.shape}; rows and columns of real numbers are needed")
+    return checked
 
 
 def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
@@ -128,10 +125,10 @@ CHECKS: dict[str, Check] = {
     "draw": drawing,
     "drawings": listed(pair(require_text, drawing)),
     "fit": kind(Fragility),
-    "intensity": row,
+    "intensity": shaped(1, "a row of at least one real number"),
     "labels": listed(require_text),
     "panels": listed(pair(require_text, listed(of_wall))),
-    "peaks": table,
+    "peaks": shaped(2, "a table of real numbers in rows and columns"),
     "responses": listed(of_wall),
     "title": require_text,
     "until": lambda name, value: require_within(name, value, -1e9, 1e9),
@@ -160,11 +157,13 @@ class Checked(Protocol):
 
 
 def own_axes(about: object) -> Axes:
-    """An Axes in a figure of its own, of three dimensions for masonry in space and results of it."""
+    """An Axes in a figure of its own, which a notebook shows; of three dimensions for masonry in space and its runs."""
     about = getattr(about, "case", about)
     deep = getattr(getattr(about, "masonry", about), "in_space", False)
     figure = Picture(figsize=(6.4, 4.8) if deep else (5.2, 3.6), layout="constrained")
-    return figure.sole_axes("3d" if deep else None)
+    ax = figure.add_subplot(projection="3d" if deep else None)
+    vars(ax)["_repr_png_"] = figure._repr_png_
+    return ax
 
 
 def picture(**own: Check) -> Checked:

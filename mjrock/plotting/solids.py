@@ -275,7 +275,7 @@ class Rendered(Artist):
 
 
 def in_three(ax: Axes) -> Axes3D:
-    """Axes of three dimensions; a ValueError says if they have two."""
+    """Axes of three dimensions; ValueError for those of two."""
     if not isinstance(ax, Axes3D):
         raise ValueError('ax has two dimensions, and the masonry is in space; add_subplot(projection="3d") makes three')
     return ax

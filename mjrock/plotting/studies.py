@@ -312,7 +312,7 @@ def _tried(found: Sensitivity, setting: str) -> str:
 
 
 def _apart(found: Sensitivity, low: float, high: float) -> tuple[str, str]:
-    """Two ends of a bar as text, with the digits that tell them apart."""
+    """Two ends of a bar as text, with so many digits that they differ."""
     texts = found.written(low), found.written(high)
     digits = 3
     while texts[0] == texts[1] and digits < 9:

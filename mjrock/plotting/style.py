@@ -25,9 +25,9 @@ from ..result.response import Response
 
 BLACK, ORANGE, BLUE, PURPLE, GREEN = "#262626", "#d97706", "#1f6fc4", "#7a2a6b", "#3a9d7a"
 PALETTE = (BLUE, ORANGE, GREEN, PURPLE, BLACK)
-"""Colours of lines, in the order of a figure that says nothing else.
+"""Colours of lines, in the order in which a figure takes them.
 
-Each has a contrast of three on white, and readers who do not see red, green or blue tell them apart.
+Each has a contrast of three on white, and they differ also for readers who do not see red, green or blue.
 """
 Look = dict[str, Any]
 """Options of what matplotlib draws, such as its colour."""
@@ -38,7 +38,7 @@ STYLES: dict[str, Look] = {
     "compliant": {"label": "contact law, SciPy", "color": PURPLE, "linestyle": ":", "linewidth": 1.5, "zorder": 3},
     "explicit": {"label": "explicit steps", "color": BLUE, "linestyle": "--", "linewidth": 1.6, "zorder": 2.5},
 }
-"""The line of each solver, the same in every figure. A black-and-white print still tells them apart."""
+"""The line of each solver, the same in every figure. They differ in black and white too."""
 WIDEST, SMALLEST = 7.4, 8.0
 """Largest width of a figure that is saved [inch], and smallest size of its text [pt]: pages show it as wide as that."""
 FINE = 200
@@ -64,12 +64,6 @@ OWN: tuple[Look, ...] = (
 
 class Picture(Figure):
     """A figure without `pyplot`, which a notebook shows by itself."""
-
-    def sole_axes(self, projection: str | None = None) -> Axes:
-        """A new Axes, which a notebook shows as the figure."""
-        ax: Axes = self.add_subplot(projection=projection)
-        vars(ax)["_repr_png_"] = self._repr_png_
-        return ax
 
     def add_subplot(self, *given: Any, **options: Any) -> Axes:
         """A new Axes, whose lines have the colours of this package."""

@@ -230,7 +230,7 @@ def section(ax: Axes, case: Case, stop: str = "stop") -> None:
     outlines(ax, bodies)(0)
     surroundings(ax, case, bodies)(0)
     for text in list(ax.texts):
-        text.remove()  # the notes say it
+        text.remove()  # it is in the notes
     still(ax)
     half = case.block.b
     _across(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")

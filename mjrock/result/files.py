@@ -313,7 +313,7 @@ def at_corners(corners: Array, eccentricity: Array) -> Array:
     wanted = np.append(1.0, eccentricity / np.abs(corners).max())
     shares = np.linalg.lstsq(conditions, wanted)[0]
     if shares.min() < 0:
-        from scipy.optimize import nnls  # half a second, which nobody else waits for
+        from scipy.optimize import nnls  # takes half a second, and is seldom needed
 
         shares = nnls(conditions, wanted)[0]
     return np.asarray(shares / shares.sum())

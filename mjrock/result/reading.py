@@ -74,8 +74,8 @@ class BesidePoses(NamedTuple):
 
 
 def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion, *, released: bool = True) -> Reading:
-    """Impacts, peaks and the ending of a wall. `released` says whether the motion starts with the release."""
-    uplift, theta, omega = Uplift.of(case, contacts), motion.theta[:, 0], motion.omega[:, 0]
+    """Impacts, peaks and the ending of a wall. `released` is whether the motion starts with the release."""
+    uplift, theta, omega = Uplift.of(case, contacts), motion.theta[:, 0], motion.velocity[:, 0, 2]
     times, peaks, impacts = rocking_history(case, t, theta, omega, motion.energy, uplift, released=released)
     slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return Reading(
@@ -139,6 +139,6 @@ def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
 
 
 def _lies_still(scene: Scene, t: Array, motion: SampledMotion) -> bool:
-    """Whether all blocks lie still: for the last 0.2 s the masonry was at rest as `is_quiet` says."""
+    """Whether all blocks lie still: for the last 0.2 s the masonry was at rest, see `is_quiet`."""
     last = motion.velocity[t >= t[-1] - TIME_AT_REST]
     return t[-1] > TIME_AT_REST and all(is_quiet(scene, 0.0, velocity) for velocity in last)

@@ -155,7 +155,7 @@ class Response(Drawn):
             AttributeError: in space, where it has three components.
         """
         self._require_plane("omega")
-        return self.motion.omega if self.rocking is None else self.motion.omega[:, 0]
+        return self.velocity[:, :, 2] if self.rocking is None else self.velocity[:, 0, 2]
 
     @property
     def peak(self) -> Array:
@@ -193,7 +193,7 @@ class Response(Drawn):
     def reactions(self) -> Mapping[str, Array]:
         """Force on the masonry, or on the wall, by each fixed block, by its name [N], shape (n, 2), in space (n, 3).
 
-        Along x and z, in space x, y and z. They sum to the weight at rest. `Forces` says what counts.
+        Along x and z, in space x, y and z. They sum to the weight at rest. What counts is described at `Forces`.
 
         Raises:
             AttributeError: where the run was not asked to keep them.
@@ -221,7 +221,11 @@ class Response(Drawn):
 
     @property
     def of_masonry(self) -> MasonryCase:
-        """The case of masonry; an AttributeError says that a wall has no joints."""
+        """The case of masonry.
+
+        Raises:
+            AttributeError: for a wall.
+        """
         _ = self.of_joints
         return cast(MasonryCase, self.case)
 

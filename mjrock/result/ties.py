@@ -123,7 +123,7 @@ def across(moving: Moving, tie: Anchored) -> Array:
 
 
 def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
-    """Which ties broke, and when, as sentences after a message; nothing where none did."""
+    """Which ties broke, and when, as sentences after a message; an empty text where none did."""
     broken = sorted((tie.broken, name, tie) for name, tie in plastic.items() if tie.broken < math.inf)
     return "".join(
         f" {name} broke at {when:.4g} s, drawn out by {1e3 * tie.elongation:.3g} mm." for when, name, tie in broken
