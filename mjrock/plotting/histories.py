@@ -184,7 +184,7 @@ def history(
     for i, response in enumerate(given):
         if type(response.case) is not type(given[0].case):
             raise ValueError(f"responses[{i}] and responses[0] are one of a wall and one of masonry; draw each alone")
-        if not same_ground(given[0], response) and not reversed_ground(given[0], response):
+        if response.case.grounds != given[0].case.grounds and not reversed_ground(given[0], response):
             raise ValueError(
                 f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion "
                 "or its reverse"
@@ -208,11 +208,6 @@ def history(
     if len(given) > 1:
         below_figure(figure, axes[int(shaken)])
     return figure
-
-
-def same_ground(left: Response, right: Response) -> bool:
-    """Whether two responses are those to the same ground motions."""
-    return left.case.grounds == right.case.grounds
 
 
 def reversed_ground(left: Response, right: Response) -> bool:

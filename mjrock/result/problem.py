@@ -35,7 +35,7 @@ UNIT_ROUNDING = 1e-6
 
 
 class Unpaid(NamedTuple):
-    """Energy without an account [J], what it is compared with [J], the same in words, and the share that is warned of."""
+    """Energy without an account [J], what it is compared with [J] and in words, and the share that is warned of."""
 
     energy: float
     whole: float
