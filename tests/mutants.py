@@ -103,7 +103,7 @@ OWN = {
     "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space", "fallen"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
     "result/ledger.py": ("ledger",),
-    **{f"result/{name}.py": ("files_of_motion", "joint_frames") for name in ("bodies", "gltf", "vtk")},
+    **{f"result/{name}.py": ("files_of_motion", "joint_frames") for name in ("bodies", "files")},
     "result/ties.py": ("ties", "ties_that_break", "friction_damper", "masonry_effects"),
     "engine/run.py": ("marks", "end_of_run", "ledger", "books_of_masonry"),
     "engine/sliding.py": ("slipping", "sliding"),

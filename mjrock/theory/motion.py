@@ -58,11 +58,6 @@ class RigidMotion:
         """Rotation of the one body [rad], shape (n, 1)."""
         return self.rotation[:, None]
 
-    @property
-    def omega(self) -> Array:
-        """Angular velocity of the one body [rad/s], shape (n, 1)."""
-        return self.rate[:, None]
-
     @cached_property
     def pose(self) -> Array:
         """Displacement of the centroid [m] and rotation [rad], shape (n, 1, 3)."""

@@ -18,10 +18,9 @@ from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, Gathered, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
 from ...result.motion import SampledMotion
-from ...result.problem import Problem
+from ...result.problem import Problem, require_in_text
 from ...result.reading import BesidePoses
 from ...result.response import End, Response, State
-from ...result.start import require_in_text
 from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
 from ...scene.course import Course
 from ...scene.potential import energies
