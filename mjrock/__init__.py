@@ -21,12 +21,10 @@ from .interrupts import interrupts_held_back
 
 if TYPE_CHECKING:
     from . import plotting as plotting
-    from .anymodel.contact import PairContact
+    from .anymodel.contact import PairContact, PairContacts
     from .anymodel.coulomb import CoulombFriction
-    from .anymodel.flexes import FlexContact, inspect_flexes
-    from .anymodel.inspect import InspectedContact, inspect_contacts
-    from .anymodel.make import contact_for
-    from .anymodel.many import PairContacts, contacts_for
+    from .anymodel.inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
+    from .anymodel.make import contact_for, contacts_for
     from .anymodel.notes import ContactWarning
     from .distinct.explicit import solve_explicit
     from .engine.model import SimulationError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -15,12 +15,13 @@ from ..engine.solref import inertia_of
 from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
-from ..quantities import require_flag, require_text, short_repr
-from .geoms import GeomPair, compiled_model, geom_label, kept_apart
+from ..quantities import named, require_flag, require_text, short_repr
+from .geoms import GeomPair, compiled_model, every_pair, geom_label, kept_apart
 from .notes import (
     ENOUGH,
     SCATTER_WARNED_OF,
     UNSOUND,
+    VARIES,
     ContactWarning,
     SolverNeed,
     duplicates,
@@ -31,8 +32,7 @@ from .notes import (
     stiffest,
     uneven,
 )
-from .others import Changed, Others, sentence
-from .row_of_model import HOLD, Mixed
+from .row_of_model import HOLD, Mixed, ModelRow
 
 SOFT_DEPTH = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
@@ -41,6 +41,10 @@ GAINS = 0.5
 with 1.09 at 0.9 and with 2.4 at 1.9."""
 NO_REBOUND, SMALL_REBOUND = 0.03, 0.2999
 """Restitutions between which gravity is warned of where no speed is given [-]."""
+SAME = 0.05
+"""Change of stiffness from which a contact is another [-]."""
+KEPT_WITHIN = 0.1
+"""Change of stiffness within which a contact is kept [-]; 5 % for MuJoCo's impedance of 0.9 to 0.95 and mu = 1.5."""
 LEAST_SPEED, MOST_SPEED = 1e-9, 1e4
 """Speeds of approach that are looked at [m/s]."""
 
@@ -192,7 +196,7 @@ class PairContact:
         geoms = self._pair_in(whole)
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
-            self._write_spec(model, geoms)
+            self.of_pair.write_spec(_spec_pair(model, geoms))
         elif geoms.explicit >= 0 or on_geoms:
             self.write_numbers(model, geoms)
         else:
@@ -220,30 +224,26 @@ class PairContact:
             ValueError: if one of the geoms has no name.
         """
         self._require_names()
-        found = {"geom1": self.geom1, "geom2": self.geom2, "condim": self.condim}
-        found |= {"solref": self.solref, "solimp": self.solimp, "margin": 0.0, "gap": self.gap}
-        found |= {"adhesion": self.adhesion}
-        return found | ({"solreffriction": self.solreffriction, "friction": self.friction} if self.condim > 1 else {})
+        names = "condim", "solref", "solimp", "margin", "gap", "adhesion", "solreffriction", "friction"
+        numbers = {name: getattr(self.of_pair, name) for name in names[: 8 if self.condim > 1 else 6]}
+        return {"geom1": self.geom1, "geom2": self.geom2, **numbers}
 
     @property
     def options(self) -> dict[str, Any]:
         """The attributes of `<option>` that the contact needs, by name."""
         return options_of([self])
 
-    def _write_spec(self, spec: mujoco.MjSpec, geoms: GeomPair) -> None:
-        pair = _spec_pair(spec, geoms)
-        pair.condim, pair.friction = self.condim, self.friction
-        pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
-        pair.margin, pair.gap, pair.adhesion = 0.0, self.gap, self.adhesion
+    @property
+    def of_pair(self) -> Mixed:
+        """The numbers of the explicit pair."""
+        rows = self.solref, self.solimp, self.solreffriction
+        return Mixed(*rows, self.friction, self.condim, margin=0.0, gap=self.gap, adhesion=self.adhesion)
 
     def write_numbers(self, model: mujoco.MjModel, pair: GeomPair) -> None:
         """Write the numbers into the explicit pair of a compiled model or, without one, into both geoms, which mix to
         the contact, as equal geoms of equal priority do; margin, gap and adhesion add up."""
-        if (i := pair.explicit) >= 0:
-            model.pair_dim[i], model.pair_friction[i] = self.condim, self.friction
-            model.pair_solref[i], model.pair_solimp[i] = self.solref, self.solimp
-            model.pair_solreffriction[i] = self.solreffriction
-            model.pair_margin[i], model.pair_gap[i], model.pair_adhesion[i] = 0.0, self.gap, self.adhesion
+        if pair.explicit >= 0:
+            self.of_pair.write(model, pair.explicit)
             return
         geoms = list(pair.geoms)
         model.geom_margin[geoms], model.geom_gap[geoms] = 0.0, 0.5 * self.gap
@@ -297,6 +297,77 @@ class PairContact:
             )
 
 
+@dataclass(frozen=True)
+class PairContacts:
+    """Contacts of one model with one time step.
+
+    Args:
+        contacts: the contacts, in the order in which they were asked for.
+    """
+
+    contacts: tuple[PairContact, ...]
+
+    __repr__ = short_repr
+
+    def __iter__(self) -> Iterator[PairContact]:
+        return iter(self.contacts)
+
+    def __len__(self) -> int:
+        return len(self.contacts)
+
+    @property
+    def impratio(self) -> float:
+        """The impratio with which the friction of every contact holds [-]."""
+        return max(contact.impratio for contact in self.contacts)
+
+    @property
+    def xml(self) -> str:
+        """The elements to put into `<mujoco>`: one `<option>`, and the explicit pairs; see `PairContact.xml`.
+
+        Raises:
+            ValueError: if a geom has no name.
+        """
+        return document(self.contacts)
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The attributes of `<option>` that the contacts need together, by name; see `PairContact.attributes`."""
+        return options_of(self.contacts)
+
+    def apply(
+        self,
+        model: mujoco.MjModel | mujoco.MjSpec,
+        *,
+        on_geoms: bool = False,
+        keep_others: bool = False,
+        iterations: bool = False,
+        name_geoms: bool = False,
+    ) -> None:
+        """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
+        write(self.contacts, model, Writing(on_geoms, keep_others, iterations, name_geoms))
+
+    def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
+        """What in a model keeps the contacts from being what they say, alike sentences once with the geoms that they
+        are about; see `PairContact.caveats`."""
+        whole = compiled_model(model)
+        return tuple(merged((contact, sentence) for contact in self for sentence in contact.caveats(whole, prefix)))
+
+    def __str__(self) -> str:
+        """A line for each contact."""
+        return "\n".join(str(contact) for contact in self)
+
+
+def merged(sentences: Iterable[tuple[PairContact, str]]) -> Iterator[str]:
+    """Sentences that are alike once, with the geoms that they are about. The first of several with other numbers or
+    names is given in full."""
+    alike: dict[str, dict[str, list[str]]] = {}
+    for contact, sentence in sentences:
+        alike.setdefault(VARIES.sub("#", sentence), {}).setdefault(sentence, []).append(contact.label)
+    for (sentence, about), *others in (each.items() for each in alike.values()):
+        rest = list(dict.fromkeys(label for _, labels in others for label in labels))
+        yield f"{named(about)}: {sentence}" + (f" [and alike for {named(rest)}]" if rest else "")
+
+
 def _text(value: Any) -> str:
     """The value of an attribute, numbers with all of their digits."""
     if isinstance(value, tuple):
@@ -308,7 +379,7 @@ def _element(name: str, attributes: dict[str, Any]) -> str:
     return f"<{name} {' '.join(f'{key}={quoted(_text(value))}' for key, value in attributes.items())}/>"
 
 
-def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> Any:
+def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> mujoco.MjsPair:
     """The explicit pair of two geoms in a specification, made where there is none."""
     first, second = geoms.names
     listed = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {first, second})
@@ -334,9 +405,10 @@ def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
     rubs = any(contact.condim > 1 for contact in contacts)
     switches = rubs and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
-    others = None
+    others: list[tuple[GeomPair, ModelRow]] = []
     if switches or on_geoms or option.timestep != contacts[0].timestep:
-        others = Others(whole, {frozenset(contact._pair_in(whole).geoms) for contact in contacts})
+        written = {frozenset(contact._pair_in(whole).geoms) for contact in contacts}
+        others = [(pair, ModelRow.of(pair)) for pair in every_pair(whole) if frozenset(pair.geoms) not in written]
     for contact in contacts:
         contact.put_into(model, whole, on_geoms)
     for each in (option, whole.opt):
@@ -348,11 +420,62 @@ def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec
             setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
         if iterations:
             each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
-    changed = [] if others is None else list(others.changed())
-    if keep_others:
-        changed = [each for each in changed if not _keep(model, each)]
+    found = [Changed(pair, before, ModelRow.of(pair)) for pair, before in others]
+    changed = [each for each in found if each.is_another and not (keep_others and _keep(model, each))]
     if changed:
-        warnings.warn(sentence(changed), ContactWarning, stacklevel=3)
+        warnings.warn(changes_said(changed), ContactWarning, stacklevel=3)
+
+
+class Changed(NamedTuple):
+    """A contact that the options change, and its rows before and after."""
+
+    pair: GeomPair
+    before: ModelRow
+    after: ModelRow
+
+    @property
+    def kept(self) -> Mixed | None:
+        """Parameters of an explicit pair that keep its row as before; None where MuJoCo has no such row.
+
+        With the pyramidal cone the rows of a contact with friction are as stiff as one row of the elliptic cone times
+        `Mixed.pyramid`, f. A contact is kept by a row that is f times as large in all three of its numbers. For K
+        [1/s2], B [1/s] and the impedance d these are K d / R, B / R and 1 / R with 1 / R = d / ((1 - d) W), so that
+
+            d' = f d / (1 - d + f d),    K' = K d / d',    B' = B.
+
+        Where d grows with penetration, both of its ends become d', and K' belongs to their geometric mean.
+        """
+        before, factor = self.before, self.before.scale / self.after.scale
+        d, dw, *shape = before.solimp
+        if before.constant:
+            dw = d
+        near, full = (factor * end / (1 - end + factor * end) for end in (d, dw))
+        spring = before.spring * math.sqrt(d * dw / (near * full))
+        made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
+        load, row = self.pair.load, ModelRow(self.pair.model, self.pair.inverse_weight, made)
+        return made if math.isclose(row.loaded(load), before.loaded(load), rel_tol=KEPT_WITHIN) else None
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """k before and after, under the weight [N/m]."""
+        return self.before.loaded(self.pair.load), self.after.loaded(self.pair.load)
+
+    @property
+    def is_another(self) -> bool:
+        """Whether it is stiffer or softer now."""
+        return not math.isclose(*self.stiffness, rel_tol=SAME)
+
+
+def changes_said(changed: Collection[Changed]) -> str:
+    """What the options do to contacts, the one that changes most first."""
+    told = []
+    for each in sorted(changed, key=lambda one: -abs(math.log(one.stiffness[1] / one.stiffness[0]))):
+        told.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(each.pair.labels), *each.stiffness))
+    return (
+        f"the options that the contact needs change the stiffness of {len(told)} other contacts of the model under the "
+        f"weight: {named(told)}; contacts_for gives them numbers of their own, or keep_others=True writes pairs that "
+        "keep named geoms as they were"
+    )
 
 
 def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
@@ -362,15 +485,11 @@ def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
         return False
     if isinstance(model, mujoco.MjModel):
         if geoms.explicit >= 0:
-            model.pair_solref[geoms.explicit], model.pair_solimp[geoms.explicit] = numbers.solref, numbers.solimp
+            numbers.write(model, geoms.explicit)
         return geoms.explicit >= 0
     if not all(geoms.names):
         return False
-    pair = _spec_pair(model, geoms)
-    pair.solref, pair.solimp = numbers.solref, numbers.solimp
-    if geoms.explicit < 0:
-        pair.condim, pair.friction = numbers.condim, numbers.friction
-        pair.margin, pair.gap, pair.adhesion = numbers.margin, numbers.gap, numbers.adhesion
+    numbers.write_spec(_spec_pair(model, geoms))
     return True
 
 

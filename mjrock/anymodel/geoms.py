@@ -224,9 +224,8 @@ class GeomPair:
         """
         between = data.geom_xpos[self.geoms[0]] - data.geom_xpos[self.geoms[1]]
         distance, ends = self._shortest(data)
-        for geom, sign in zip(self.geoms, (-1.0, 1.0), strict=True):
-            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
-                return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2]), distance, ends
+        if (axis := self.axis(data, mujoco.mjtGeom.mjGEOM_PLANE)) is not None:
+            return axis, distance, ends
         apart = np.zeros(3) if ends is None else np.copysign(1.0, distance) * (ends[0] - ends[1])
         if np.linalg.norm(apart) < TOUCHING_SHARE * np.linalg.norm(between):
             place = np.array(data.geom_xpos[self.geoms[0]])
@@ -238,10 +237,11 @@ class GeomPair:
         vector = next(vector for vector in (apart, between, up) if np.any(np.abs(vector) > 1e-12))
         return np.array(vector / np.linalg.norm(vector)), distance, ends
 
-    def field_axis(self, data: mujoco.MjData) -> Array | None:
-        """The unit vector along which the first geom parts from a height field, its axis; None for other geoms."""
+    def axis(self, data: mujoco.MjData, kind: mujoco.mjtGeom) -> Array | None:
+        """The unit vector along which the first geom parts from the second, where one of them is a plane or a height
+        field, as `kind` says: its axis. None for other geoms."""
         for geom, sign in zip(self.geoms, (-1.0, 1.0), strict=True):
-            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_HFIELD:
+            if self.model.geom_type[geom] == kind:
                 return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2])
         return None
 

@@ -1,36 +1,60 @@
-"""`contact_for`: a stiffness in N/m and a restitution for two geoms of anyone's MuJoCo model."""
+"""`contact_for` and `contacts_for`: a stiffness in N/m and a restitution for geoms of anyone's MuJoCo model.
+
+How many iterations MuJoCo's solver needs for contacts is found by a trial. They are written into a copy of the model,
+on its pairs and its geoms. Geoms that are apart act at the distance at which they are, so that every contact carries.
+The copy steps with a solver that converges, from a state that moves in all of its joints. At each state the solver of
+the model solves the same equations. Where it ends at its last iteration or finds other forces, it has too few.
+"""
 
 from __future__ import annotations
 
+import copy
+import itertools
 import math
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from fnmatch import fnmatchcase
+from typing import Any
 
 import mujoco
+import numpy as np
 
 from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_values, row
 from ..method import METHOD
 from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
 from ..quantities import Array, named, require_whole, require_within, shown, spelt
-from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
-from .geoms import GeomPair, compiled_model
-from .holding import holding
-from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting_of_geoms, other_keyframes
+from .contact import PairContact, PairContacts, merged, soft_spoilers, spoilers, weight_spoilers
+from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
+from .meeting import Company, Keyframe, PairMeeting, Pose, awake, meeting_of_geoms, posed_alike
 from .notes import (
+    LINE_SEARCHES,
     LONG_STEP,
+    MOST_TURNS,
     UNSOUND,
     ContactWarning,
+    SolverNeed,
+    giving_way,
+    holding,
+    other_keyframes,
     resolving_step,
     rounded_down,
     stiffest,
+    turned,
+    unknown,
 )
 from .row_of_model import Grip, Mixed, ModelRow, unused
-from .trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
+STEPS = 50
+"""Steps of a trial of the solver."""
+MOVING = 0.1
+"""Largest speed of a joint at the start of a trial [m/s or rad/s]."""
+OTHER_FORCES = 0.01
+"""Change of the forces, as a share of the largest, from which they are others [-]."""
+Geom = str | int
 
 
 def contact_for(
@@ -108,11 +132,130 @@ def contact_for(
     pair = GeomPair.named(whole, geom1, geom2)
     asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta, normal)
     pose = Pose(whole, keyframe, qpos)
-    contact = beside(*contact_of(pair, pose, asked), {})
-    contact = replace(contact, needs=solver_need(whole, pose, [contact]))
-    for sentence in (*spoilers(pair, contact), *contact.remarks):
+    made = _made(pose, [(pair, asked)])
+    for _, sentence in _sentences(whole, made):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
-    return contact
+    return made[0]
+
+
+def contacts_for(
+    model: mujoco.MjModel | mujoco.MjSpec,
+    pairs: Mapping[tuple[Geom, Geom], Mapping[str, Any]],
+    *,
+    keyframe: Keyframe = None,
+    qpos: Sequence[float] | Array | None = None,
+    timestep: float | None = None,
+) -> PairContacts:
+    """Contacts of many geoms at once. A specification is compiled once.
+
+    Args:
+        model: a compiled model or a specification; it is not changed.
+        pairs: what is asked of the contacts of two geoms, by their names or numbers: arguments of `contact_for` by
+            name, such as `{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}`. Names may have the wildcards `*`, `?`
+            and `[...]`. They are looked for among the geoms, and where none has it among the bodies with one geom. They
+            name what MuJoCo lets collide, by contype and conaffinity, `<exclude>`, and parent and child, or by an
+            explicit pair. Names without wildcards override that. A later entry replaces what wildcards named before.
+        keyframe, qpos: the pose in which all of them meet; see `contact_for`.
+        timestep: MuJoCo's step [s], positive. None takes the model's.
+
+    Returns:
+        The contacts, with ``.xml``, `.apply(model)` and `.caveats(model)` of them all.
+
+    Raises:
+        TypeError, ValueError: as `contact_for` does, and for names that nothing has, wildcards of which MuJoCo lets
+            none collide, or two geoms named twice without wildcards.
+
+    Warns:
+        ContactWarning: as `contact_for` does, sentences that are alike once, with the geoms that they are about.
+    """
+    whole = compiled_model(model)
+    if not isinstance(pairs, Mapping):
+        raise TypeError(
+            f"pairs = {shown(pairs)} has to be a dictionary, such as "
+            '{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}'
+        )
+    pose = Pose(whole, keyframe, qpos)
+    meant: dict[frozenset[int], tuple[tuple[int, int], ContactRequest, bool]] = {}
+    for key, values in pairs.items():
+        asked = _asked(key, values, timestep)
+        for geoms in _meant(whole, key):
+            if not meant.get(frozenset(geoms), (geoms, asked, True))[2]:
+                raise ValueError(f"pairs name the geoms {GeomPair(whole, geoms).labels} twice, last by {shown(key)}")
+            meant[frozenset(geoms)] = geoms, asked, any(map(_is_wild, key))
+    if not meant:
+        raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
+    made = _made(pose, [(GeomPair.named(whole, *geoms), asked) for geoms, asked, _ in meant.values()])
+    for sentence in merged(_sentences(whole, made)):
+        warnings.warn(sentence, ContactWarning, stacklevel=2)
+    return PairContacts(made)
+
+
+def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> tuple[PairContact, ...]:
+    """The contacts that are asked for in a pose, with what their solver needs and what lands with each."""
+    found = [contact_of(pair, pose, each) for pair, each in asked]
+    made = {frozenset(contact.ids): contact for contact, _ in found}
+    needs = solver_need(asked[0][0].model, pose, list(made.values()))
+    return tuple(replace(beside(contact, company, made), needs=needs) for contact, company in found)
+
+
+def _sentences(model: mujoco.MjModel, contacts: Iterable[PairContact]) -> Iterator[tuple[PairContact, str]]:
+    """Reasons for which contacts differ from what was asked, with the contact that each is about."""
+    for contact in contacts:
+        for sentence in (*spoilers(GeomPair(model, contact.ids), contact), *contact.remarks):
+            yield contact, sentence
+
+
+def _asked(key: object, values: object, timestep: object) -> ContactRequest:
+    if not isinstance(key, tuple) or len(key) != 2:
+        raise TypeError(f"pairs have the key {shown(key)}; it has to be two geoms, such as ('foot*', 'floor')")
+    if not isinstance(values, Mapping):
+        raise TypeError(f"pairs of {shown(key)} = {shown(values)} has to be arguments of contact_for by name")
+    unknown = [str(name) for name in values if name not in TAKES]
+    if unknown:
+        raise ValueError(f"pairs of {shown(key)} have {named(unknown)}; each takes {', '.join(TAKES)}")
+    return ContactRequest(**values, timestep=timestep)
+
+
+def _meant(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:
+    """The numbers of the geoms that a key names. Of wildcards they are those that MuJoCo lets collide."""
+    firsts, seconds = (
+        _matching(model, argument, value) for argument, value in zip(("geom1", "geom2"), key, strict=True)
+    )
+    if not any(map(_is_wild, key)):
+        yield firsts[0], seconds[0]
+        return
+    found: dict[frozenset[int], tuple[int, int]] = {}
+    for geoms in itertools.product(firsts, seconds):
+        if frozenset(geoms) not in found and makes(GeomPair(model, geoms)):
+            found[frozenset(geoms)] = geoms
+    if not found:
+        raise ValueError(
+            f"pairs of {shown(key)} are geoms that MuJoCo keeps apart, by contype and conaffinity, <exclude>, or as "
+            "one body or parent and child; names without wildcards override that"
+        )
+    yield from found.values()
+
+
+def _is_wild(name: object) -> bool:
+    """Whether a name has wildcards."""
+    return isinstance(name, str) and any(mark in name for mark in "*?[")
+
+
+def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
+    """The numbers of the geoms that a name with wildcards means."""
+    if not isinstance(value, str) or not _is_wild(value):
+        return [geom_id(model, argument, value)]
+    geoms = names_of_objects(model, GEOM)
+    found = [i for i, name in enumerate(geoms) if name and fnmatchcase(name, value)]
+    if not found:
+        alike = (i for i, name in enumerate(names_of_objects(model, BODY)) if fnmatchcase(name, value))
+        found = [int(model.body_geomadr[i]) for i in alike if model.body_geomnum[i] == 1]
+    if not found:
+        known = named([name for name in geoms if name]) or "none"
+        raise ValueError(
+            f"{argument} = {shown(value)} matches no geom, nor a body with a single one; geoms are: {known}"
+        )
+    return found
 
 
 @dataclass(frozen=True)
@@ -131,6 +274,10 @@ class ContactRequest:
     timestep: object = None
     newmark_beta: object = 0.25
     normal: object = None
+
+
+TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
+"""What can be asked of each contact of several."""
 
 
 def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:
@@ -179,7 +326,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         load=pose.load(pair, met.points, points),
         remarks=(
             *unused(asked.friction, grip),
-            *pose.turned(pair, k),
+            *turned(pair, pose, k),
             *_remarks(pair, pose, asked, met, k, c, grip.sliding),
         ),
     )
@@ -273,9 +420,9 @@ def _remarks(
     if asked.mass is not None or not met.felt.mass < math.inf:
         return ()
     xi = c / (2 * math.sqrt(k * met.share))
-    found = [*pose.unknown(pair)] if asked.at is None else []
+    found = [*unknown(pair, pose)] if asked.at is None else []
     found += giving_way(pair, pose, met, k, xi, mu, float(asked.speed or 1.0))
-    found += holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0))
+    found += holding(pose, met.felt, k * met.points, xi, float(asked.speed or 1.0))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points
         found += other_keyframes(pair, pose, met, contacts, mu)
@@ -310,3 +457,73 @@ def _row(
     if inertia > inertia_of(WITHIN[1], inverse_weight):
         raise ValueError(f"newmark_beta = {newmark_beta:g} asks for more inertia than MuJoCo represents; lower it")
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
+
+
+def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) -> SolverNeed:
+    """What contacts of a compiled model need of its solver, by a trial in a pose.
+
+    Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
+    """
+    tried = _with(model, pose, contacts)
+    own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
+    cap, searches = max(own[0], MOST_TURNS), max(own[1], LINE_SEARCHES)
+    most, enough = _stepped(tried, pose, cap, searches)
+    if most < cap:
+        return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), searches)
+    full = float(tried.opt.impratio) if any(contact.condim > 1 for contact in contacts) else 1.0
+    for power in range(math.ceil(math.log10(full)) - 1, -1, -1):
+        tried.opt.impratio, (tried.opt.iterations, tried.opt.ls_iterations) = 10.0**power, own
+        most, _ = _stepped(tried, pose, cap, searches)
+        if 2 * most <= cap:
+            return SolverNeed(max(2 * most, own[0]), searches, converges=False, impratio=10.0**power)
+    return SolverNeed(*own, converges=False)
+
+
+def _stepped(tried: mujoco.MjModel, pose: Pose, cap: int, searches: int) -> tuple[int, bool]:
+    """The most iterations of a step, of `cap` with so many line searches, and whether those of the model find the same
+    forces."""
+    own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
+    data, other = posed_alike(tried, pose.data), mujoco.MjData(tried)
+    data.qvel[:] = MOVING * np.cos(np.arange(tried.nv))
+    most, enough = 0, True
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for _ in range(STEPS):
+            tried.opt.iterations, tried.opt.ls_iterations = own
+            mujoco.mj_copyData(other, tried, data)
+            mujoco.mj_forward(tried, other)
+            tried.opt.iterations, tried.opt.ls_iterations = cap, searches
+            mujoco.mj_step(tried, data)
+            if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
+                break
+            most = max(most, int(data.solver_niter.max(initial=0)))
+            enough &= _alike(other, data)
+    return most, enough
+
+
+def _with(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) -> mujoco.MjModel:
+    """A copy of a model with contacts on its pairs and geoms, which act at the distance at which they are."""
+    tried = copy.copy(awake(model))
+    option = tried.opt
+    option.timestep = contacts[0].timestep
+    if any(contact.condim > 1 for contact in contacts):
+        option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+        option.impratio = max(float(option.impratio), *(contact.impratio for contact in contacts), 1.0)
+    for contact in contacts:
+        pair = GeomPair(tried, contact.ids)
+        contact.write_numbers(tried, pair)
+        here = max(0.0, pose.landing(GeomPair(model, contact.ids)).distance) + contact.depth
+        if pair.explicit >= 0:
+            tried.pair_margin[pair.explicit] = here
+        else:
+            first, second = contact.ids
+            tried.geom_margin[first] = max(float(tried.geom_margin[first]), here - float(tried.geom_margin[second]))
+    return tried
+
+
+def _alike(other: mujoco.MjData, data: mujoco.MjData) -> bool:
+    """Whether the forces of two solutions of one state are the same."""
+    if other.nefc != data.nefc or not data.nefc:
+        return True
+    difference = np.abs(np.array(other.efc_force) - data.efc_force).max()
+    return bool(difference <= OTHER_FORCES * np.abs(data.efc_force).max())
