@@ -195,7 +195,7 @@ def keep_declared(instance: object, owner: str = "") -> None:
     Raises:
         TypeError, ValueError: with the name, the value and the range, as `require_within`.
     """
-    kind: Any = type(instance)  # mypy takes a class for a thing without a hash
+    kind: Callable[..., object] = type(instance)
     for field, (within, optional) in declared(kind).items():
         value = getattr(instance, field)
         if value is not None or not optional:

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -34,6 +34,8 @@ from .notes import (
 )
 from .row_of_model import HOLD, Mixed, ModelRow
 
+Attribute = str | float | tuple[float, ...]
+"""Of an element of MJCF."""
 SOFT_DEPTH = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
 GAINS = 0.5
@@ -217,7 +219,7 @@ class PairContact:
         return replace(self, geom1=names[0], geom2=names[1])
 
     @property
-    def attributes(self) -> dict[str, Any]:
+    def attributes(self) -> dict[str, Attribute]:
         """The attributes of the explicit pair by name, for tools that make MJCF; see `options` for those of `<option>`.
 
         Raises:
@@ -229,7 +231,7 @@ class PairContact:
         return {"geom1": self.geom1, "geom2": self.geom2, **numbers}
 
     @property
-    def options(self) -> dict[str, Any]:
+    def options(self) -> dict[str, Attribute]:
         """The attributes of `<option>` that the contact needs, by name."""
         return options_of([self])
 
@@ -330,7 +332,7 @@ class PairContacts:
         return document(self.contacts)
 
     @property
-    def options(self) -> dict[str, Any]:
+    def options(self) -> dict[str, Attribute]:
         """The attributes of `<option>` that the contacts need together, by name; see `PairContact.attributes`."""
         return options_of(self.contacts)
 
@@ -368,14 +370,14 @@ def merged(sentences: Iterable[tuple[PairContact, str]]) -> Iterator[str]:
         yield f"{named(about)}: {sentence}" + (f" [and alike for {named(rest)}]" if rest else "")
 
 
-def _text(value: Any) -> str:
+def _text(value: Attribute) -> str:
     """The value of an attribute, numbers with all of their digits."""
     if isinstance(value, tuple):
         return " ".join(repr(float(number)) for number in value)
     return value if isinstance(value, str) else repr(value)
 
 
-def _element(name: str, attributes: dict[str, Any]) -> str:
+def _element(name: str, attributes: dict[str, Attribute]) -> str:
     return f"<{name} {' '.join(f'{key}={quoted(_text(value))}' for key, value in attributes.items())}/>"
 
 
@@ -493,9 +495,9 @@ def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
     return True
 
 
-def options_of(contacts: Sequence[PairContact]) -> dict[str, Any]:
+def options_of(contacts: Sequence[PairContact]) -> dict[str, Attribute]:
     """The attributes of `<option>` that contacts of one time step need together."""
-    found: dict[str, Any] = {"timestep": contacts[0].timestep}
+    found: dict[str, Attribute] = {"timestep": contacts[0].timestep}
     if any(contact.condim > 1 for contact in contacts):
         found |= {"cone": "elliptic", "impratio": max(contact.impratio for contact in contacts)}
     return found

@@ -15,7 +15,6 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fnmatch import fnmatchcase
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -140,7 +139,7 @@ def contact_for(
 
 def contacts_for(
     model: mujoco.MjModel | mujoco.MjSpec,
-    pairs: Mapping[tuple[Geom, Geom], Mapping[str, Any]],
+    pairs: Mapping[tuple[Geom, Geom], Mapping[str, object]],
     *,
     keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,

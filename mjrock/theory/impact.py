@@ -24,7 +24,7 @@ from ..problem.damping.restitution import Restitution
 from ..problem.masonry.lines import lines_of, rates
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.pile import Pile
-from ..quantities import Array, Flags, require_array, require_kind
+from ..quantities import Array, Flags, frozen, require_array, require_kind
 
 NOTHING = 1e-9
 """Share of the momentum, and of the speed, that counts as none [-]."""
@@ -94,15 +94,11 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     momentum = float(np.linalg.norm(root * before))
     after[np.abs(after) <= NOTHING * momentum] = 0.0  # what stops dead does so to the last digit
     widens = (opens @ after).reshape(-1, 2).max(axis=1) > NOTHING * momentum / root.max()
-    left = (after / root).reshape(-1, 3)
-    impulses = np.column_stack([pressed, rubbed])
-    for array in (left, impulses):
-        array.setflags(write=False)
     return RigidImpact(
-        velocity=left,
+        velocity=frozen((after / root).reshape(-1, 3)),
         kept=float(after @ after) / momentum**2,
         opening=tuple(joint.name for joint, wide in zip(joints, widens, strict=True) if wide),
-        impulses=impulses,
+        impulses=frozen(np.column_stack([pressed, rubbed])),
     )
 
 

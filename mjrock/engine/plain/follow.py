@@ -22,16 +22,13 @@ from ...scene.course import Course
 from ...scene.ground import mean_acceleration
 from ...scene.scene import Scene
 from ..model import require_well
-from .overlap import Overlap
 from .pairs import Pairs
-from .pieces import Piece
+from .pieces import Overlap, Piece
 
 LOOK = 1000
 """Steps between two looks at warnings of the engine."""
 NEGLIGIBLE = 1e-4
 """Depth of a contact, over the smallest thickness of the two pieces, that is no overlap to speak of [-]."""
-WAYS = {2: (0, 2), 3: (0, 1, 2)}
-"""Which axes of MuJoCo's world a vector of the plane or of space has."""
 
 
 class Met(NamedTuple):
@@ -144,7 +141,7 @@ class PlainEngine:
 
     def drive(self, course: Course, t: float) -> Array:
         """Set gravity and moved supports for the step at a time [s]; the acceleration of the ground, shape (d,)."""
-        h, ground, ways = self.model.opt.timestep, course.ground, WAYS[self.scene.freedom.translations]
+        h, ground, ways = self.model.opt.timestep, course.ground, self.scene.freedom.axes
         shaken = np.array([mean_acceleration(shaking, t, h) for shaking in (ground.x, ground.y, ground.z)])
         self.model.opt.gravity[:] = -shaken - (0.0, 0.0, GRAVITY)
         for i, support in enumerate(self.supports):
@@ -171,12 +168,7 @@ class Work(NamedTuple):
 
     def plus(self, other: Work, share: float = 1.0) -> Work:
         """This and a share of another one."""
-        return Work(
-            self.ground + share * other.ground,
-            self.pressed + share * other.pressed,
-            self.rubbed + share * other.rubbed,
-            self.damped + share * other.damped,
-        )
+        return Work(*(mine + share * more for mine, more in zip(self, other, strict=True)))
 
 
 class Sample(NamedTuple):
@@ -283,7 +275,7 @@ class JointForces:
     def gathered(self, engine: PlainEngine, met: Met) -> tuple[Array, Array]:
         """Loads of joints and forces of fixed blocks, see `Gathered`."""
         freedom, model, data = engine.scene.freedom, engine.model, engine.data
-        ways, local = list(WAYS[freedom.translations]), np.zeros(6)
+        ways, local = list(freedom.axes), np.zeros(6)
         loads = np.zeros((len(self.above), freedom.nv))
         held = np.zeros((len(self.fixed), freedom.translations))
         for number, pair, (first, second) in zip(met.number, met.pair, met.pieces, strict=True):
