@@ -423,7 +423,8 @@ def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec
         if iterations:
             each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
     found = [Changed(pair, before, ModelRow.of(pair)) for pair, before in others]
-    changed = [each for each in found if each.is_another and not (keep_others and _keep(model, each))]
+    changed = [each for each in found if not math.isclose(*each.stiffness, rel_tol=SAME)]
+    changed = [each for each in changed if not (keep_others and _keep(model, each))]
     if changed:
         warnings.warn(changes_said(changed), ContactWarning, stacklevel=3)
 
@@ -461,11 +462,6 @@ class Changed(NamedTuple):
     def stiffness(self) -> tuple[float, float]:
         """k before and after, under the weight [N/m]."""
         return self.before.loaded(self.pair.load), self.after.loaded(self.pair.load)
-
-    @property
-    def is_another(self) -> bool:
-        """Whether it is stiffer or softer now."""
-        return not math.isclose(*self.stiffness, rel_tol=SAME)
 
 
 def changes_said(changed: Collection[Changed]) -> str:

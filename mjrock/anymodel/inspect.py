@@ -161,12 +161,12 @@ def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | N
         k=row.k,
         c=row.c,
         inertia=row.inertia,
-        mass=met.felt.mass,
+        mass=met.effective.mass,
         impedance=row.impedance,
         points=met.points,
         load=force,
         k_loaded=row.loaded(force),
-        gravity=max(0.0, met.felt.gravity),
+        gravity=max(0.0, met.effective.gravity),
         bodies=pair.body_names,
         notes=(),
     )
@@ -181,8 +181,8 @@ def _notes(
     yield from turned(pair, pose, found.k)
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)
-    if met.company.level:
-        yield f"it lands together with {len(met.company.level)} other contacts of its bodies, and shares the mass"
+    if met.neighbours.level:
+        yield f"it lands together with {len(met.neighbours.level)} other contacts of its bodies, and shares the mass"
     if pair.is_uneven:
         yield uneven(found.points)
     elif contacts == 1 and pair.makes_several_points:
@@ -202,7 +202,7 @@ def _notes(
         return
     yield from unknown(pair, pose)
     if found.k > 0:
-        yield from holding(pose, met.felt, found.k * met.points, found.xi)
+        yield from holding(pose, met.effective, found.k * met.points, found.xi)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
         yield from other_keyframes(pair, pose, met, contacts, row.mixed.sliding)
 

@@ -15,6 +15,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fnmatch import fnmatchcase
+from typing import Annotated
 
 import mujoco
 import numpy as np
@@ -23,10 +24,10 @@ from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_v
 from ..method import METHOD
 from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
-from ..quantities import Array, named, require_whole, require_within, shown, spelt
+from ..quantities import Array, Within, keep_declared, named, require_within, shown, spelt
 from .contact import PairContact, PairContacts, merged, soft_spoilers, spoilers, weight_spoilers
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
-from .meeting import Company, Keyframe, PairMeeting, Pose, awake, meeting_of_geoms, posed_alike
+from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms, posed_alike
 from .notes import (
     LINE_SEARCHES,
     LONG_STEP,
@@ -193,8 +194,8 @@ def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> tuple
     """The contacts that are asked for in a pose, with what their solver needs and what lands with each."""
     found = [contact_of(pair, pose, each) for pair, each in asked]
     made = {frozenset(contact.ids): contact for contact, _ in found}
-    needs = solver_need(asked[0][0].model, pose, list(made.values()))
-    return tuple(replace(beside(contact, company, made), needs=needs) for contact, company in found)
+    needs = solver_need(pose, list(made.values()))
+    return tuple(replace(beside(contact, neighbours, made), needs=needs) for contact, neighbours in found)
 
 
 def _sentences(model: mujoco.MjModel, contacts: Iterable[PairContact]) -> Iterator[tuple[PairContact, str]]:
@@ -204,7 +205,7 @@ def _sentences(model: mujoco.MjModel, contacts: Iterable[PairContact]) -> Iterat
             yield contact, sentence
 
 
-def _asked(key: object, values: object, timestep: object) -> ContactRequest:
+def _asked(key: object, values: object, timestep: float | None) -> ContactRequest:
     if not isinstance(key, tuple) or len(key) != 2:
         raise TypeError(f"pairs have the key {shown(key)}; it has to be two geoms, such as ('foot*', 'floor')")
     if not isinstance(values, Mapping):
@@ -259,50 +260,72 @@ def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
 
 @dataclass(frozen=True)
 class ContactRequest:
-    """What is asked of a contact: the arguments of `contact_for` by name, as they were given."""
+    """What is asked of a contact: the arguments of `contact_for` by name.
 
-    k: object = None
-    c: object = None
-    restitution: object = None
-    xi: object = None
+    Raises:
+        TypeError, ValueError: for a number outside its range, if both a mass and a point are given, and unless exactly
+            one of c, restitution and xi is.
+    """
+
+    k: Annotated[float | None, Within(1e-30, 1e30, "N/m", "stiffness k")] = None
+    c: Annotated[float | None, Within(0.0, 1e30, "N s/m", "damping c")] = None
+    restitution: Annotated[float | None, Within(0.0, 1.0)] = None
+    xi: Annotated[float | None, Within(0.0, 1e6, name="damping ratio xi")] = None
     friction: object = None
-    mass: object = None
+    mass: Annotated[float | None, Within(1e-30, 1e30, "kg")] = None
     at: object = None
-    contacts: object = None
-    speed: float | None = None
-    timestep: object = None
-    newmark_beta: object = 0.25
+    contacts: Annotated[int | None, Within(1, mujoco.mjMAXCONPAIR, whole=True)] = None
+    speed: Annotated[float | None, Within(1e-9, 1e6, "m/s")] = None
+    timestep: Annotated[float | None, Within(1e-12, 1e3, "s")] = None
+    newmark_beta: Annotated[float, Within(0.0, 1e6)] = 0.25
     normal: object = None
+
+    def __post_init__(self) -> None:
+        if self.mass is not None and self.at is not None:
+            raise ValueError(f"mass = {shown(self.mass)} and at = {shown(self.at)} are both given; give one of them")
+        losses = {"c": self.c, "restitution": self.restitution, "xi": self.xi}
+        given = {name: value for name, value in losses.items() if value is not None}
+        if len(given) != 1:
+            listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
+            raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
+        if self.k is None and self.c is not None:
+            raise ValueError(f"k = None takes restitution or xi, and c = {spelt(self.c)} is given; give k")
+        keep_declared(self)
 
 
 TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
 """What can be asked of each contact of several."""
 
 
-def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:
+def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Neighbours]:
     """The contact of a pair in a pose, with `remarks` on how it differs from what was asked, and what lands
     with it."""
     option, pose = pair.model.opt, pose.along(asked.normal)
-    k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
-    beta = require_within("newmark_beta", asked.newmark_beta, 0.0, 1e6)
-    points = None if asked.contacts is None else require_whole("contacts", asked.contacts, 1, mujoco.mjMAXCONPAIR)
-    speed = None if asked.speed is None else require_within("speed", asked.speed, 1e-9, 1e6, "m/s")
-    if asked.mass is not None and asked.at is not None:
-        raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
     grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
-    rate = None if k is not None else LONG_STEP / h
-    alone = asked.mass is not None
     met = meeting_of_geoms(
-        pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k
+        pair,
+        pose,
+        contacts=asked.contacts,
+        at=asked.at,
+        alone=asked.mass is not None,
+        friction=grip.sliding,
+        frequency=LONG_STEP / h if asked.k is None else None,
+        k=asked.k,
     )
-    share = _mass(pair, pose, asked.mass, met)
-    _require_one_loss(asked)
-    if k is None:
-        k = _stiffest(pair, asked, h, share, met.felt.gravity)
-    c = _dashpot(k, share, asked, met.felt.gravity)
+    if asked.mass is None and not met.effective.mass < math.inf:
+        raise ValueError(
+            f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at {pose.label}, so that "
+            "the model gives no mass for the restitution; give mass"
+        )
+    share = met.share if asked.mass is None else asked.mass / met.points
+    gravity = met.effective.gravity
+    k = _stiffest(pair, asked, h, share, gravity) if asked.k is None else asked.k
+    c = asked.c
+    if c is None:
+        c = 2 * _damping_ratio(asked, math.sqrt(k / share), gravity) * math.sqrt(k * share)
     staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, beta, staged)
+    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, asked.newmark_beta, staged)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
     contact = PairContact(
         *pair.names,
@@ -319,91 +342,60 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
         adhesion=mixed.adhesion,
         gap=mixed.gap,
-        speed=speed,
-        gravity=max(0.0, met.felt.gravity),
+        speed=asked.speed,
+        gravity=max(0.0, gravity),
         pose=pose.label,
-        load=pose.load(pair, met.points, points),
-        remarks=(
-            *unused(asked.friction, grip),
-            *turned(pair, pose, k),
-            *_remarks(pair, pose, asked, met, k, c, grip.sliding),
-        ),
+        load=pose.load(pair, met.points, asked.contacts),
     )
-    weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
-    load = contact.load
-    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow.of(pair).loaded(load), pair.thickness))
-    return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
+    remarks = [*unused(asked.friction, grip), *turned(pair, pose, k)]
+    remarks += _remarks(pair, pose, asked, met, k, c, grip.sliding)
+    if asked.restitution is not None:
+        remarks += weight_spoilers(contact)
+    if asked.k is None:
+        remarks += soft_spoilers(contact, ModelRow.of(pair).loaded(contact.load), pair.thickness)
+    return replace(contact, remarks=tuple(remarks)), met.neighbours
 
 
-def beside(contact: PairContact, company: Company, made: Mapping[frozenset[int], PairContact]) -> PairContact:
+def beside(contact: PairContact, neighbours: Neighbours, made: Mapping[frozenset[int], PairContact]) -> PairContact:
     """The contact with `remarks` on what lands with it: what is not `made` the same, and what is not level."""
-    label = {pair: " on ".join(pair.labels) for pair in (*company.level, *company.apart)}
+    label = {pair: " on ".join(pair.labels) for pair in (*neighbours.level, *neighbours.apart)}
     others = {pair: made.get(frozenset(pair.geoms)) for pair in label}
-    strangers = [label[pair] for pair in company.level if not (other := others[pair]) or not contact.is_like(other)]
-    apart = [label[pair] for pair in company.apart if others[pair]]
+    unlike = [label[pair] for pair in neighbours.level if not (other := others[pair]) or not contact.is_like(other)]
+    apart = [label[pair] for pair in neighbours.apart if others[pair]]
     level = f"give the pose in which the bodies stand level, not {contact.pose}"
     remarks = []
-    if strangers:
+    if unlike:
         remarks.append(
-            f"it lands together with {named(strangers)}, and shares the mass; give them the same contact, or contacts= "
+            f"it lands together with {named(unlike)}, and shares the mass; give them the same contact, or contacts= "
             "to this one for the mass at its own points"
         )
-    if company.late > 0:
+    if neighbours.late > 0:
         remarks.append(
-            f"what is taken to land together with it touches up to {company.late:.2g} m sooner or later; {level}"
+            f"what is taken to land together with it touches up to {neighbours.late:.2g} m sooner or later; {level}"
         )
     if apart:
         remarks.append(f"it lands together with {named(apart)}, and shares the mass, only on a level; {level}")
     return replace(contact, remarks=(*contact.remarks, *remarks))
 
 
-def _mass(pair: GeomPair, pose: Pose, mass: object, met: PairMeeting) -> float:
-    """The effective mass of a contact point [kg]."""
-    if mass is not None:
-        return require_within("mass", mass, 1e-30, 1e30, "kg") / met.points
-    if not met.felt.mass < math.inf:
-        raise ValueError(
-            f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at {pose.label}, so that "
-            "the model gives no mass for the restitution; give mass"
-        )
-    return met.share
-
-
 def _damping_ratio(asked: ContactRequest, omega: float, gravity: float) -> float:
     """The damping ratio [-] of a frequency, from the restitution or the damping ratio that is given."""
-    if asked.restitution is None:
-        return require_within("damping ratio xi", asked.xi, 0.0, 1e6)
-    e = max(require_within("restitution", asked.restitution, 0.0, 1.0), LEAST_RESTITUTION)
+    if asked.xi is not None:
+        return asked.xi
+    e = max(asked.restitution or 0.0, LEAST_RESTITUTION)
     if asked.speed is None or gravity <= 0:
         return rebound_damping(e)
-    pull = gravity / (omega * float(asked.speed))
+    pull = gravity / (omega * asked.speed)
     if pull > MOST_PULL:
         slowest = gravity / (omega * MOST_PULL)
         raise ValueError(
-            f"speed = {float(asked.speed):g} m/s is too slow to rebound; the valid range is from {slowest:.3g} m/s on"
+            f"speed = {asked.speed:g} m/s is too slow to rebound; the valid range is from {slowest:.3g} m/s on"
         )
     return falling_damping(e, pull)
 
 
-def _require_one_loss(asked: ContactRequest) -> None:
-    losses = {"c": asked.c, "restitution": asked.restitution, "xi": asked.xi}
-    given = {name: value for name, value in losses.items() if value is not None}
-    if len(given) != 1:
-        listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
-        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
-
-
-def _dashpot(k: float, mass: float, asked: ContactRequest, gravity: float) -> float:
-    """The dashpot of a contact point [N s/m], from the one of the three that is given."""
-    if asked.c is not None:
-        return require_within("damping c", asked.c, 0.0, 1e30, "N s/m")
-    return 2 * _damping_ratio(asked, math.sqrt(k / mass), gravity) * math.sqrt(k * mass)
-
-
 def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, gravity: float) -> float:
     """The stiffest contact that the step resolves, rounded down [N/m]."""
-    if asked.c is not None:
-        raise ValueError(f"k = None takes restitution or xi, and c = {spelt(asked.c)} is given; give k")
     omega = LONG_STEP / h
     for _ in range(20):  # with gravity the damping depends on the frequency, a little
         k = stiffest(h, _damping_ratio(asked, omega, gravity), mass)
@@ -414,18 +406,17 @@ def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, grav
 
 def _remarks(
     pair: GeomPair, pose: Pose, asked: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
-) -> tuple[str, ...]:
+) -> Iterator[str]:
     """Reasons in the pose for which a contact differs from what was asked, one sentence each."""
-    if asked.mass is not None or not met.felt.mass < math.inf:
-        return ()
-    xi = c / (2 * math.sqrt(k * met.share))
-    found = [*unknown(pair, pose)] if asked.at is None else []
-    found += giving_way(pair, pose, met, k, xi, mu, float(asked.speed or 1.0))
-    found += holding(pose, met.felt, k * met.points, xi, float(asked.speed or 1.0))
+    if asked.mass is not None:
+        return
+    xi, speed = c / (2 * math.sqrt(k * met.share)), asked.speed or 1.0
+    if asked.at is None:
+        yield from unknown(pair, pose)
+    yield from giving_way(pair, pose, met, k, xi, mu, speed)
+    yield from holding(pose, met.effective, k * met.points, xi, speed)
     if asked.c is None and asked.at is None:
-        contacts = None if asked.contacts is None else met.points
-        found += other_keyframes(pair, pose, met, contacts, mu)
-    return tuple(found)
+        yield from other_keyframes(pair, pose, met, asked.contacts, mu)
 
 
 def _row(
@@ -458,12 +449,12 @@ def _row(
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
 
 
-def solver_need(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) -> SolverNeed:
-    """What contacts of a compiled model need of its solver, by a trial in a pose.
+def solver_need(pose: Pose, contacts: Sequence[PairContact]) -> SolverNeed:
+    """What contacts need of the solver of their model, by a trial in a pose.
 
     Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
     """
-    tried = _with(model, pose, contacts)
+    tried = _with(pose, contacts)
     own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
     cap, searches = max(own[0], MOST_TURNS), max(own[1], LINE_SEARCHES)
     most, enough = _stepped(tried, pose, cap, searches)
@@ -500,9 +491,9 @@ def _stepped(tried: mujoco.MjModel, pose: Pose, cap: int, searches: int) -> tupl
     return most, enough
 
 
-def _with(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) -> mujoco.MjModel:
-    """A copy of a model with contacts on its pairs and geoms, which act at the distance at which they are."""
-    tried = copy.copy(awake(model))
+def _with(pose: Pose, contacts: Sequence[PairContact]) -> mujoco.MjModel:
+    """A copy of the model with contacts on its pairs and geoms, which act at the distance at which they are."""
+    tried = copy.copy(pose.model)
     option = tried.opt
     option.timestep = contacts[0].timestep
     if any(contact.condim > 1 for contact in contacts):
@@ -511,7 +502,7 @@ def _with(model: mujoco.MjModel, pose: Pose, contacts: Sequence[PairContact]) ->
     for contact in contacts:
         pair = GeomPair(tried, contact.ids)
         contact.write_numbers(tried, pair)
-        here = max(0.0, pose.landing(GeomPair(model, contact.ids)).distance) + contact.depth
+        here = max(0.0, pose.landing(GeomPair(pose.model, contact.ids)).distance) + contact.depth
         if pair.explicit >= 0:
             tried.pair_margin[pair.explicit] = here
         else:

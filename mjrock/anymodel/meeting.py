@@ -1,4 +1,4 @@
-"""The contact of two geoms in a pose: in how many points they meet, and what each of them feels."""
+"""The contact of two geoms in a pose: in how many points they meet, and the mass that each of them stops."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
-from .felt import EffectiveMass, ModelSprings, PoseConstraints, felt
+from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass
 from .geoms import FARTHEST_GEOM, GeomPair, makes
 
 DEPTH = 1e-3
@@ -185,15 +185,6 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
     return data
 
 
-def awake(model: mujoco.MjModel) -> mujoco.MjModel:
-    """The model without the sleep flag, with which MuJoCo makes no constraints of bodies that begin asleep."""
-    sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
-    if model.opt.enableflags & sleep:
-        model = copy.copy(model)
-        model.opt.enableflags &= ~sleep
-    return model
-
-
 def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset[int], list[float]]:
     """Normal forces of all contact points of a pose at rest [N], by the numbers of their geoms.
 
@@ -230,7 +221,10 @@ class Pose:
     """
 
     def __init__(self, model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> None:
-        model = awake(model)
+        sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # MuJoCo makes no constraints of bodies that begin asleep
+        if model.opt.enableflags & sleep:
+            model = copy.copy(model)
+            model.opt.enableflags &= ~sleep
         self.model, self.data = model, state_of(model, keyframe, qpos)
         self.given, self.exact = keyframe is not None or qpos is not None, qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
@@ -320,7 +314,7 @@ class Pose:
         return not any(tree[bodies].any() for tree in pair.trees)
 
 
-class Company(NamedTuple):
+class Neighbours(NamedTuple):
     """The other geoms of two bodies that land at about the same time as a pair.
 
     Args:
@@ -340,18 +334,18 @@ class PairMeeting:
 
     Args:
         points: contact points that share the mass.
-        felt: what the contact feels.
-        company: the other geoms that land with these.
+        effective: the effective mass, and what else of the model acts on the contact.
+        neighbours: the other geoms that land with these.
     """
 
     points: int
-    felt: EffectiveMass
-    company: Company
+    effective: EffectiveMass
+    neighbours: Neighbours
 
     @property
     def share(self) -> float:
         """Mass that each contact point stops [kg]."""
-        return self.felt.mass / self.points
+        return self.effective.mass / self.points
 
 
 def meeting_of_geoms(
@@ -369,18 +363,18 @@ def meeting_of_geoms(
 
     Args:
         pair, pose: the geoms and the pose.
-        contacts: contact points that share the mass. None takes those of a trial landing, with those of its `company`.
+        contacts: contact points that share the mass. None takes those of a trial landing, with those of `neighbours`.
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts` says.
         alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
-        friction, frequency, k: see `felt`.
+        friction, frequency, k: see `effective_mass`.
     """
     if at is not None:
         point = require_array("at", at, (3,))
         if np.abs(point).max() > FARTHEST_GEOM:
             raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST_GEOM:g} m")
     here = pose.landing(pair)
-    others = Company() if alone or contacts is not None or at is not None else company(pair, pose)
+    others = Neighbours() if alone or contacts is not None or at is not None else neighbours(pair, pose)
     landings = [here, *(pose.landing(other) for other in others.level)]
     first, second = (np.concatenate([getattr(each, side) for each in landings]) for side in ("first", "second"))
     count = len(first) if contacts is None else contacts
@@ -391,8 +385,8 @@ def meeting_of_geoms(
     else:
         places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
-    felt_there = felt(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
-    return PairMeeting(count, felt_there, others)
+    effective = effective_mass(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
+    return PairMeeting(count, effective, others)
 
 
 class Group:
@@ -420,7 +414,7 @@ class Group:
         return self._landed[chosen, 0], self._landed[chosen, 1:4], self._landed[chosen, 4:]
 
 
-def company(pair: GeomPair, pose: Pose) -> Company:
+def neighbours(pair: GeomPair, pose: Pose) -> Neighbours:
     """The other geoms of the two bodies that land about when a pair does. They part along the same line, and their
     distances differ by less than a share of what lies between them."""
     group, here, place = pose.group(pair), pose.landing(pair), pose.data.geom_xpos
@@ -437,7 +431,7 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
     level = along & (differs <= NEARLY_LEVEL * between)
     late = level & (differs > DEPTH * (between + pair.thickness))
-    return Company(
+    return Neighbours(
         tuple(group.pairs[i] for i in near[level]),
         float(differs[late].max(initial=0.0)),
         tuple(group.pairs[i] for i in near[along & ~level]),

@@ -18,7 +18,7 @@ import numpy as np
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, named
-from .felt import ACTUATOR, JOINT, TENDON, EffectiveMass, felt
+from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, effective_mass
 from .geoms import GeomPair
 from .meeting import TOUCHING_AT_REST, PairMeeting, Pose, keyframe_names, meeting_of_geoms
 
@@ -218,32 +218,32 @@ def turned(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
         )
 
 
-def holding(pose: Pose, feels: EffectiveMass, k: float, xi: float, speed: float = 1.0) -> Iterator[str]:
+def holding(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float = 1.0) -> Iterator[str]:
     """What holds the bodies of a contact besides, one sentence each. The whole contact has the stiffness k [N/m], the
     damping ratio xi [-]; dry friction is judged at the speed of approach [m/s]."""
     model, data = pose.model, pose.data
-    if feels.slides:
+    if effective.slides:
         yield (
             "the joints let the point approach only while it slides, so that friction takes part in the blow and the "
             "restitution depends on it; with friction=0 it is what was asked for"
         )
-    if feels.yielding:
-        names = [_name(model, CONSTRAINT, number) for number in feels.yielding]
+    if effective.yielding:
+        names = [_name(model, CONSTRAINT, number) for number in effective.yielding]
         many, one = ("s", "") if len(names) > 1 else ("", "s")
         yield (
             f"equality constraint{many} {named(names)} yield{one} in a contact, so that bodies move neither as one nor "
             "apart, and the restitution is another; shorten the time of solref there"
         )
-    if feels.limits:
+    if effective.limits:
         tendon = int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)
-        kinds = (TENDON if data.efc_type[row] == tendon else JOINT for row in feels.limits)
-        rows = {_name(model, kind, data.efc_id[row]) for kind, row in zip(kinds, feels.limits, strict=True)}
+        kinds = (TENDON if data.efc_type[row] == tendon else JOINT for row in effective.limits)
+        rows = {_name(model, kind, data.efc_id[row]) for kind, row in zip(kinds, effective.limits, strict=True)}
         be = "is at its limit" if len(rows) == 1 else "are at their limits"
         yield f"{named(sorted(rows))} {be} in this pose, which holds the contact too; give mass"
-    yield from _beside(pose, feels, k, xi, speed)
+    yield from _beside(pose, effective, k, xi, speed)
 
 
-def _beside(pose: Pose, feels: EffectiveMass, k: float, xi: float, speed: float) -> Iterator[str]:
+def _beside(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float) -> Iterator[str]:
     """What springs, dampers and dry friction do, where they do much together.
 
     A dry friction F that is small beside the force m omega v of the contact lowers e by F / (m omega v) times
@@ -251,8 +251,8 @@ def _beside(pose: Pose, feels: EffectiveMass, k: float, xi: float, speed: float)
     contact it pulls the bodies together on both ways, as gravity does. What it takes is at most the larger of both.
     """
     springs, e = pose.springs, rebound_restitution(xi)
-    stiffness, damping = springs.along(feels.motion, speed)
-    friction, mass = springs.friction(feels.motion), feels.mass
+    stiffness, damping = springs.along(effective.motion, speed)
+    friction, mass = springs.friction(effective.motion), effective.mass
     added = float(stiffness.sum())
     if abs(added) > STIFF_BESIDE * k:
         yield (
@@ -304,12 +304,12 @@ def giving_way(
 
     A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
     """
-    if met.felt.yielding:  # what else moves then is said of them
+    if met.effective.yielding:  # what else moves then is said of them
         return
     model, here = pair.model, pose.landing(pair)
     lasts = math.pi / math.sqrt(k / met.share)
     moved = np.array(pose.data.qpos)
-    mujoco.mj_integratePos(model, moved, met.felt.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
+    mujoco.mj_integratePos(model, moved, met.effective.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
     later = Pose(model, qpos=moved)
     before, after = [], []
     for body, point in zip(pair.bodies, (here.first.mean(axis=0), here.second.mean(axis=0)), strict=True):
@@ -317,7 +317,7 @@ def giving_way(
         before.append(point)
         after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
     first, last = (
-        felt(pair, each.held, here.away, (points[0], points[1]), friction=friction, k=k * met.points).mass
+        effective_mass(pair, each.held, here.away, (points[0], points[1]), friction=friction, k=k * met.points).mass
         for each, points in ((pose, before), (later, after))
     )
     if max(last / first, first / last) > FOREIGN:
