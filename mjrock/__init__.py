@@ -5,7 +5,7 @@ compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compli
 `solve_explicit` by explicit steps, for many blocks. `solve_analytical` is classical rocking theory, and `compare` sets
 two answers side by side.
 
-A name is imported when it is first asked for: who wants `contact_for` alone waits for MuJoCo and NumPy only.
+A name is imported when it is first used: `contact_for` alone imports MuJoCo and NumPy only.
 """
 
 import contextlib
@@ -131,7 +131,7 @@ HOME = {
 
 
 def _require_mujoco(version: str) -> None:
-    """Raise an ImportError that says what to install, if MuJoCo is older than this package takes."""
+    """Raise an ImportError that names what to install, if MuJoCo is older than this package needs."""
     if int(version.split(".")[0]) < 4:
         raise ImportError(f"mjrock needs MuJoCo 4.0 or newer, and {version} is installed: pip install 'mujoco>=4.0'")
 
@@ -144,7 +144,7 @@ else:
 
 
 def __getattr__(name: str) -> object:
-    """A public name, or `mjrock.plotting`, imported when it is first asked for. Ctrl-C is heard when it is there."""
+    """A public name, or `mjrock.plotting`, imported when it is first used. Ctrl-C is delayed until then."""
     if name != "plotting" and name not in HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     with interrupts_held_back():

@@ -26,7 +26,7 @@ def in_notebook() -> bool:
 def shown_bar(what: str, unit: str, total: float | None, **options: object) -> tqdm:
     """The bar of tqdm that suits: a widget in a notebook with `ipywidgets`, otherwise text.
 
-    Seconds have two decimals. It shows nothing where nobody looks on, as in a file.
+    Seconds have two decimals. Nothing is shown where the output is a file.
     """
     there = in_notebook()
     if there and importlib.util.find_spec("ipywidgets"):
@@ -46,7 +46,7 @@ class Bar:
     Args:
         what: is in progress.
         unit: what is counted.
-        total: how much there is of it; None if nobody knows.
+        total: how much there is of it; None if that is unknown.
     """
 
     def __init__(self, what: str, unit: str, total: float | None = None) -> None:

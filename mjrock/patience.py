@@ -46,8 +46,8 @@ class Run(NamedTuple):
 
 
 class _Process:
-    """What this process knows: time that plain Python has taken [s], the process that compiles, how many there have
-    been, and how many of them have ended."""
+    """State of this process: time that plain Python has taken [s], the process that compiles, how many have been
+    started, and how many have ended."""
 
     def __init__(self) -> None:
         self.taken = 0.0
@@ -137,7 +137,7 @@ def _tell(process: subprocess.Popen[bytes], content: bytes) -> None:
     assert process.stdin is not None
     with contextlib.suppress(OSError):  # it has ended
         process.stdin.write(content)
-        process.stdin.flush()  # and stays open: its end tells the process that this one is gone
+        process.stdin.flush()  # and stays open: the process ends when it closes
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

@@ -39,8 +39,8 @@ Attribute = str | float | tuple[float, ...]
 SOFT_DEPTH = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
 GAINS = 0.5
-"""omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
-with 1.09 at 0.9 and with 2.4 at 1.9."""
+"""omega h from which a contact of the pyramidal cone is reported to gain energy [-]. Undamped it rebounds with 1.03
+there, with 1.09 at 0.9 and with 2.4 at 1.9."""
 NO_REBOUND, SMALL_REBOUND = 0.03, 0.2999
 """Restitutions between which gravity is warned of where no speed is given [-]."""
 SAME = 0.05
@@ -73,7 +73,7 @@ class PairContact:
         load: static load of each contact point [N], that of the pose at rest, or the weight of the
             lighter tree of bodies where the geoms are apart.
         needs: iterations of the solver that the contact needs, found by a trial in the pose.
-        remarks: what in this pose keeps the contact from being what was asked, one sentence each.
+        remarks: reasons in this pose for which the contact differs from the request, one sentence each.
     """
 
     geom1: str
@@ -255,7 +255,7 @@ class PairContact:
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
-        """What in a model keeps the contact from being what it says, one sentence each; empty if nothing does.
+        """Reasons in a model for which the contact differs from its numbers, a sentence each; empty without any.
 
         Args:
             model: a model with the contact, from `apply` or from the text of `xml`.
@@ -304,7 +304,7 @@ class PairContacts:
     """Contacts of one model with one time step.
 
     Args:
-        contacts: the contacts, in the order in which they were asked for.
+        contacts: the contacts, in the order of the request.
     """
 
     contacts: tuple[PairContact, ...]
@@ -349,8 +349,8 @@ class PairContacts:
         write(self.contacts, model, Writing(on_geoms, keep_others, iterations, name_geoms))
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
-        """What in a model keeps the contacts from being what they say, alike sentences once with the geoms that they
-        are about; see `PairContact.caveats`."""
+        """Reasons in a model for which the contacts differ from their numbers, equal sentences once with the geoms that
+        they concern; see `PairContact.caveats`."""
         whole = compiled_model(model)
         return tuple(merged((contact, sentence) for contact in self for sentence in contact.caveats(whole, prefix)))
 
@@ -360,7 +360,7 @@ class PairContacts:
 
 
 def merged(sentences: Iterable[tuple[PairContact, str]]) -> Iterator[str]:
-    """Sentences that are alike once, with the geoms that they are about. The first of several with other numbers or
+    """Sentences that are alike once, with the geoms that they concern. The first of several with other numbers or
     names is given in full."""
     alike: dict[str, dict[str, list[str]]] = {}
     for contact, sentence in sentences:
@@ -465,7 +465,7 @@ class Changed(NamedTuple):
 
 
 def changes_said(changed: Collection[Changed]) -> str:
-    """What the options do to contacts, the one that changes most first."""
+    """Contacts that the options change, the one that changes most first, as a sentence."""
     told = []
     for each in sorted(changed, key=lambda one: -abs(math.log(one.stiffness[1] / one.stiffness[0]))):
         told.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(each.pair.labels), *each.stiffness))

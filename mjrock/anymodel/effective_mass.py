@@ -165,7 +165,7 @@ class EffectiveMass:
 
     Args:
         mass: effective mass of the whole contact [kg]; infinity if the geoms cannot approach each other.
-        slides: whether the model lets the point approach only while it slides.
+        slides: whether the point can approach only while it slides.
         motion: velocity of the joints for a unit speed of parting [1/m or 1], shape (nv,).
         gravity: acceleration with which gravity brings the geoms together where nothing else holds them [m/s2].
         yielding: numbers of the equality constraints that yield in a contact.

@@ -1,6 +1,6 @@
-"""Geoms of anyone's model that can meet: their names, their bodies, and the mass of their approach.
+"""Geoms of any model that can meet: their names, their bodies, and the direction in which they part.
 
-Which geoms MuJoCo lets collide without an explicit pair are the rules of its manual (Computation, Selection)."""
+Geoms that collide without an explicit pair are found by the rules of MuJoCo's manual (Computation, Selection)."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
         return model
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # MuJoCo repeats what it said when the parts were attached
+            warnings.simplefilter("ignore")  # MuJoCo repeats its warnings of when the parts were attached
             return model.compile()
     except ValueError as error:
         raise ValueError(f"model does not compile: {error}") from error
@@ -218,7 +218,7 @@ class GeomPair:
 
     def apart(self, data: mujoco.MjData) -> tuple[Array, float, Array | None]:
         """The unit vector along which the first geom parts from the second, their distance [m], and the nearest points
-        of both [m], shape (2, 3), or None where MuJoCo knows none.
+        of both [m], shape (2, 3), or None where MuJoCo finds none.
 
         The vector is the normal of a plane, otherwise it points along the shortest distance of the geoms.
         """
@@ -265,7 +265,7 @@ class GeomPair:
         return bool(found) and max(found) < FACING
 
     def _shortest(self, data: mujoco.MjData) -> tuple[float, Array | None]:
-        """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo knows none."""
+        """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo finds none."""
         ends = np.zeros(6)
         try:
             distance = float(mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST_GEOM, ends))

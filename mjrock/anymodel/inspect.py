@@ -1,4 +1,4 @@
-"""What the contacts of anyone's MuJoCo model are in N/m and N s/m: `inspect_contacts`, and `inspect_flexes` of flexes.
+"""The contacts of any MuJoCo model in N/m and N s/m: `inspect_contacts`, and `inspect_flexes` for flexes.
 
 MuJoCo mixes the parameters of a flex and a geom as those of two geoms. The inverse weight of a contact is that of the
 body of the geom and of the bodies of the vertices that meet it, with the weights of the contact point among them. On a
@@ -40,7 +40,7 @@ class InspectedContact:
 
     Args:
         geom1, geom2: names of the geoms; without a name, that of the body with the number of the geom in brackets.
-        explicit: whether an explicit `<pair>` says so, or MuJoCo mixes it from the two geoms.
+        explicit: whether it has an explicit `<pair>`; otherwise MuJoCo mixes it from the two geoms.
         k, c: spring [N/m] and dashpot [N s/m] of each contact point.
         inertia: inertia that the row adds in a contact, beyond what the Euler step takes [kg].
         mass: effective mass of the whole contact in the pose [kg]; infinity if the geoms cannot approach each other.
@@ -50,7 +50,7 @@ class InspectedContact:
         k_loaded: load over the indentation at which the contact carries it [N/m].
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         bodies: names of the two bodies, or their numbers in brackets.
-        notes: what else is to be known of it, one sentence each.
+        notes: further facts about it, one sentence each.
     """
 
     geom1: str

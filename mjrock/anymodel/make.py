@@ -1,4 +1,4 @@
-"""`contact_for` and `contacts_for`: a stiffness in N/m and a restitution for geoms of anyone's MuJoCo model.
+"""`contact_for` and `contacts_for`: a stiffness in N/m and a restitution for geoms of any MuJoCo model.
 
 How many iterations MuJoCo's solver needs for contacts is found by a trial. They are written into a copy of the model,
 on its pairs and its geoms. Geoms that are apart act at the distance at which they are, so that every contact carries.
@@ -191,7 +191,7 @@ def contacts_for(
 
 
 def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> tuple[PairContact, ...]:
-    """The contacts that are asked for in a pose, with what their solver needs and what lands with each."""
+    """The requested contacts in a pose, with the iterations that they need and remarks on what lands with each."""
     found = [contact_of(pair, pose, each) for pair, each in asked]
     made = {frozenset(contact.ids): contact for contact, _ in found}
     needs = solver_need(pose, list(made.values()))
@@ -199,7 +199,7 @@ def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> tuple
 
 
 def _sentences(model: mujoco.MjModel, contacts: Iterable[PairContact]) -> Iterator[tuple[PairContact, str]]:
-    """Reasons for which contacts differ from what was asked, with the contact that each is about."""
+    """Reasons for which contacts differ from the request, each with its contact."""
     for contact in contacts:
         for sentence in (*spoilers(GeomPair(model, contact.ids), contact), *contact.remarks):
             yield contact, sentence
@@ -217,7 +217,7 @@ def _asked(key: object, values: object, timestep: float | None) -> ContactReques
 
 
 def _meant(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:
-    """The numbers of the geoms that a key names. Of wildcards they are those that MuJoCo lets collide."""
+    """The numbers of the geoms that a key names; with wildcards, of those for which MuJoCo makes contacts."""
     firsts, seconds = (
         _matching(model, argument, value) for argument, value in zip(("geom1", "geom2"), key, strict=True)
     )
@@ -260,7 +260,7 @@ def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
 
 @dataclass(frozen=True)
 class ContactRequest:
-    """What is asked of a contact: the arguments of `contact_for` by name.
+    """The request for a contact: the arguments of `contact_for` by name.
 
     Raises:
         TypeError, ValueError: for a number outside its range, if both a mass and a point are given, and unless exactly
@@ -294,11 +294,11 @@ class ContactRequest:
 
 
 TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
-"""What can be asked of each contact of several."""
+"""Arguments that each contact of several may have."""
 
 
 def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Neighbours]:
-    """The contact of a pair in a pose, with `remarks` on how it differs from what was asked, and what lands
+    """The contact of a pair in a pose, with `remarks` on how it differs from the request, and what lands
     with it."""
     option, pose = pair.model.opt, pose.along(asked.normal)
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
@@ -407,7 +407,7 @@ def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, grav
 def _remarks(
     pair: GeomPair, pose: Pose, asked: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
 ) -> Iterator[str]:
-    """Reasons in the pose for which a contact differs from what was asked, one sentence each."""
+    """Reasons in the pose for which a contact differs from the request, one sentence each."""
     if asked.mass is not None:
         return
     xi, speed = c / (2 * math.sqrt(k * met.share)), asked.speed or 1.0

@@ -365,7 +365,7 @@ def meeting_of_geoms(
         pair, pose: the geoms and the pose.
         contacts: contact points that share the mass. None takes those of a trial landing, with those of `neighbours`.
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
-            the centres of mass if the landing has other points than `contacts` says.
+            the centres of mass if the landing has other points than `contacts`.
         alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
         friction, frequency, k: see `effective_mass`.
     """
@@ -390,7 +390,7 @@ def meeting_of_geoms(
 
 
 class Group:
-    """All geoms of two bodies of which MuJoCo makes contacts, in a pose, and where they land once they are asked for.
+    """All geoms of two bodies of which MuJoCo makes contacts, in a pose, and where they land, found when needed.
 
     Attributes:
         pairs: the geoms, those of the first body first.

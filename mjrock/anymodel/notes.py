@@ -33,9 +33,9 @@ STIFF_BESIDE = 0.05
 SHIFTS = 0.02
 """Change of the restitution by dampers and dry friction from which they are named [-]."""
 FOREIGN = 1.2
-"""Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
+"""Ratio of the masses of two poses from which a warning names the pose that the contact is made for [-]."""
 IMMOVABLE = 10.0
-"""Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
+"""Effective mass over that of all that moves from which a body is reported as hardly able to move [-]."""
 TURN = 0.01
 """Turn about the normal with which the points of two faces are counted again [degrees]."""
 CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
@@ -85,7 +85,7 @@ VARIES = re.compile(
 
 
 class ContactWarning(UserWarning):
-    """What keeps a contact in N/m from being what was asked, or what it does to the rest of the model."""
+    """A reason for which a contact in N/m differs from the request, or an effect of it on the rest of the model."""
 
 
 def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
@@ -304,7 +304,7 @@ def giving_way(
 
     A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
     """
-    if met.effective.yielding:  # what else moves then is said of them
+    if met.effective.yielding:  # `holding` names them
         return
     model, here = pair.model, pose.landing(pair)
     lasts = math.pi / math.sqrt(k / met.share)

@@ -1,6 +1,6 @@
 """Classical rocking theory: Eq. 1 between impacts, and a coefficient of restitution at each impact.
 
-This solver knows no stiffness and no MuJoCo.
+This solver uses neither stiffness nor MuJoCo.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def solve_analytical(
 ) -> Response:
     """Rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak, free or over a shaken base.
 
-    Loads, thrusts, ties, added masses, openings, insets and vertical ground motion enter Eq. 1 as
-    `mjrock.theory.law` says. Ties carry no impulse. A side stop that reaches only so high changes the restitution
+    Loads, thrusts, ties, added masses, openings, insets and vertical ground motion enter Eq. 1 as in
+    `mjrock.theory.law`. Ties carry no impulse. A side stop that reaches only so high changes the restitution
     alone: give `Restitution.from_geometry(wall, stop_top)` or a measured one.
 
     A rebound with less than `rest` of the energy of release leaves the wall at rest. Under ground motion that share is
@@ -152,7 +152,7 @@ def _outcome(case: Case, motion: RockingMotion) -> Outcome:
 
 
 def _require_solvable(case: Case, e: AnyRestitution) -> None:
-    """Raise ValueError for a case that rocking theory has no answer to."""
+    """Raise ValueError for a case that rocking theory does not cover."""
     if case.side_stop and not -1 <= e.lumped < 0:
         low = "" if case.stop_top == 2 * case.block.h else f": a stop of {case.stop_top:g} m may be too low"
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Follow: MuJoCo's steps of a plain model, and what they say of energy and forces at the samples.
+"""Follow: MuJoCo's steps of a plain model, with energy and forces at the samples.
 
 A step takes the velocities from half a step before its pose to half a step after it. So the velocity at the pose is the
 mean of both, and a force does the work that is its product with that mean and the step. At a sample half of the work of
@@ -28,7 +28,7 @@ from .pieces import Overlap, Piece
 LOOK = 1000
 """Steps between two looks at warnings of the engine."""
 NEGLIGIBLE = 1e-4
-"""Depth of a contact, over the smallest thickness of the two pieces, that is no overlap to speak of [-]."""
+"""Depth of a contact, over the smallest thickness of the two pieces, up to which an overlap is negligible [-]."""
 
 
 class Met(NamedTuple):
@@ -202,7 +202,7 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
         engine: at the release.
         course: what happens.
         steps, stride: numbers of steps.
-        joints: gathers forces, None where they are not asked for.
+        joints: gathers forces; None where they are not kept.
 
     Raises:
         StepError: if the engine warns or the state is not finite.

@@ -2,7 +2,7 @@
 
 A joint has k_n times its area, and MuJoCo finds four points where two faces lie on each other, two where one stands on
 an edge: a point has a quarter of the joint. Any two pieces without a joint meet with the frequency and the damping of
-the median joint: MuJoCo then gives each two of them the stiffness that their masses ask for. Those for which the
+the median joint: MuJoCo then gives each two of them a stiffness in proportion to their masses. Those for which the
 masonry gives friction and damping are pairs with that stiffness.
 """
 

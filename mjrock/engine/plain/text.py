@@ -239,7 +239,7 @@ def _geom(piece: Piece, **attributes: object) -> str:
 
 
 def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, object]) -> Iterator[str]:
-    """A body with its joints and its geoms. That of a uniform box says its mass, any other body its moments."""
+    """A body with its joints and its geoms. A uniform box is given its mass, any other body its moments of inertia."""
     alone = len(scene.bodies.names) == 1
     opening = element("body", name=name, pos=in_space(scene.bodies.rest[j]))
     yield opening.removesuffix("/>") + ">"
