@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...compiled import for_types_of
 from ...problem.masonry.laws.joint_law import Law, stored_along
 from ...problem.wall.standing import Standing
 from ...quantities import Array, Flags, Integers
@@ -27,6 +28,7 @@ from ...scene.scene import Scene
 from ..rows import chosen, joined, rows, unsound
 from ..supports import surges
 from ..system import Books, System
+from ..turning import rotations
 from .constants import (
     LEFT_JOINT,
     NEAR,
@@ -48,14 +50,13 @@ from .validity import (
     Limits,
     Motion,
     Validity,
+    Watched,
     energy_and_power,
     fall_within,
+    is_outdated,
     longest_interval,
-    mark_outdated,
     power_of_last,
     set_validity,
-    take_motion,
-    update_joints,
 )
 
 
@@ -116,11 +117,12 @@ class ContactSearch:
         self.jointed, points = _jointed(scene, self.finder, of)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
         self.finder.points = np.maximum.reduceat(points, first)
-        self.kind, start = system.lines.dtype, self.motion(system).poses
+        self.kind, start = system.lines.dtype, self.poses(system)
         interval = longest_interval(self.sizes[self.blocks.free])
         self.limits = Limits(start, self._limits(start), VALID_WAY * self.sizes, interval)
-        self.joints = JointState.intact(of[joint], left, rolled)
-        self.state = self._no_contacts()
+        blocks = np.column_stack(np.divmod(self.law.jointed, self.count))
+        self.motion, self.joints = Motion.none(start), JointState.intact(of[joint], blocks, left, rolled)
+        self.state, self.examine = self._no_contacts(), is_outdated
 
     def begun(self, supports: tuple[str, ...]) -> ContactSearch:
         """The same at the start of a run, with room of its own to write into.
@@ -130,8 +132,8 @@ class ContactSearch:
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        joints, fresh.finder, fresh.state = self.joints, self.finder.apart(), self._no_contacts()
-        fresh.joints = JointState.intact(joints.pairs, joints.slip_limit, joints.tilt_limit)
+        fresh.finder, fresh.state = self.finder.apart(), self._no_contacts()
+        fresh.motion, fresh.joints = Motion.none(self.limits.start), JointState.intact(*self.joints[:4])
         return fresh
 
     def _no_contacts(self) -> SearchState:
@@ -154,23 +156,25 @@ class ContactSearch:
     def _numbers(self, found: Found) -> Integers:
         return pair_number(found.face, found.other, self.count)
 
-    def motion(self, system: System) -> Motion:
-        """Where all blocks are, and how fast."""
-        still = self.blocks.poses
+    def poses(self, system: System) -> Poses:
+        """Where all blocks are."""
+        still, free, support = self.blocks.poses, self.blocks.free, self.blocks.support
         poses = Poses(still.drawn, np.zeros_like(still.moved), np.zeros_like(still.change))
-        motion = Motion(poses, np.zeros_like(still.moved), np.zeros(self.count))
-        take_motion(system, self.blocks, motion)
-        return motion
+        poses.moved[free], poses.change[free] = system.bodies["place"], rotations(system.bodies)
+        poses.moved[support >= 0] = system.supports.moved[support[support >= 0]]
+        return poses
 
     def update(self, system: System, books: Books, t: float, h: float) -> tuple[System, Books, int]:
         """The system at a time [s] with the lines of all contacts that may touch until the next update, its books with
         room for them, and the steps until then. With steps of h [s] they are stable."""
-        state, validity = self.state, self.state.validity
-        left_joints, left = self._left_joints(system)
-        motion = self.motion(system)
-        self._add_surges(motion, system, t, t + h + self.limits.interval)
-        if mark_outdated(motion, self.sizes, self.limits, validity, left, state.since):
-            state.handed_over = state.handed_over | left_joints
+        state, validity, motion, joints = self.state, self.state.validity, self.motion, self.joints
+        motion.surge[:] = self._surges(system, t, t + h + self.limits.interval)
+        watched = Watched(self.blocks, motion, self.limits, joints, state.handed_over, validity)
+        outdated = self.examine(system, watched, state.since)
+        if self.examine is is_outdated:
+            self.examine = for_types_of(is_outdated, system, watched, state.since)
+        if outdated:
+            state.handed_over = state.handed_over | joints.left
             kept = self._searches_of(state.pair) == state.found
             intact = self.jointed[1][~state.handed_over[self.jointed[0]]]
             reach = REACH * (validity.ahead + fall_within(self.limits.interval) + NEAR * self.sizes)
@@ -178,7 +182,7 @@ class ContactSearch:
             may_touch = np.empty(len(found.gap), dtype=bool)
             set_validity(found, motion, self.sizes, validity, may_touch, self.limits.interval)
             may_touch &= found.share > 0
-            of_gone = np.append(left_joints[self.joints.pairs], ~kept)
+            of_gone = np.append(joints.left[joints.pairs], ~kept)
             if may_touch.any() or of_gone.any():
                 system = self._with_new_lines(system, books, motion.poses, found.only(may_touch), of_gone, h)
                 books = books.with_room(len(system.lines))
@@ -186,25 +190,17 @@ class ContactSearch:
         state.since = steps * h
         return system, books, steps
 
-    def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
-        """Add to the speeds of what is driven, a fixed block or one at a link, by how much they change until a time."""
-        moves = np.flatnonzero(self.blocks.support >= 0)
-        motion.about[moves] += surges(system.supports, t, until)[self.blocks.support[moves]]
+    def _surges(self, system: System, t: float, until: float) -> Array:
+        """By how much the velocity of what is driven, a fixed block or one at a link, changes until a time [m/s], shape
+        (blocks,)."""
+        found, moves = np.zeros(self.count), np.flatnonzero(self.blocks.support >= 0)
+        if len(moves):
+            found[moves] = surges(system.supports, t, until)[self.blocks.support[moves]]
         for table in system.links:
-            bodies, changes = table.surges(t, until)
-            np.add.at(motion.about, self.blocks.free[bodies], changes)
-
-    def _left_joints(self, system: System) -> tuple[Flags, Flags]:
-        """Which pairs of blocks have left their joints since the last update, shape (p,), and which blocks have left
-        one, shape (blocks,)."""
-        state, joints = self.state, self.joints
-        left_joints, left = np.zeros(len(state.handed_over), dtype=bool), np.zeros(self.count, dtype=bool)
-        if update_joints(system, joints):
-            left_joints = joints.leave() & ~state.handed_over
-            for law in system.laws:
-                left_joints[joints.pairs[: len(law.rows)][law.holding()]] = False
-            left[np.concatenate(np.divmod(self.law.jointed[left_joints], self.count))] = True
-        return left_joints, left
+            if len(table.rows):
+                bodies, changes = table.surges(t, until)
+                np.add.at(found, self.blocks.free[bodies], changes)
+        return found
 
     def _with_new_lines(
         self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float
