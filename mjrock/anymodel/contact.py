@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import warnings
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -15,7 +14,7 @@ from ..engine.solref import inertia_of
 from ..files import quoted
 from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
-from ..quantities import named, require_flag, require_text, short_repr
+from ..quantities import named, require_flag, require_text, short_repr, warn_of
 from .geoms import GeomPair, compiled_model, every_pair, geom_label, kept_apart
 from .notes import (
     ENOUGH,
@@ -153,7 +152,7 @@ class PairContact:
         Raises:
             ValueError: if one of the geoms has no name.
         """
-        return document([self])
+        return PairContacts((self,)).xml
 
     def apply(
         self,
@@ -191,7 +190,9 @@ class PairContact:
             ContactWarning: of other contacts that are stiffer or softer now, with k before and after. The elliptic cone
                 makes contacts with friction mu softer by 2 impratio / (mu^2 (1 + mu^2)), or stiffer for mu above 1.
         """
-        write([self], model, Writing(on_geoms, keep_others, iterations, name_geoms))
+        PairContacts((self,)).apply(
+            model, on_geoms=on_geoms, keep_others=keep_others, iterations=iterations, name_geoms=name_geoms
+        )
 
     def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
@@ -233,7 +234,7 @@ class PairContact:
     @property
     def options(self) -> dict[str, Attribute]:
         """The attributes of `<option>` that the contact needs, by name."""
-        return options_of([self])
+        return PairContacts((self,)).options
 
     @property
     def of_pair(self) -> Mixed:
@@ -318,6 +319,11 @@ class PairContacts:
         return len(self.contacts)
 
     @property
+    def has_friction(self) -> bool:
+        """Whether any of them has friction."""
+        return any(contact.condim > 1 for contact in self)
+
+    @property
     def impratio(self) -> float:
         """The impratio with which the friction of every contact holds [-]."""
         return max(contact.impratio for contact in self.contacts)
@@ -329,12 +335,14 @@ class PairContacts:
         Raises:
             ValueError: if a geom has no name.
         """
-        return document(self.contacts)
+        pairs = "".join(f"  {_element('pair', contact.attributes)}\n" for contact in self)
+        return f"{_element('option', self.options)}\n<contact>\n{pairs}</contact>\n"
 
     @property
     def options(self) -> dict[str, Attribute]:
         """The attributes of `<option>` that the contacts need together, by name; see `PairContact.attributes`."""
-        return options_of(self.contacts)
+        found: dict[str, Attribute] = {"timestep": self.contacts[0].timestep}
+        return found | ({"cone": "elliptic", "impratio": self.impratio} if self.has_friction else {})
 
     def apply(
         self,
@@ -346,7 +354,35 @@ class PairContacts:
         name_geoms: bool = False,
     ) -> None:
         """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
-        write(self.contacts, model, Writing(on_geoms, keep_others, iterations, name_geoms))
+        flags = {"on_geoms": on_geoms, "keep_others": keep_others, "iterations": iterations, "name_geoms": name_geoms}
+        for name, value in flags.items():
+            require_flag(name, value)
+        whole, contacts, h = compiled_model(model), self.contacts, self.contacts[0].timestep
+        if name_geoms and isinstance(model, mujoco.MjSpec):
+            contacts = tuple(contact.with_names(model, whole) for contact in contacts)
+            whole = compiled_model(model)
+        option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
+        switches = self.has_friction and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
+        others: list[tuple[GeomPair, ModelRow]] = []
+        if switches or on_geoms or option.timestep != h:
+            written = {frozenset(contact._pair_in(whole).geoms) for contact in contacts}
+            others = [(pair, ModelRow.of(pair)) for pair in every_pair(whole) if frozenset(pair.geoms) not in written]
+        for contact in contacts:
+            contact.put_into(model, whole, on_geoms)
+        for each in (option, whole.opt):
+            each.timestep = h
+            if self.has_friction:
+                each.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+                each.impratio = max(float(each.impratio), self.impratio)
+            for name in ("iterations", "ls_iterations") if iterations else ():
+                setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
+            if iterations:
+                each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
+        found = [Changed(pair, before, ModelRow.of(pair)) for pair, before in others]
+        changed = [each for each in found if not math.isclose(*each.stiffness, rel_tol=SAME)]
+        changed = [each for each in changed if not (keep_others and _keep(model, each))]
+        if changed:
+            warn_of(changes_said(changed), ContactWarning)
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
         """Reasons in a model for which the contacts differ from their numbers, equal sentences once with the geoms that
@@ -386,47 +422,6 @@ def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> mujoco.MjsPair:
     first, second = geoms.names
     listed = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {first, second})
     return next(listed, None) or spec.add_pair(geomname1=first, geomname2=second)
-
-
-class Writing(NamedTuple):
-    """How contacts are written; see `PairContact.apply`."""
-
-    on_geoms: bool
-    keep_others: bool
-    iterations: bool
-    name_geoms: bool
-
-
-def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, how: Writing) -> None:
-    """Write contacts of one time step into a model or a specification, and warn of others that this changes."""
-    whole = compiled_model(model)
-    on_geoms, keep_others, iterations, named = (require_flag(name, value) for name, value in how._asdict().items())
-    if named and isinstance(model, mujoco.MjSpec):
-        contacts = [contact.with_names(model, whole) for contact in contacts]
-        whole = compiled_model(model)
-    option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
-    rubs = any(contact.condim > 1 for contact in contacts)
-    switches = rubs and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
-    others: list[tuple[GeomPair, ModelRow]] = []
-    if switches or on_geoms or option.timestep != contacts[0].timestep:
-        written = {frozenset(contact._pair_in(whole).geoms) for contact in contacts}
-        others = [(pair, ModelRow.of(pair)) for pair in every_pair(whole) if frozenset(pair.geoms) not in written]
-    for contact in contacts:
-        contact.put_into(model, whole, on_geoms)
-    for each in (option, whole.opt):
-        each.timestep = contacts[0].timestep
-        if rubs:
-            each.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-            each.impratio = max([float(each.impratio), *(contact.impratio for contact in contacts)])
-        for name in ("iterations", "ls_iterations") if iterations else ():
-            setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
-        if iterations:
-            each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
-    found = [Changed(pair, before, ModelRow.of(pair)) for pair, before in others]
-    changed = [each for each in found if not math.isclose(*each.stiffness, rel_tol=SAME)]
-    changed = [each for each in changed if not (keep_others and _keep(model, each))]
-    if changed:
-        warnings.warn(changes_said(changed), ContactWarning, stacklevel=3)
 
 
 class Changed(NamedTuple):
@@ -489,20 +484,6 @@ def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
         return False
     numbers.write_spec(_spec_pair(model, geoms))
     return True
-
-
-def options_of(contacts: Sequence[PairContact]) -> dict[str, Attribute]:
-    """The attributes of `<option>` that contacts of one time step need together."""
-    found: dict[str, Attribute] = {"timestep": contacts[0].timestep}
-    if any(contact.condim > 1 for contact in contacts):
-        found |= {"cone": "elliptic", "impratio": max(contact.impratio for contact in contacts)}
-    return found
-
-
-def document(contacts: Sequence[PairContact]) -> str:
-    """The options that contacts of one time step need together, and their explicit pairs."""
-    pairs = "".join(f"  {_element('pair', contact.attributes)}\n" for contact in contacts)
-    return f"{_element('option', options_of(contacts))}\n<contact>\n{pairs}</contact>\n"
 
 
 def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:

@@ -135,7 +135,7 @@ def contact_for(
     made = _made(pose, [(pair, asked)])
     for _, sentence in _sentences(whole, made):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
-    return made[0]
+    return made.contacts[0]
 
 
 def contacts_for(
@@ -187,15 +187,16 @@ def contacts_for(
     made = _made(pose, [(GeomPair.named(whole, *geoms), asked) for geoms, asked, _ in meant.values()])
     for sentence in merged(_sentences(whole, made)):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
-    return PairContacts(made)
+    return made
 
 
-def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> tuple[PairContact, ...]:
+def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> PairContacts:
     """The requested contacts in a pose, with the iterations that they need and remarks on what lands with each."""
     found = [contact_of(pair, pose, each) for pair, each in asked]
     made = {frozenset(contact.ids): contact for contact, _ in found}
-    needs = solver_need(pose, list(made.values()))
-    return tuple(replace(beside(contact, neighbours, made), needs=needs) for contact, neighbours in found)
+    needs = solver_need(pose, PairContacts(tuple(made.values())))
+    whole = (replace(beside(contact, neighbours, made), needs=needs) for contact, neighbours in found)
+    return PairContacts(tuple(whole))
 
 
 def _sentences(model: mujoco.MjModel, contacts: Iterable[PairContact]) -> Iterator[tuple[PairContact, str]]:
@@ -449,7 +450,7 @@ def _row(
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
 
 
-def solver_need(pose: Pose, contacts: Sequence[PairContact]) -> SolverNeed:
+def solver_need(pose: Pose, contacts: PairContacts) -> SolverNeed:
     """What contacts need of the solver of their model, by a trial in a pose.
 
     Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
@@ -460,7 +461,7 @@ def solver_need(pose: Pose, contacts: Sequence[PairContact]) -> SolverNeed:
     most, enough = _stepped(tried, pose, cap, searches)
     if most < cap:
         return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), searches)
-    full = float(tried.opt.impratio) if any(contact.condim > 1 for contact in contacts) else 1.0
+    full = float(tried.opt.impratio) if contacts.has_friction else 1.0
     for power in range(math.ceil(math.log10(full)) - 1, -1, -1):
         tried.opt.impratio, (tried.opt.iterations, tried.opt.ls_iterations) = 10.0**power, own
         most, _ = _stepped(tried, pose, cap, searches)
@@ -491,14 +492,14 @@ def _stepped(tried: mujoco.MjModel, pose: Pose, cap: int, searches: int) -> tupl
     return most, enough
 
 
-def _with(pose: Pose, contacts: Sequence[PairContact]) -> mujoco.MjModel:
+def _with(pose: Pose, contacts: PairContacts) -> mujoco.MjModel:
     """A copy of the model with contacts on its pairs and geoms, which act at the distance at which they are."""
     tried = copy.copy(pose.model)
     option = tried.opt
-    option.timestep = contacts[0].timestep
-    if any(contact.condim > 1 for contact in contacts):
+    option.timestep = contacts.contacts[0].timestep
+    if contacts.has_friction:
         option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-        option.impratio = max(float(option.impratio), *(contact.impratio for contact in contacts), 1.0)
+        option.impratio = max(float(option.impratio), contacts.impratio, 1.0)
     for contact in contacts:
         pair = GeomPair(tried, contact.ids)
         contact.write_numbers(tried, pair)

@@ -288,13 +288,6 @@ class Slider:
             return np.full(len(elongation), self.place)
         return np.asarray(elongation - self.way * self.law.strength / self.law.k)
 
-    def move_to(self, elongation: float) -> None:
-        """Let it slip to an elongation [m]."""
-        stretch = self.law.strength / self.law.k
-        place = min(max(self.place, elongation - stretch), elongation + stretch)
-        self.path += abs(place - self.place)
-        self.place = place
-
     def settle(self, elongation: float, rate: float, fired: bool) -> None:
         """Let it stick or slip in the next arc.
 
@@ -302,8 +295,10 @@ class Slider:
             elongation, rate: of the link now [m, m/s].
             fired: whether the last arc ended because `change` fell through zero.
         """
-        before = self.way
-        self.move_to(elongation)
+        before, stretch = self.way, self.law.strength / self.law.k
+        place = min(max(self.place, elongation - stretch), elongation + stretch)
+        self.path += abs(place - self.place)
+        self.place = place
         pull = self.law.k * (elongation - self.place)
         if before:
             slips = not fired and before * rate >= 0
