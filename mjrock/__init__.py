@@ -5,7 +5,7 @@ compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compli
 `solve_explicit` by explicit steps, for many blocks. `solve_analytical` is classical rocking theory, and `compare` sets
 two answers side by side.
 
-A name is imported when it is first asked for: who wants `contact_for` alone waits for MuJoCo and NumPy only.
+A name is imported when it is first used: `contact_for` alone imports MuJoCo and NumPy only.
 """
 
 import contextlib
@@ -21,12 +21,10 @@ from .interrupts import interrupts_held_back
 
 if TYPE_CHECKING:
     from . import plotting as plotting
-    from .anymodel.contact import PairContact
+    from .anymodel.contact import PairContact, PairContacts
     from .anymodel.coulomb import CoulombFriction
-    from .anymodel.flexes import FlexContact, inspect_flexes
-    from .anymodel.inspect import InspectedContact, inspect_contacts
-    from .anymodel.make import contact_for
-    from .anymodel.many import PairContacts, contacts_for
+    from .anymodel.inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
+    from .anymodel.make import contact_for, contacts_for
     from .anymodel.notes import ContactWarning
     from .distinct.explicit import solve_explicit
     from .engine.model import SimulationError
@@ -142,7 +140,7 @@ HOME = {
 
 
 def _require_mujoco(version: str) -> None:
-    """Raise an ImportError that says what to install, if MuJoCo is older than this package takes."""
+    """Raise an ImportError that names what to install, if MuJoCo is older than this package needs."""
     if int(version.split(".")[0]) < 4:
         raise ImportError(f"mjrock needs MuJoCo 4.0 or newer, and {version} is installed: pip install 'mujoco>=4.0'")
 
@@ -155,7 +153,7 @@ else:
 
 
 def __getattr__(name: str) -> object:
-    """A public name, or `mjrock.plotting`, imported when it is first asked for. Ctrl-C is heard when it is there."""
+    """A public name, or `mjrock.plotting`, imported when it is first used. Ctrl-C is delayed until then."""
     if name != "plotting" and name not in HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     with interrupts_held_back():

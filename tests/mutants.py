@@ -42,10 +42,7 @@ OTHERS = (
     "distinct/search/constants.py",
 )
 """Modules of the method without compiled functions."""
-TOOLS = (
-    *("contact", "make", "geoms", "inspect", "felt", "holding", "row_of_model"),
-    *("meeting", "others"),
-)
+TOOLS = ("contact", "make", "geoms", "inspect", "effective_mass", "row_of_model", "meeting", "notes")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
