@@ -153,7 +153,8 @@ def test_a_point_of_the_ground_lies_in_the_shade_where_a_block_is_between_it_and
     view = View(np.array([*solids.across, solids.eye]), np.zeros(3), (300, 300), 0.02)
     colours, found = view.picture(surfaces, sun, ground, 1), {True: 0, False: 0}
     points = np.insert(np.random.default_rng(0).uniform(-2, 2, (300, 2)), 2, 0.0, axis=1)
-    near = np.array([nearest(solids, points + [0.05 * (i - 1), 0.05 * (j - 1), 0.0], sun) for i, j in np.ndindex(3, 3)]) >= 0
+    beside = 0.05 * np.array([(i - 1, j - 1, 0) for i, j in np.ndindex(3, 3)])
+    near = np.array([nearest(solids, points + way, sun) for way in beside]) >= 0
     alike = (nearest(solids, points, solids.eye) < 0) & (near == near[0]).all(axis=0)
     for column, row, shaded in zip(*pixels_at(view, points[alike]), near[0, alike].tolist(), strict=True):
         there = colours[row, column, :3]
