@@ -13,11 +13,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..plotting.bodies import Bodies
-from ..plotting.sketch import elevation, section
 from ..plotting.style import OWN, Look, legend_below, several
+from ..plotting.wall import elevation, section
 from ..problem.wall.case import Case
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array
+from ..result.bodies import Moving
 from ..result.response import Response
 from ..study.loading.code_check import MechanismCheck
 from .texts import Words
@@ -83,7 +84,7 @@ def wall_drawn(case: Case, words: Words) -> Figure:
     loaded = any(force[0] == 0 for _, force in constant_forces_of(case.effects).values())
     left.set_ylim(-0.13 * 2 * case.block.h, left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h)
     elevation(right, case, left.get_ylim())
-    opened = Bodies.at_poses(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None])
+    opened = Bodies.of_moving(Moving(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None]))
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
     look: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
     left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **look)

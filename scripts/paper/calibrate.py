@@ -16,8 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from mjrock import Restitution, Store, plotting
-from mjrock.problem.damping.forms import PowerLaw
-from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI
+from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI, PowerLaw
 from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching.calibration import (
     Calibration,

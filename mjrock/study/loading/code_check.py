@@ -17,10 +17,9 @@ import numpy as np
 
 from ...files import aligned
 from ...notebook import html_of
-from ...problem.ground.code_spectrum import SpectrumOfCode
 from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST_PERIOD
-from ...problem.ground.spectrum import response_spectrum
+from ...problem.ground.spectrum import SpectrumOfCode, response_spectrum
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
 from ...problem.wall.bending import HorizontalBending, VerticalBending
 from ...problem.wall.block import Block

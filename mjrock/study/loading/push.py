@@ -23,8 +23,8 @@ from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effect import Effect
 from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown, warn_of
+from ...result.problem import required_start
 from ...result.response import End, Response, State
-from ...result.start import required_start
 from .limit_analysis import horizontal
 from .pushover import falls_to_zero
 

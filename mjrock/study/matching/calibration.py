@@ -2,7 +2,7 @@
 
 For each combination of wall, stiffness and release, and for each restitution that is asked for, a `Match` finds the
 damping ratio: first two-sided for the base, then one-sided for the side with the damping of the base presumed. The
-matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.forms`, see `regress`.
+matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.law`, see `regress`.
 """
 
 from __future__ import annotations
@@ -16,8 +16,18 @@ from typing import Annotated, Unpack
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
-from ...problem.damping.forms import BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
-from ...problem.damping.law import HIGHEST_XI, LEAST_XI, REACH_MARGIN, DampingLaw
+from ...problem.damping.law import (
+    HIGHEST_XI,
+    LEAST_XI,
+    REACH_MARGIN,
+    BedLaw,
+    CornerLaw,
+    DampingLaw,
+    Form,
+    Groups,
+    PowerLaw,
+    SideLaw,
+)
 from ...problem.damping.restitution import Restitution
 from ...quantities import (
     Array,

@@ -14,8 +14,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from ...engine.simulation import simulate
 from ...problem.damping.contacts import Contacts
-from ...problem.damping.forms import Groups
-from ...problem.damping.law import DENSITY, HIGHEST_XI, LEAST_XI
+from ...problem.damping.law import DENSITY, HIGHEST_XI, LEAST_XI, Groups
 from ...problem.damping.restitution import Restitution
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case

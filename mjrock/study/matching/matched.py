@@ -15,8 +15,7 @@ import numpy as np
 
 from ...bars import Bar
 from ...engine.simulation import simulate
-from ...problem.damping.contacts import Contacts, OfBase, OfSide, Rubbing
-from ...problem.damping.interface import PointCount, reference_frequency
+from ...problem.damping.contacts import Contacts, OfBase, OfSide, PointCount, Rubbing, reference_frequency
 from ...problem.damping.restitution import Restitution
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.laws.joint_table import ByName
