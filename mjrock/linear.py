@@ -46,8 +46,10 @@ def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     rows, _, nv = values.shape
     columns = nv * bodies[:, :, None] + np.arange(nv)
     there = np.broadcast_to(bodies[:, :, None] >= 0, values.shape)
-    row = np.broadcast_to(np.arange(rows)[:, None, None], values.shape)
-    return csr_array((values[there], (row[there], columns[there])), shape=(rows, unknowns))
+    begins = np.append(0, np.cumsum(nv * (bodies >= 0).sum(axis=1)))
+    matrix = csr_array((values[there], columns[there], begins), shape=(rows, unknowns))
+    matrix.sum_duplicates()
+    return matrix
 
 
 def rates_of(pair: Integers, arms: tuple[Array, Array], way: Array, bodies: int) -> csr_array:
@@ -81,9 +83,15 @@ def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
     return csr_array(sums)
 
 
+def times(factors: Array, rows: csr_array) -> csr_array:
+    """The rows of a matrix, each times its factor: what a diagonal matrix gives that multiplies it, in less time."""
+    values = np.repeat(factors, np.diff(rows.indptr)) * rows.data
+    return csr_array((values, rows.indices, rows.indptr), shape=rows.shape)
+
+
 def sprung(rates: csr_array, springs: Array) -> csr_array:
     """Stiffness of springs [N/m] whose rates are these."""
-    return csr_array(rates.T @ diags_array(springs) @ rates)
+    return csr_array(times(springs, rates).T @ rates)
 
 
 class _Balance:

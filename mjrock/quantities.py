@@ -7,7 +7,7 @@ import math
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields
 from functools import cache, wraps
 from numbers import Real as RealNumber
@@ -246,6 +246,13 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         needed = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
+
+
+def require_one_of(name: str, value: object, known: Collection[str]) -> str:
+    """Return `value`, one of the names that are known; a ValueError lists them for any other value."""
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} = {spelt(value)} is not one of {', '.join(known)}")
+    return value
 
 
 def takes(value: object, count: int) -> bool:

@@ -12,8 +12,7 @@ import numpy as np
 
 from ..engine.solref import inertia_of
 from ..files import quoted
-from ..problem.damping.falling import rebound_at
-from ..problem.damping.rebound import rebound_restitution
+from ..problem.damping.rebound import rebound_at, rebound_restitution
 from ..quantities import named, require_flag, require_text, short_repr, warn_of
 from .geoms import GeomPair, compiled_model, every_pair, geom_label, kept_apart
 from .notes import (

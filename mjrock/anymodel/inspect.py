@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
-from ..problem.damping.falling import rebound_at
-from ..problem.damping.rebound import rebound_restitution
+from ..problem.damping.rebound import rebound_at, rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within, short_repr
 from .geoms import GeomPair, compiled_model, every_pair, geom_label
 from .meeting import Keyframe, PairMeeting, Pose, meeting_of_geoms

@@ -22,8 +22,7 @@ import numpy as np
 
 from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_values, row
 from ..method import METHOD
-from ..problem.damping.falling import MOST_PULL, falling_damping
-from ..problem.damping.rebound import rebound_damping
+from ..problem.damping.rebound import MOST_PULL, falling_damping, rebound_damping
 from ..quantities import Array, Within, keep_declared, named, require_within, shown, spelt
 from .contact import PairContact, PairContacts, merged, soft_spoilers, spoilers, weight_spoilers
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..problem.damping.falling import rebound_at
-from ..problem.damping.rebound import rebound_restitution
+from ..problem.damping.rebound import rebound_at, rebound_restitution
 from ..quantities import Array, named
 from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, effective_mass
 from .geoms import GeomPair

@@ -11,7 +11,7 @@ from scipy.optimize import brentq, fsolve
 
 from ..problem.damping.contacts import Contacts
 from ..problem.wall.case import Case
-from ..problem.wall.effect import Anchored, LinkLaw
+from ..problem.wall.effect import Anchored, LinkLaw, resistance
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import GRAVITY, Array, Real
 
@@ -176,7 +176,7 @@ class Wall:
         above = z - px * sine + pz * (cosine - 1)
         length = math.hypot(across, above)
         rate_across, rate_above = vx + omega * (pz * cosine - px * sine), vz - omega * (px * cosine + pz * sine)
-        force = -damper.law.c * (across * rate_across + above * rate_above) / length
+        force = -resistance(damper.law, (across * rate_across + above * rate_above) / length)
         return px, pz, force * across / length, force * above / length
 
     def base_forces(self, y: Array) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from ..problem.damping.restitution import AnyRestitution, Restitution, Scattered
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still
-from ..problem.wall.ties_on_wall import broken_energy, tie_energy
+from ..problem.wall.restoring_moment import broken_energy, tie_energy
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, Stopwatch, describe
 from ..result.motion import intervals, required_spacing
@@ -122,11 +122,6 @@ class RigidMotion:
     def theta(self) -> Array:
         """Rotation of the one body [rad], shape (n, 1)."""
         return self.rotation[:, None]
-
-    @property
-    def omega(self) -> Array:
-        """Angular velocity of the one body [rad/s], shape (n, 1)."""
-        return self.rate[:, None]
 
     @cached_property
     def pose(self) -> Array:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..compiled import compiled, inlined
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import pulled, yielded
+from ..problem.wall.restoring_moment import pulled, yielded
 from ..quantities import ON_ITS_FACE, Array, Integers
 from ..result.motion import interpolated
 from .law import (

@@ -19,7 +19,7 @@ import numpy as np
 from ..compiled import inlined
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import TiePull, pulled
+from ..problem.wall.restoring_moment import TiePull, pulled
 from ..quantities import GRAVITY, Array, Integers
 
 SMALL = 0.05

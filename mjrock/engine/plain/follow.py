@@ -18,8 +18,7 @@ from ...bars import Bar
 from ...geometry.frames import PLANE
 from ...problem.masonry.histories import Support
 from ...quantities import GRAVITY, Array, Integers
-from ...scene.course import Course
-from ...scene.ground import mean_acceleration
+from ...scene.course import Course, mean_acceleration
 from ...scene.scene import Scene
 from ..model import require_well
 from .pairs import Pairs
@@ -226,7 +225,7 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
             if pose is not None:
                 elastic = by_pair(engine, met, 0.5 * met.k * np.minimum(met.gap, 0.0) ** 2)
                 forces = (np.empty(0), np.empty(0)) if joints is None else joints.gathered(engine, met)
-                pulled = engine.scene.links.damped.c * data.ten_velocity[engine.dampers]
+                pulled = engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers]
                 velocity = mean[engine.driven :].reshape(-1, nv).copy()
                 found = [] if deepest is None else [deepest]
                 work = total.plus(done, 0.5)
@@ -254,7 +253,7 @@ def work_of_step(engine: PlainEngine, met: Met, mean: Array, shaken: Array) -> W
     powers = rates * data.efc_force
     pressed = by_pair(engine, met, h * powers[met.row])
     rubbed = h * float(powers.sum()) - float(pressed.sum())
-    damped = h * engine.scene.links.damped.c * data.ten_velocity[engine.dampers] ** 2
+    damped = h * engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers] ** 2
     return Work(np.asarray(ground), pressed, np.asarray(rubbed), damped)
 
 

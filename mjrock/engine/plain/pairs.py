@@ -14,10 +14,10 @@ from itertools import combinations, product
 import numpy as np
 
 from ...method import METHOD
-from ...problem.masonry.laws.pairs import Meets
+from ...problem.masonry.laws.dry import Meets
 from ...problem.wall.standing import in_space
 from ...quantities import Array, Integers
-from ...scene.checks import GROUND
+from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from ..solref import body_weight, pair_values, row
 from .pieces import Piece

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..._version import __version__
 from ...geometry.frames import PLANE
 from ...quantities import GRAVITY
-from ...scene.checks import GROUND
+from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from ..mjcf import SPARSE_FROM, Keyframe, camera_of, extent_of, forced, linked
 from ..shapes import BALL, HINGE, in_space, inertia_of_body, section, sites, tag, tints
