@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...files import write_text
+from ...geometry.frames import PLANE, SPACE, Freedom
 from ...notebook import Drawn
 from ...quantities import (
     Array,
@@ -33,10 +34,9 @@ from ...quantities import (
     warn_of,
 )
 from ..damping.contacts import AnyLaw, required_law
-from ..wall.bending import VerticalBending
+from ..wall.bending import HorizontalBending, VerticalBending
 from ..wall.block import Block
 from ..wall.effects import SideStop
-from ..wall.horizontal_bending import HorizontalBending
 from ..wall.section import Opening
 from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .blocks.joints import Joint, OverlapError, joints_in_plane, names_of
@@ -88,22 +88,24 @@ from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
 from .files.meshes import obj_text, read_obj, read_ply, read_stl
 from .laws.bond import Bond
-from .laws.dry import Dry, Properties
+from .laws.dry import AnyPairs, Dry, Meets, Properties, asked_pair, required_pairs
 from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
     ByKind,
     ByWord,
     Halved,
+    JointOptions,
     JointTable,
     OfBond,
     OfCount,
     OfJoint,
     OrElse,
+    OtherOptions,
+    keywords_checked,
+    one_by_one,
     properties_of,
 )
-from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
-from .laws.pairs import AnyPairs, Meets, asked_pair, required_pairs
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
@@ -247,6 +249,11 @@ class Masonry(Drawn):
     def in_space(self) -> bool:
         """Whether the blocks are bodies in space."""
         return self.blocks[0].in_space
+
+    @property
+    def freedom(self) -> Freedom:
+        """How the blocks may move: in the plane or in space."""
+        return SPACE if self.in_space else PLANE
 
     @cached_property
     def polygons(self) -> tuple[FlatBlock, ...]:
