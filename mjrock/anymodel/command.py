@@ -15,10 +15,9 @@ import mujoco
 from ..engine.replay import load
 from ..files import aligned, csv_text, write_text
 from ..quantities import named, require_within
-from .flexes import flex_report
 from .geoms import BODY, GeomPair, geom_label, names_of_objects
-from .inspect import InspectedContact, inspect_contacts
-from .notes import VARIES
+from .inspect import InspectedContact, inspect_contacts, inspect_flexes
+from .notes import VARIES, model_spoilers
 
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
@@ -99,7 +98,7 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
 def values(contact: InspectedContact, speed: float) -> list[str]:
     """The numbers of a contact as text, in the order of HEADER."""
     mass = "inf" if contact.mass == math.inf else f"{contact.mass:.4g}"
-    none = math.isnan(contact.xi)
+    losses = contact.xi, contact.restitution, contact.restitution_at(speed)
     return [
         contact.geom1,
         contact.geom2,
@@ -111,10 +110,17 @@ def values(contact: InspectedContact, speed: float) -> list[str]:
         f"{contact.inertia:.4g}",
         f"{contact.impedance:.4g}",
         str(contact.points),
-        "-" if none else f"{contact.xi:.3f}",
-        "-" if none else f"{contact.restitution:.3f}",
-        "-" if none else f"{contact.restitution_at(speed):.3f}",
+        *("-" if math.isnan(contact.xi) else f"{value:.3f}" for value in losses),
     ]
+
+
+def flex_report(model: mujoco.MjModel) -> str:
+    """A line for each flex and geom that can meet, and what the options of the model do; empty without any."""
+    found = [str(contact) for contact in inspect_flexes(model)]
+    if not found:
+        return ""
+    said = [f"For all of them: {sentence}." for sentence in model_spoilers(model)]
+    return "\n".join(["", "Contacts of flexes, at zero penetration:", *found, *said])
 
 
 def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:

@@ -13,9 +13,8 @@ from ..quantities import require_flag
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.ledger import StepError
-from ..result.problem import Problem, problem_of
+from ..result.problem import Problem, problem_of, require_in_text, required_start
 from ..result.response import End, Response, State
-from ..result.start import require_in_text, required_start
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny

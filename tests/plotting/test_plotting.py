@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import Picture
+from mjrock.plotting.style import Picture
 
 
 @pytest.fixture(scope="module")
@@ -175,7 +175,7 @@ HARD = {
 
 @pytest.mark.parametrize("name", HARD)
 def test_pictures_of_much_are_readable(name, responses, tmp_path):
-    assert plotting.save(HARD[name](responses), tmp_path / "a.png").exists()
+    assert plotting.save(HARD[name](responses), tmp_path / "a.rgba").exists()
 
 
 SEEN_WITHOUT = {

@@ -18,10 +18,9 @@ from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, Gathered, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
 from ...result.motion import SampledMotion
-from ...result.problem import Problem
+from ...result.problem import Problem, require_in_text
 from ...result.reading import BesidePoses
 from ...result.response import End, Response, State
-from ...result.start import require_in_text
 from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
 from ...scene.course import Course
 from ...scene.potential import energies
@@ -36,8 +35,8 @@ from .pieces import Piece, pieces_of
 from .text import plain_text
 
 RESOLVED, RESOLVED_OF_MANY = 0.1, 0.5
-"""omega h of the step that is taken where none is asked for, omega the highest frequency of the closed contacts, of one
-body and of several [-] (`scripts/studies/plain_models.py`, `scripts/studies/plain_masonry.py`)."""
+"""omega h of the step that is taken by default, omega the highest frequency of the closed contacts, of one body and of
+several [-] (`scripts/studies/plain_models.py`, `scripts/studies/plain_masonry.py`)."""
 OPEN = 0.01
 """Energy without an account that is warned of, over the largest part of the ledger [-]."""
 DOUBTED = 0.01
@@ -51,7 +50,7 @@ class PlainModel:
     """A case as a plain model.
 
     Args:
-        problem, scene, course: what was asked, what stands, and what happens to it.
+        problem, scene, course: the problem, what stands, and what happens to it.
     """
 
     problem: Problem
@@ -213,7 +212,7 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
 
 
 def plain_timestep(scene: Scene, spacing: float) -> float:
-    """The step that a plain model takes where none is asked for, a whole share of the spacing of the samples [s]."""
+    """The default step of a plain model, a whole share of the spacing of the samples [s]."""
     resolved = RESOLVED if len(scene.bodies.names) == 1 else RESOLVED_OF_MANY
     return spacing / math.ceil(spacing * scene.highest_frequency / resolved)
 

@@ -84,7 +84,7 @@ from .drawing import (
     touches_told,
     with_sizes,
 )
-from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
+from .files.bodies import Given, Mesh, Scale, about, blocks_of, meshes_of, names_of_list
 from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
 from .files.meshes import obj_text, read_obj, read_ply, read_stl
@@ -1105,16 +1105,18 @@ class Masonry(Drawn):
             UserWarning: if the drawing is damaged and was repaired while it was read, or holds splines, hatches or
                 other areas, which are left out.
         """
-        given = Given(fixed, ground, scale, unit, up, convex).checked()
-        drawing = read_dxf(require_path("path", path), None if layers is None else names_of_list("layers", layers))
-        try:
-            blocks = polygons_of(drawing, given, density, length)
-            if given.ground:
-                blocks.insert(0, ground_below_all(blocks))
-            masonry = cls(blocks, **options)._touching()
-        except ValueError as error:
-            drawn = {outline.name: outline.corners for outline in drawing.outlines}
-            raise ValueError(f"path = {path}: {with_sizes(error, drawn, given.matrix(drawing.unit or 1.0))}") from None
+        given, path = Given(fixed, ground, scale, unit, up, convex).checked(), require_path("path", path)
+        asked = None if layers is None else names_of_list("layers", layers)
+        with about(f"path = {path}"):
+            drawing = read_dxf(path, asked)
+            try:
+                blocks = polygons_of(drawing, given, density, length)
+                if given.ground:
+                    blocks.insert(0, ground_below_all(blocks))
+                masonry = cls(blocks, **options)._touching()
+            except ValueError as error:
+                drawn = {outline.name: outline.corners for outline in drawing.outlines}
+                raise with_sizes(error, drawn, given.matrix(drawing.unit or 1.0)) from None
         if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
             warn_of(f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another")
         return masonry
@@ -1146,11 +1148,8 @@ class Masonry(Drawn):
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
         given, path = given.checked(), require_path("path", path)
-        meshes = read(path)
-        try:
-            return cls._of_meshes(meshes, density, given, options)
-        except ValueError as error:
-            raise ValueError(f"path = {path}: {error}") from None
+        with about(f"path = {path}"):
+            return cls._of_meshes(read(path), density, given, options)
 
     @classmethod
     def _of_meshes(cls, meshes: Sequence[Mesh], density: float, given: Given, options: JointOptions) -> Self:
