@@ -51,3 +51,9 @@ def test_what_cannot_be_is_named():
         mr.Masonry.wallette(*SIZE, 0.2, leaves=0)
     with pytest.raises(ValueError, match="halves with leaves = 2 and headers = 0: units of several leaves are whole"):
         mr.Masonry.wallette(*SIZE, 0.2, leaves=2, halves=MORTAR, k_s=1e10)
+
+
+@pytest.mark.parametrize(("options", "named"), [({"leaves": 2}, "leaves = 2"), ({"headers": 1}, "headers = 1")])
+def test_more_blocks_than_there_may_be_are_refused_by_what_makes_them(options, named):
+    with pytest.raises(ValueError, match=rf"{named}.* make a wall of \d+ blocks; the valid range ends at 5000"):
+        mr.Masonry.wallette(323.0, 1.0, (0.5, 0.25), 0.25, **options)

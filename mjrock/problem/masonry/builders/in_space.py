@@ -340,4 +340,7 @@ def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: in
             size = back - front, b - a, high - low
             centre = -0.5 * (front + back), 0.5 * (a + b) - middle, 0.5 * (low + high)
             boxes.append(Polyhedron.box(size, centre, block.density, block.fixed, part))
+    if len(boxes) > MOST_BODIES:
+        made = f"leaves = {leaves} and headers = {headers} make a wall of {len(boxes)} blocks"
+        raise ValueError(f"{made}; the valid range ends at {MOST_BODIES}")
     return boxes
