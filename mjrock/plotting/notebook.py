@@ -1,4 +1,4 @@
-"""What notebooks show: figures, without a word of magic, and the picture of each type of problem and answer."""
+"""Pictures that a notebook shows of each type of problem and answer, without a call."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Fragility: lambda fit, said: fragility(fit),
     Sensitivity: lambda found, said: tornado(found),
 }
-"""What draws each type, from it and the text that it prints as; None stands for no picture."""
+"""The function that draws each type, from it and the text that it prints as. It returns None for no picture."""
 
 
 def png_of(shown: object) -> bytes | None:

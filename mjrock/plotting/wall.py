@@ -235,7 +235,7 @@ def section(ax: Axes, case: Case, stop: str = "stop") -> None:
 
 
 def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, float]) -> None:
-    """What each effect is, in a column whose left end and lower and upper end are given [inch], with a line to it."""
+    """Write notes on effects, each with a line to it, in a column whose left, lower and upper ends are given [inch]."""
     figure = figure_of(ax)
     inch = figure.dpi_scale_trans.inverted()
     halves = [0.5 * LINE * (2 + text.count("\n")) for _, text in notes]
@@ -253,7 +253,7 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
 
 
 def _effects(case: Case, *, arguments: bool) -> list[Note]:
-    """Where each effect acts in the section, and what it is."""
+    """The place of each effect in the section, and a note on it."""
     face, said, made = -case.block.b, dict[Effect, str](), []
     _, breaking = case.limits_of_ties(np.linspace(0.0, case.overturning_rotation, POINTS))
     for name, effect in case.named.items():

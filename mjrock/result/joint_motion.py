@@ -253,7 +253,7 @@ class JointPoints(NamedTuple):
 
 
 class Looked(NamedTuple):
-    """What joints do at some steps: the gap at the widest point and at the nearest [m], shape (steps, joints), and how
+    """Joints at some steps: the gap at the widest point and at the nearest [m], shape (steps, joints), and how
     far the block above has slid at the nearest [m], shape (steps, joints, d)."""
 
     opened: Array
@@ -262,7 +262,7 @@ class Looked(NamedTuple):
 
 
 def _looked(scene: Scene, points: JointPoints, pose: Array, shift: Array) -> Looked:
-    """What joints do at poses, shape (steps, n nq), with supports that are displaced [m], (steps, supports, d)."""
+    """The joints at poses, shape (steps, n nq), with supports that are displaced [m], (steps, supports, d)."""
     size = len(pose), len(scene.contacts.joints)
     seen = Looked(np.empty(size), np.empty(size), np.empty((*size, scene.freedom.translations)))
     pose, shift = np.ascontiguousarray(pose), np.ascontiguousarray(shift)
@@ -289,7 +289,7 @@ def _met(places: Places, i: int, frames: Array, shift: Array, support: int) -> M
 
 @compiled
 def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames: Array, seen: Looked) -> None:
-    """Write what joints do, see `_looked`; `frames` is room for those of a pose."""
+    """Write gaps and slips of joints, see `_looked`; `frames` is room for those of a pose."""
     opened, nearest, slid = seen
     for n in range(len(pose)):
         take_frames(pose[n], frames, places.axes)
@@ -322,7 +322,7 @@ def past_support(
 
     Args:
         standing: the masonry at rest.
-        motion: what the joints did.
+        motion: of the joints.
         slips: from the numbers of some steps, how far the block above each joint has slid on the one below [m], shape
             (steps, joints, d).
     """
