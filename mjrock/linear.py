@@ -8,8 +8,6 @@ Motions are held by rows `grip` of rates that are zero. They may depend on one a
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy  # which imports its parts when they are named
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array
@@ -48,8 +46,10 @@ def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     rows, _, nv = values.shape
     columns = nv * bodies[:, :, None] + np.arange(nv)
     there = np.broadcast_to(bodies[:, :, None] >= 0, values.shape)
-    row = np.broadcast_to(np.arange(rows)[:, None, None], values.shape)
-    return csr_array((values[there], (row[there], columns[there])), shape=(rows, unknowns))
+    begins = np.append(0, np.cumsum(nv * (bodies >= 0).sum(axis=1)))
+    matrix = csr_array((values[there], columns[there], begins), shape=(rows, unknowns))
+    matrix.sum_duplicates()
+    return matrix
 
 
 def rates_of(pair: Integers, arms: tuple[Array, Array], way: Array, bodies: int) -> csr_array:
@@ -83,9 +83,15 @@ def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
     return csr_array(sums)
 
 
+def times(factors: Array, rows: csr_array) -> csr_array:
+    """The rows of a matrix, each times its factor: what a diagonal matrix gives that multiplies it, in less time."""
+    values = np.repeat(factors, np.diff(rows.indptr)) * rows.data
+    return csr_array((values, rows.indices, rows.indptr), shape=rows.shape)
+
+
 def sprung(rates: csr_array, springs: Array) -> csr_array:
     """Stiffness of springs [N/m] whose rates are these."""
-    return csr_array(rates.T @ diags_array(springs) @ rates)
+    return csr_array(times(springs, rates).T @ rates)
 
 
 class _Balance:
@@ -117,7 +123,7 @@ class _Balance:
         return motion, holding
 
 
-def _factors(matrix: csc_array) -> Any:
+def _factors(matrix: csc_array) -> scipy.sparse.linalg.SuperLU:
     """Factors of a symmetric matrix with the pivots on its diagonal."""
     return scipy.sparse.linalg.splu(
         matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}

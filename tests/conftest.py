@@ -25,8 +25,9 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """What is collected stays to the end: no search for garbage goes through it, then or later."""
+    """What is collected stays to the end: no search for garbage goes through it, then or later. Searches are few."""
     gc.disable()
+    gc.set_threshold(20_000)
     try:
         return (yield)
     finally:

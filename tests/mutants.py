@@ -42,10 +42,7 @@ OTHERS = (
     "distinct/search/constants.py",
 )
 """Modules of the method without compiled functions."""
-TOOLS = (
-    *("contact", "make", "geoms", "inspect", "felt", "holding", "row_of_model"),
-    *("meeting", "others"),
-)
+TOOLS = ("contact", "make", "geoms", "inspect", "effective_mass", "row_of_model", "meeting", "notes")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
@@ -112,8 +109,8 @@ OWN = {
     "problem/masonry/builders/vaults.py": ("vaults",),
     "problem/wall/section.py": ("section",),
     "problem/wall/tie.py": ("tie_of_bar",),
-    "problem/wall/ties_on_wall.py": ("effects", "pushover"),
-    "study/matching/masonry.py": ("matched_masonry",),
+    "problem/wall/restoring_moment.py": ("effects", "pushover"),
+    "study/matching/matched.py": ("matched", "matched_masonry"),
     "study/loading/pushover.py": ("pushover",),
     "theory/arcs.py": ("arcs", "free", "analytical", "effects"),
     "theory/impact.py": ("impact",),
@@ -361,12 +358,6 @@ EQUIVALENT = {
             "outdated = (moved and valid_for <= SEARCHED_TOGETHER * interval) or speed * valid_for > kept",
             "validity.valid_for[block] = valid_for if valid_for > SEARCHED_TOGETHER * interval else interval",
         )
-    },
-    **{
-        f"validity.py: flags, speeds = np.zeros(({flags}, count), dtype=bool), np.zeros(({speeds}, count))": (
-            "the first two rows of each are used"
-        )
-        for flags, speeds in ((4, 2), (2, 4))
     },
     "validity.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
     "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",

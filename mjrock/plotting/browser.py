@@ -15,7 +15,7 @@ from string import Template
 import numpy as np
 
 from ..files import write_text
-from ..geometry.creases import creases_of
+from ..geometry.parts import creases_of
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.wall.standing import Solid, in_space

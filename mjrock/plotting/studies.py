@@ -12,10 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from ..problem.ground.code_spectrum import SpectrumOfCode
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
-from ..problem.ground.spectrum import response_spectrum
+from ..problem.ground.spectrum import SpectrumOfCode, response_spectrum
 from ..quantities import GRAVITY, named, require_kind, require_row, require_text
 from ..study.intensity.fragility import Fragility
 from ..study.loading.push import Push

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
+from ..problem.wall.effect import beyond_text
 from ..quantities import Array, require_array, require_kind, require_within, shown
 from ..scene.course import Course
 from ..scene.masonry import masonry_course, masonry_scene
@@ -156,11 +156,11 @@ def required_start(start: object, case: AnyCase) -> State:
     return pose, velocity
 
 
-def require_unbreakable(case: AnyCase) -> None:
-    """Raise ValueError for a tie that breaks, which the text of a model, and so a fixed step, cannot describe."""
+def require_in_text(case: AnyCase) -> None:
+    """Raise ValueError for a link whose law the text of a model, and so a fixed step, cannot describe."""
     for name, link in case.links.items():
-        if link.law.ultimate < math.inf:
+        if number := beyond_text(link.law):
             raise ValueError(
-                f"a fixed step is the text of a model, in which no tie breaks, and {name} has ultimate = "
-                f"{link.law.ultimate:g} m; leave timestep out, so that steps fit the motion, or leave ultimate out"
+                f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "
+                f"{number}; leave timestep out, so that steps fit the motion"
             )

@@ -44,7 +44,7 @@ def plastic_of(scene: Scene, *columns: Array) -> dict[str, Plastic]:
     each.
     """
     links = scene.links.sprung
-    rows = zip(links.names, *columns, scene.ties.reach - links.reach, strict=True)
+    rows = zip(links.names, *columns, scene.ties.reach - links.law["reach"], strict=True)
     return {name: Plastic(*map(float, values)) for name, *values in rows}
 
 

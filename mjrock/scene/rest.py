@@ -17,7 +17,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, vstack
 
 from ..geometry.kinematics import Places, gaps
 from ..geometry.poses import moved, turned
-from ..linear import lowest_mode, sprung
+from ..linear import lowest_mode, sprung, times
 from ..problem.masonry.laws.joint_law import Law, shear_limit
 from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential, Structure
@@ -231,10 +231,12 @@ def sliders_at(contacts: Places, search: Search, push: Array, slipped: Array) ->
     rubs = bonded | ((push >= 0) & (contacts.friction > 0))
     most = contacts.cohesion + shear_limit(Law(friction=contacts.friction), np.maximum(push, 0.0))
     limit = np.where(rubs, most if search.limited else np.inf, -np.inf)
-    joint = np.arange(m) if search.limited else contacts.joint
-    points = csr_array((rubs.astype(float), (joint, np.arange(m))))
-    means = diags_array(1 / np.maximum(points.sum(axis=1), 1.0)) @ points
-    return Sliders(search.shear * contacts.k, limit, slipped, csr_array(points.T @ means))
+    if search.limited:
+        shares = csr_array((np.ones(rubs.sum()), np.flatnonzero(rubs), np.append(0, np.cumsum(rubs))), shape=(m, m))
+    else:
+        points = csr_array((rubs.astype(float), (contacts.joint, np.arange(m))))
+        shares = csr_array(points.T @ times(1 / np.maximum(points.sum(axis=1), 1.0), points))
+    return Sliders(search.shear * contacts.k, limit, slipped, shares)
 
 
 def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
@@ -269,12 +271,13 @@ def grips_at(potential: Potential, pose: Array, sliders: Sliders) -> Grips:
 
 def shear_stiffness(grips: Grips, share: float) -> csr_array:
     """Stiffness of the points along their faces, shape (n nv, n nv). Along its slip a point has a share of it."""
+    rates, springs = list(grips.rates), [grips.stiffness for _ in grips.rates]
     slips = grips.slips & (grips.stiffness > 0)
-    ways = (grips.drag[slips] / np.linalg.norm(grips.drag[slips], axis=1)[:, None]).T
-    along = sum(diags_array(way) @ rates[slips] for way, rates in zip(ways, grips.rates, strict=True))
-    less = (share - 1) * grips.stiffness[slips]
-    springs = np.concatenate([*(grips.stiffness for _ in grips.rates), less])
-    return csr_array(sprung(csr_array(vstack([*grips.rates, along])), springs))
+    if slips.any():
+        ways = (grips.drag[slips] / np.linalg.norm(grips.drag[slips], axis=1)[:, None]).T
+        rates.append(sum(times(way, rate[slips]) for way, rate in zip(ways, grips.rates, strict=True)))
+        springs.append((share - 1) * grips.stiffness[slips])
+    return sprung(csr_array(vstack(rates)), np.concatenate(springs))
 
 
 def falling_way(potential: Potential, grips: Grips, pose: Array) -> Array | None:

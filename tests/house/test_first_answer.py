@@ -48,7 +48,7 @@ print(answer.theta[-1].hex())
 @pytest.fixture
 def fresh(tmp_path):
     """A copy of the package that has stored nothing."""
-    shutil.copytree(PACKAGE, tmp_path / "mjrock", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(PACKAGE, tmp_path / "mjrock", ignore=shutil.ignore_patterns("*.nb[ci]*"))
     return tmp_path
 
 

@@ -199,7 +199,7 @@ def test_a_picture_is_the_one_that_was_looked_at(name):
 
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_is_readable(name, tmp_path):
-    assert plotting.save(PICTURES[name](), tmp_path / "a.png").exists()
+    assert plotting.save(PICTURES[name](), tmp_path / "a.rgba").exists()  # pixels as they are: nothing is packed
 
 
 @pytest.mark.parametrize("missing", ["elevation", "outlines", "surroundings"])

@@ -175,7 +175,7 @@ HARD = {
 
 @pytest.mark.parametrize("name", HARD)
 def test_pictures_of_much_are_readable(name, responses, tmp_path):
-    assert plotting.save(HARD[name](responses), tmp_path / "a.png").exists()
+    assert plotting.save(HARD[name](responses), tmp_path / "a.rgba").exists()
 
 
 SEEN_WITHOUT = {

@@ -93,20 +93,25 @@ def test_the_nearer_of_two_blocks_hides_the_other(azimuth, first):
     assert solids.facets.block[numbers[row, column]] == first
 
 
-def nearest(solids, point, way):
-    """Number of the block that a line through a point [m] along a unit vector leaves last, -1 of none."""
-    met = [(1e-6, -1)]
+def nearest(solids, points, way):
+    """Numbers of the blocks that lines through points [m], shape (n, 3), along a unit vector leave last, -1 of none."""
+    last, block = np.full(len(points), 1e-6), np.full(len(points), -1)
     poses = dict(zip(solids.masonry.free, solids.moving.pose[0], strict=True))
     for number, rest in zip(solids.shown.tolist(), solids.case.centroids[solids.shown], strict=True):
         turn = rotations(poses[number][None])[0]
-        start, along = turn.T @ (point - rest - poses[number][:3]) + rest, turn.T @ way
+        starts, along = (points - rest - poses[number][:3]) @ turn + rest, turn.T @ way
         for body in solids.masonry.polyhedra[number].parts:
-            ends = [-np.inf, np.inf]
+            enters, leaves = np.full(len(points), -np.inf), np.full(len(points), np.inf)
             for side in body.sides:
-                speed, off = side.normal @ along, side.normal @ (side.corners[0] - start)
-                ends = [max(ends[0], off / speed), ends[1]] if speed < 0 else [ends[0], min(ends[1], off / speed)]
-            met += [(ends[1], number)] if ends[0] < ends[1] else []
-    return max(met)[1]
+                speed = side.normal @ along
+                after = (side.corners[0] - starts) @ side.normal / speed
+                if speed < 0:
+                    enters = np.maximum(enters, after)
+                else:
+                    leaves = np.minimum(leaves, after)
+            later = (enters < leaves) & (leaves > last)
+            last[later], block[later] = leaves[later], number
+    return block
 
 
 def heap(seed):
@@ -134,11 +139,9 @@ def test_a_pixel_shows_what_its_line_of_sight_meets_first(seed):
     solids = heap(seed)
     view, numbers = shown(solids)
     block = np.append(solids.facets.block, -1)[np.maximum(numbers, -1)]
-    rng, wrong = np.random.default_rng(seed), 0
-    for row, column in rng.integers(0, 240, (300, 2)).tolist():
-        point = view.middle + view.pixel * ((column - 119.5) * view.axes[0] + (row - 119.5) * view.axes[1])
-        wrong += block[row, column] != nearest(solids, point - 50 * solids.eye, solids.eye)
-    assert wrong == 0
+    row, column = np.random.default_rng(seed).integers(0, 240, (300, 2)).T
+    points = view.middle + view.pixel * (np.column_stack([column, row]) - 119.5) @ view.axes[:2]
+    np.testing.assert_array_equal(block[row, column], nearest(solids, points - 50 * solids.eye, solids.eye))
     assert len(np.unique(block)) > 15
 
 
@@ -148,17 +151,15 @@ def test_a_point_of_the_ground_lies_in_the_shade_where_a_block_is_between_it_and
     surfaces, sun, ground = solids.stage(0)
     view = View(np.array([*solids.across, solids.eye]), np.zeros(3), (300, 300), 0.02)
     colours, found = view.picture(surfaces, sun, ground, 1), {True: 0, False: 0}
-    for x, y in np.random.default_rng(0).uniform(-2, 2, (300, 2)).tolist():
-        column, row = (int(at[0]) for at in pixels_at(view, [[x, y, 0.0]]))
-        near = [
-            nearest(solids, np.array([x + 0.05 * i, y + 0.05 * j, 0.0]), sun) for i in (-1, 0, 1) for j in (-1, 0, 1)
-        ]
-        if nearest(solids, np.array([x, y, 0.0]), solids.eye) < 0 and len({one < 0 for one in near}) == 1:
-            shaded = near[0] >= 0
-            there = colours[row, column, :3]
-            if np.abs(there - INK).max() > 0.1 and colours[row, column, 3] > 0.0:
-                np.testing.assert_allclose(there, np.multiply(FLOOR, SHADED if shaded else 1.0), atol=1e-6)
-                found[shaded] += 1
+    points = np.insert(np.random.default_rng(0).uniform(-2, 2, (300, 2)), 2, 0.0, axis=1)
+    beside = 0.05 * np.array([(i - 1, j - 1, 0) for i, j in np.ndindex(3, 3)])
+    near = np.array([nearest(solids, points + way, sun) for way in beside]) >= 0
+    alike = (nearest(solids, points, solids.eye) < 0) & (near == near[0]).all(axis=0)
+    for column, row, shaded in zip(*pixels_at(view, points[alike]), near[0, alike].tolist(), strict=True):
+        there = colours[row, column, :3]
+        if np.abs(there - INK).max() > 0.1 and colours[row, column, 3] > 0.0:
+            np.testing.assert_allclose(there, np.multiply(FLOOR, SHADED if shaded else 1.0), atol=1e-6)
+            found[shaded] += 1
     assert min(found.values()) > 15
 
 

@@ -23,6 +23,12 @@ def turned():
     return mr.push(panel(0.9, k_n=1e10), JACK, 0.2)
 
 
+@pytest.fixture
+def few_pieces(monkeypatch):
+    """Pushes are made in fewer pieces than those of a user. Their points lie on the same curve."""
+    monkeypatch.setattr("mjrock.study.loading.push.PIECES", 40)
+
+
 def rigid(moved):
     """Force at the left top corner of the rigid panel over its weight, from how far the corner has moved [m]."""
     theta = np.linspace(0.0, np.arctan(B / H), 2000)
@@ -50,7 +56,7 @@ def test_a_push_is_drawn(turned):
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("displacement [mm]", "force [kN]")
 
 
-def test_local_damping_does_not_shift_it(turned):
+def test_local_damping_does_not_shift_it(turned, few_pieces):
     damped = mr.push(panel(0.9, k_n=1e10, k_s=1e10), JACK, 0.08, local_damping=0.7)
     at = np.linspace(0.01, 0.075, 10)
     found = [np.interp(at, each.displacement, each.force) for each in (damped, turned)]
@@ -67,8 +73,8 @@ def test_a_blow_is_no_strength(turned):
 
 def test_what_blows_bear_is_nothing_to_compare_inertia_with():
     """Five pieces in a row that are blows end a push; their own forces do not hide that they are."""
-    masonry, still = panel(0.9), np.zeros(4)
-    load = Forced(masonry, (), {}, None, mr.Actuator(None, None, 1, None, 1e6), 0.1)
+    case, still = mr.MasonryCase(panel(0.9), 1.0), np.zeros(4)
+    load = Forced(case, None, 0.0, 0.0, mr.Actuator(None, None, 1, None, 1e6), 0.1)
     blow = Piece(still + 0.01, still + 2.0, still + 1.0, still, SimpleNamespace(t=[1.0], end=None), 0.0, 0.0, 0.0)
     load.accept(blow._replace(force=still + 0.3, inertia=still))
     for _ in range(BLOWS):
@@ -284,7 +290,7 @@ def test_a_panel_of_blocks_bears_no_more_than_limit_analysis_and_its_hinges():
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
 
 
-def test_it_stops_where_the_force_has_fallen():
+def test_it_stops_where_the_force_has_fallen(few_pieces):
     push = mr.push(panel(0.9, k_n=1e10), JACK, 0.4, falls_to=0.7)
     assert push.ended == "fell to 70% of its peak"
     assert push.force[-1] == pytest.approx(0.7 * push.peak, rel=0.05)

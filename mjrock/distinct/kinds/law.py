@@ -101,6 +101,8 @@ class JointLaw:
     def release(self, lines: Rows, which: Flags) -> None:
         """Give dry lines back what the law has taken over, where they are handed over."""
         which = which & (self.rows["k"] > 0)
+        if not which.any():
+            return
         for name in ("k", "c", "friction", "margin", "grip", "dragged"):
             lines[name][which] = self.rows[name][which]
         for name in ("k", "grip", "dragged", "push"):

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...compiled import for_types_of
-from ...problem.masonry.laws.joint_law import Law, stored_along
 from ...problem.wall.standing import Standing
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
@@ -51,11 +50,10 @@ from .validity import (
     Motion,
     Validity,
     Watched,
-    energy_and_power,
+    account,
     fall_within,
     is_outdated,
     longest_interval,
-    power_of_last,
     set_validity,
 )
 
@@ -214,8 +212,7 @@ class ContactSearch:
             of_gone: lines of joints that are handed over, and found ones whose blocks have moved, shape (lines,).
             h: length of a step [s].
         """
-        state, count = self.state, len(self.joints.pairs)
-        lines, sheared = np.asarray(system.lines), in_shear(system)
+        state, count, lines = self.state, len(self.joints.pairs), np.asarray(system.lines)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         left_joints, kept = of_gone[:count], ~of_gone[count:]
         for law in system.laws:
@@ -225,8 +222,7 @@ class ContactSearch:
         slack, size = np.append(np.zeros(count), state.slack), len(number)
         gone = Lines.unwritten(chosen(lines, which), slack[which])
         new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
-        before, gave = energy_and_power(system, which, gone.depth)
-        last = power_of_last(system, which)
+        before = account(system, which, gone.depth)
         share = np.append(np.ones(count), state.share)[which]
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])
@@ -251,16 +247,14 @@ class ContactSearch:
             np.minimum.at(state.least_share, block, share[pressing])
         lines = joined(joints, chosen(others, kept), np.asarray(new.rows))
         system = system._replace(lines=lines).with_ways()
-        given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
-        books.totals[0].friction -= given
-        of_new, half = np.arange(len(lines) - size, len(lines)), 0.5 * h if state.since > 0 else 0.0
-        after, gives = energy_and_power(system, of_new, new.depth)
-        late = half * (gives - gave)  # forces change half a step before the pose
-        books.totals[0].encounter_ends += before + given - after - late
-        new_last = power_of_last(system, of_new)
-        books.totals[0].ground += half * (last.carried - new_last.carried)
-        books.totals[0].friction += half * (last.rubbed - new_last.rubbed)
-        books.dashpots[self.group] += half * (last.damped - new_last.damped)
+        after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        given = min(before.sheared - after.sheared, 0.0)  # what shear springs lose friction takes, and it gives nothing
+        half = 0.5 * h if state.since > 0 else 0.0  # forces change half a step before the pose
+        late = half * (after.power - before.power)
+        books.totals[0].encounter_ends += before.energy + given - after.energy - late
+        books.totals[0].ground += half * (before.carried - after.carried)
+        books.totals[0].friction += half * (before.rubbed - after.rubbed) - given
+        books.dashpots[self.group] += half * (before.damped - after.damped)
         return system
 
     def _searches_of(self, pair: Integers) -> Integers:
@@ -273,15 +267,6 @@ class ContactSearch:
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         return shares_within(sides, law, system.bodies, h / OF_STABLE_STEP)
-
-
-def in_shear(system: System) -> float:
-    """Energy in the shear springs of all lines and of the laws of their joints [J]."""
-    energy = 0.0
-    for table in (system.lines, *(law.rows for law in system.laws)):
-        sprung = np.asarray(table)[np.isfinite(table["k_s"])]
-        energy += float(np.sum(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0))))
-    return energy
 
 
 def _rolled(standing: Standing) -> Array:

@@ -10,11 +10,11 @@ import numpy as np
 
 from ...compiled import compiled_at_once, inlined
 from ...geometry.vectors import dot, plus, put, read, scaled, vector
-from ...problem.masonry.laws.joint_law import normal_force, stored
+from ...problem.masonry.laws.joint_law import normal_force, stored, stored_along
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ..contacts.contact import meeting, over_face, relative, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried
-from ..kinds.lists import is_held
+from ..kinds.lists import is_held, stored_by_laws
 from ..system import System, Tables
 from ..turning import in_world, rotation_change, take_inverse_inertia, take_turn
 from .constants import LONGEST_INTERVAL, NEAR, REACH, SEARCHED_TOGETHER, SHORTEST_INTERVAL, VALID_APPROACH
@@ -95,15 +95,22 @@ class Limits(NamedTuple):
     interval: float
 
 
-class LastPower(NamedTuple):
-    """Power of the forces that lines had in the last step, which the next step books for its half before the pose [W].
+class Account(NamedTuple):
+    """Energy in the springs of lines [J], and the power of their forces [W].
 
     Args:
-        carried: with which they move supports.
+        energy: in the springs along normals of some of the lines.
+        sheared: in the shear springs of all lines and of the laws of their joints.
+        power: at which the springs along normals give energy away.
+        carried: with which the forces of the last step move supports. The next step books this and the two below for
+            its half before the pose.
         rubbed: that friction takes.
         damped: that the dashpots along normals take.
     """
 
+    energy: float
+    sheared: float
+    power: float
     carried: float
     rubbed: float
     damped: float
@@ -342,11 +349,15 @@ def mark_left(laws: Tables, joints: JointState, handed_over: Flags, left: Flags)
             left[joints.blocks[pair, 0]] = left[joints.blocks[pair, 1]] = True
 
 
+def account(system: System, which: Integers, depth: Array) -> Account:
+    """The account of some of the lines, with the normals that they have now, and write how deep each presses [m]."""
+    return Account(*sums(system, which, depth))
+
+
 @compiled_at_once
-def energy_and_power(system: System, which: Integers, depth: Array) -> tuple[float, float]:
-    """Energy in the springs along the normal of some of the lines [J] and the power at which they give it away [W], and
-    write how deep each presses [m]."""
-    energy = power = 0.0
+def sums(system: System, which: Integers, depth: Array) -> tuple[float, ...]:
+    """The numbers of an `account`."""
+    energy = power = moved = rubbed = damped = 0.0
     for i in range(len(which)):
         line = system.lines[which[i]]
         meet = meeting(system, line)
@@ -355,18 +366,15 @@ def energy_and_power(system: System, which: Integers, depth: Array) -> tuple[flo
         if meet.gap < 0:
             rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
             power += normal_force(line, meet.gap, 0.0) * rate
-    return energy, power
-
-
-@compiled_at_once
-def power_of_last(system: System, which: Integers) -> LastPower:
-    """The power of the forces that some of the lines had in the last step, along the normals that they have now."""
-    moved = rubbed = damped = 0.0
-    for i in range(len(which)):
-        line = system.lines[which[i]]
-        meet = where_friction_rubs(meeting(system, line))
+        meet = where_friction_rubs(meet)
         velocity, drag = relative(system.bodies, line, system.supports, meet), read(line.dragged)
         moved += carried(line, system.supports, plus(scaled(line.push, meet.normal), as_vector(meet.normal, drag)))
         rubbed -= dot(drag, along_face(meet.normal, velocity))
         damped -= line.pressed * dot(meet.normal, velocity)
-    return LastPower(moved, rubbed, damped)
+    sheared = stored_by_laws(system.laws)[1]
+    for p in range(len(system.lines)):
+        line = system.lines[p]
+        if line.k_s < math.inf:
+            grip = read(line.grip)
+            sheared += stored_along(line, dot(grip, grip))
+    return energy, sheared, power, moved, rubbed, damped

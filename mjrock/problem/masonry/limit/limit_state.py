@@ -20,7 +20,9 @@ there are many. The masonry moves in each of them, so that the least lambda is l
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -70,7 +72,8 @@ class State(NamedTuple):
     p: Array
 
 
-class Programme(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Programme:
     """The matrices of the states of masonry.
 
     Args:
@@ -126,13 +129,13 @@ class Programme(NamedTuple):
         numbers = len(sizes), count
         return cls(matrix, grip, down, pushed, edges[:, leader], leader, *numbers, method(masonry))
 
-    def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> Any:
+    def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> scipy.optimize.OptimizeResult:
         """The forces and the multiplier that cost least, the multiplier at `price`, with no force where `none_at`."""
         upper = np.full(len(cost) + 1, np.inf)
         if none_at is not None:
             upper[:-1][none_at] = 0.0
-        columns, bounds = hstack([self.matrix, self.grown[:, None]]), np.column_stack([np.zeros_like(upper), upper])
-        prices = np.append(cost, price)
+        columns = hstack([self.matrix, csc_array(self.grown[:, None])])
+        bounds, prices = np.column_stack([np.zeros_like(upper), upper]), np.append(cost, price)
         return scipy.optimize.linprog(
             prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT
         )
@@ -143,19 +146,24 @@ class Programme(NamedTuple):
         Joints that are not among `only_at` stay as they are.
         """
         rows, count = self.matrix.shape
-        columns = block_array([[eye_array(count), (self.grip - self.matrix).T], [None, csr_array(self.grown[None])]])
         low, high = np.append(np.zeros(count), np.full(rows, -np.inf)), np.full(count + rows, np.inf)
         if only_at is not None:
             high[:count][~only_at] = 0.0
         bounds, right = np.column_stack([low, high]), np.append(np.zeros(count), 1.0)
         prices = np.append(cost, np.zeros(rows))
         answer = scipy.optimize.linprog(
-            prices, A_eq=columns, b_eq=right, bounds=bounds, method=self.method, options=EXACT
+            prices, A_eq=self._moving, b_eq=right, bounds=bounds, method=self.method, options=EXACT
         )
         if answer.status != 0:
             return None
         z = np.where(answer.x[:count] > STILL * answer.x[:count].max(), answer.x[:count], 0.0)
         return z, answer.x[count:]
+
+    @cached_property
+    def _moving(self) -> csc_array:
+        """The equations of z and p in a mechanism."""
+        opening = eye_array(self.matrix.shape[1]), (self.grip - self.matrix).T
+        return csc_array(block_array([[*opening], [None, csr_array(self.grown[None])]]))
 
     def holds(self, state: State) -> bool:
         """Whether forces balance, nothing that opens or slides goes the wrong way, and they share no power."""
@@ -209,7 +217,8 @@ def _starts(programme: Programme, nothing: Array) -> Iterator[Array]:
     yield last
     share = SLOPE
     for turn in range(TURNS):
-        moved = programme._replace(
+        moved = replace(
+            programme,
             matrix=programme.matrix - (1 - share) * programme.grip,
             weight=programme.weight + (1 - share) * (programme.grip @ last),
         )
