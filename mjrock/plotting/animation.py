@@ -133,7 +133,7 @@ class Stage:
             taken.append(np.asarray(self.drawn()))
         self.palette = Image.fromarray(np.concatenate(taken)).quantize(COLOURS)
         colours = np.array(self.palette.getpalette() or [255] * 3).reshape(-1, 3)
-        colours[colours.min(axis=1) > 248] = 255  # paper is white
+        colours[colours.min(axis=1) > 248] = 255  # nearly white becomes white
         self.palette.putpalette(colours.ravel().tolist())
 
     def picture(self) -> Image.Image:
@@ -336,7 +336,7 @@ def _film(
 
 
 def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
-    """What writes a file of this ending, and how long it shows a frame [s]."""
+    """The writer for a file of this ending, and how long a frame is shown [s]."""
     match path.suffix.lower():
         case ".gif":
             interval = max(2, round(HUNDREDTHS / fps)) / HUNDREDTHS

@@ -199,18 +199,11 @@ class Bodies:
         """The same bodies at other times, their poses interpolated linearly."""
         return replace(self, moving=self.moving.between(times))
 
-    def placed(self, frame: int, body: int, points: Array) -> Array:
-        """Where points of a body are drawn at a frame [m], shape (n, 2).
-
-        The points are given about the centroid of the body at rest [m], shape (n, 2). Their displacement is drawn times
-        `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
-        """
-        return np.asarray(self.moving.placed_at(frame, self._numbers[[body]], points[None])[0])
-
     def corners(self, frame: int) -> Array:
         """Where the corners of all bodies are drawn at a frame [m], shape (bodies, corners, 2).
 
-        A body with fewer corners than another repeats its last one.
+        A body with fewer corners than another repeats its last one. The displacement of a point is drawn times
+        `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
         return self.moving.placed_at(frame, self._numbers, self._padded)
 

@@ -32,8 +32,8 @@ Json = dict[str, object]
 FINE, COARSE = 2.0**-20, 2.0**-13
 """Steps in which places are kept over the extent of the blocks [-], and of rotations; the same for forces."""
 ON_LEVEL, SUNK = 1e-3, 0.05
-"""How far a fixed block may reach above the lowest corner and be ground, and how far blocks may sink below its top and
-the ground still goes on, over the extent of the blocks [-]."""
+"""Largest height of ground above the lowest corner, and largest depth of blocks below its top with which the ground is
+drawn beyond its edge, over the extent of the blocks [-]."""
 AROUND = 0.6
 """How far around the blocks at rest the camera looks at those that move, over their extent [-]."""
 BEYOND = 1.3
@@ -93,7 +93,7 @@ def packed(rows: Array, step: float) -> Json:
 
 
 class Page:
-    """What a page shows: a response at some of its samples."""
+    """The content of a page: a response at some of its samples."""
 
     def __init__(self, response: Response, samples: Integers) -> None:
         self.response, self.case, self.samples = response, response.case, samples
@@ -239,7 +239,7 @@ class Page:
         }
 
     def _track(self) -> Iterator[Json]:
-        """What the ground does: its accelerations, the displacements of supports, and the tilt of a table."""
+        """Lines of the accelerations of the ground, the displacements of supports, and the tilt of a table."""
         t = np.linspace(self.t[0], self.t[-1], POINTS)
         for name, motion in self.case.grounds.items():
             yield _line(f"acceleration of the ground {GROUNDS[name]}", "m/s²", motion(t))

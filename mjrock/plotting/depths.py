@@ -102,7 +102,7 @@ class View(NamedTuple):
         return np.array([self.middle - 0.5 * self.size[0] * ways[0] - 0.5 * self.size[1] * ways[1], *ways])
 
     def drawn(self, surfaces: Surfaces) -> tuple[Array, Integers]:
-        """How far before the middle what each pixel shows lies [pixel], and which surface it is, (height, width)."""
+        """Distance of the surface that each pixel shows before the middle [pixel], and its number, (height, width)."""
         depth, shown = np.full(self.size[::-1], -np.inf), np.full(self.size[::-1], EMPTY)
         _draw(self.seen(surfaces.corners), surfaces.normals @ self.axes[2] > ASIDE, depth, shown)
         return depth, shown

@@ -25,15 +25,15 @@ MOST = 6
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
     """Rotation in multiples of alpha against time.
 
-    A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. The picture
-    says from when on that is; the message of the response says until when it was followed. Responses have the lines of
+    A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. A note gives
+    the time from which that is so; the end of its run is in the message of the response. Responses have the lines of
     their solvers, or with `labels` colours of their own. A dotted line is the rotation that overturns a wall whose
     effects move it from alpha, unless it is far beyond the motion.
     """
     fallen = [overturned_at(response) for response in responses]
+    shares = [response.theta / response.of_wall[0].wall.alpha for response in responses]
     reached, styles = [0.0], styles_of(responses, labels)
-    for response, end, style in zip(responses, fallen, styles, strict=True):
-        share = response.theta / response.of_wall[0].wall.alpha
+    for response, share, end, style in zip(responses, shares, fallen, styles, strict=True):
         ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
@@ -45,14 +45,10 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
             reached.append(limit)
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
-    said = [
-        f"{short(name)}: beyond return from t = {t:.3g} s"
-        for name, t in zip(names, fallen, strict=True)
-        if t is not None
-    ]
-    if said:
+    ends = [(short(name), t) for name, t in zip(names, fallen, strict=True) if t is not None]
+    if said := [f"{name}: beyond return from t = {t:.3g} s" for name, t in ends]:
         top = max(1.2, 1.05 * max(reached))
-        inwards = min(float(response.theta.min() / response.of_wall[0].wall.alpha) for response in responses)
+        inwards = min(float(share.min()) for share in shares)
         ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
         note = ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)

@@ -1,4 +1,4 @@
-"""What notebooks show: figures, without a word of magic, and the picture of each type of problem and answer."""
+"""Pictures that a notebook shows of each type of problem and answer, without a call."""
 
 from __future__ import annotations
 
@@ -27,31 +27,29 @@ MOST_BLOCKS = 3000
 """Blocks up to which masonry is drawn unasked, which takes some seconds."""
 PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Case: sketch,
-    MasonryCase: lambda case, said: _masonry(case.masonry, said),
-    Masonry: lambda masonry, said: _masonry(masonry, said),
-    Collapse: lambda found, said: None if found.forces is None else _titled(mechanism(found), said),
+    MasonryCase: lambda case, said: _masonry(case.masonry),
+    Masonry: lambda masonry, said: _masonry(masonry),
+    Collapse: lambda found, said: None if found.forces is None else mechanism(found),
     Response: history,
     Comparison: lambda pair, said: history([pair.reference, pair.candidate], said),
-    Push: lambda curve, said: _titled(push({"": curve}), said),
-    PushoverCurve: lambda curve, said: _titled(pushover({"": curve}), said),
-    Fragility: lambda fit, said: _titled(fragility(fit), said),
-    Sensitivity: lambda found, said: _titled(tornado(found), said),
+    Push: lambda curve, said: push({"": curve}),
+    PushoverCurve: lambda curve, said: pushover({"": curve}),
+    Fragility: lambda fit, said: fragility(fit),
+    Sensitivity: lambda found, said: tornado(found),
 }
-"""The picture of each type below its text; None stands for no picture."""
+"""The function that draws each type, from it and the text that it prints as. It returns None for no picture."""
 
 
 def png_of(shown: object) -> bytes | None:
     """The picture of a problem or an answer as a PNG, below the line that it prints as; None where it has none."""
-    draw = next(draw for kind, draw in PICTURES.items() if isinstance(shown, kind))
-    drawn = draw(shown, repr(shown).strip("<>"))
-    figure = figure_of(drawn) if isinstance(drawn, Axes) else drawn
-    return None if figure is None else png(figure)
+    draw, said = next(draw for kind, draw in PICTURES.items() if isinstance(shown, kind)), repr(shown).strip("<>")
+    drawn = draw(shown, said)
+    if not isinstance(drawn, Axes):
+        return None if drawn is None else png(drawn)
+    figure = figure_of(drawn)
+    drawn.set_title(wrapped(said, figure.get_figwidth() - 0.6, 9), fontsize=9)
+    return png(figure)
 
 
-def _titled(ax: Axes, said: str) -> Axes:
-    ax.set_title(wrapped(said, figure_of(ax).get_figwidth() - 0.6, 9), fontsize=9)
-    return ax
-
-
-def _masonry(masonry: Masonry, said: str) -> Axes | None:
-    return _titled(blocks(masonry), said) if len(masonry.blocks) <= MOST_BLOCKS else None
+def _masonry(masonry: Masonry) -> Axes | None:
+    return blocks(masonry) if len(masonry.blocks) <= MOST_BLOCKS else None

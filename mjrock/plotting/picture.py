@@ -64,7 +64,7 @@ def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
 
 
 def anything(name: str, value: object) -> None:
-    """What is checked elsewhere."""
+    """An argument that is checked elsewhere."""
 
 
 def mapping(check: Check, least: int = 1) -> Check:
@@ -147,7 +147,7 @@ class OnAxes(Protocol[P]):
 
 
 class Checked(Protocol):
-    """What `picture` makes of a function that draws."""
+    """The decorator that `picture` returns."""
 
     @overload
     def __call__(self, draw: Callable[Concatenate[Axes, P], Axes], /) -> OnAxes[P]: ...

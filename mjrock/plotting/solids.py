@@ -30,7 +30,7 @@ from .style import figure_of
 AROUND, FARTHEST = 0.6, 3.0
 """How far the ground is drawn beyond all corners, and the farthest corners that count for it, over the extent [-]."""
 SUNK = 0.05
-"""How far blocks may lie below the ground and it is still drawn, over the extent [-]."""
+"""Largest depth of blocks below the ground with which it is still drawn, over the extent [-]."""
 PLANE_ROUNDING = 1e-6
 """Part of normals and of the extent to which two faces lie in one plane [-]."""
 SUN = np.array([-0.75, 0.55, 1.0])
@@ -99,7 +99,7 @@ class Solids:
 
     @property
     def case(self) -> MasonryCase:
-        """What is drawn."""
+        """The case that is drawn."""
         return cast(MasonryCase, self.moving.case)
 
     @property
@@ -152,7 +152,7 @@ class Solids:
         return self.moving.placed_at(frame, self.facets.block, self.facets.corners)
 
     def stage(self, frame: int) -> tuple[Surfaces, Array, Ground | None]:
-        """What is seen at a frame, a unit vector to the sun, which stands to the left of the camera, and the ground."""
+        """The surfaces at a frame, a unit vector to the sun, which stands to the left of the camera, and the ground."""
         (right, _), azimuth = self.across, np.radians(np.asarray(self.camera)[1])
         sun = SUN @ np.array([right, (np.cos(azimuth), np.sin(azimuth), 0.0), (0.0, 0.0, 1.0)])
         corners, block, plane = self._staged
@@ -203,9 +203,9 @@ class Solids:
 
     @cached_property
     def seen(self) -> Array:
-        """Where what the picture has to hold begins and ends, to the right and upwards in it [m], shape (2, 2).
+        """The lowest and the highest coordinates, to the right and upwards, that the picture holds [m], shape (2, 2).
 
-        It is that of the blocks as far as `extent` goes, and with given limits that of their box.
+        They are those of the blocks as far as `extent` goes, and with given limits those of their box.
         """
         low, high = self.extent()
         box = np.stack(np.meshgrid(*np.transpose([low, high]), indexing="ij"), axis=-1).reshape(-1, 3)
@@ -263,7 +263,7 @@ class Rendered(Artist):
         return np.rint(255 * colours).astype(np.uint8)
 
     def view(self, times: float = 1.0, fine: int = 1) -> View:
-        """What the box shows, of so many pixels for each of its own, each as so many, along either side."""
+        """The view in the box, of `times` pixels for each of the box along either side, each drawn as `fine` ones."""
         space, bodies = in_three(self.ax), self.bodies
         ends = np.mean([getattr(space, f"get_{name}lim")() for name in "xyz"], axis=1)
         x, y, _ = proj_transform(*np.transpose([ends, ends + bodies.across[0]]), space.get_proj())

@@ -204,7 +204,7 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
 
 
 def _unreadable(figure: Figure) -> Iterator[str]:
-    """What a page cannot show well of a figure that is drawn and has all its texts, see `save`."""
+    """The parts of a figure that a page cannot show well, as sentences, see `save`. The figure is drawn already."""
     if (width := figure.get_figwidth()) > WIDEST + 1e-6:
         yield f"the figure is {width:.3g} in wide; at most {WIDEST:g} in are shown in full size"
     for text in figure.findobj(Text):
@@ -233,7 +233,7 @@ def _words(figure: Figure) -> list[Text]:
 
 
 def _foreign_colours(artist: Artist) -> Iterator[str]:
-    """What has one of Matplotlib's own colours, or the name of a solver and not its colour."""
+    """Artists with one of Matplotlib's own colours, or with the name of a solver and not its colour, as sentences."""
     label, of = str(artist.get_label()), {str(style["label"]): style["color"] for style in STYLES.values()}
     solver = next((name for name in of if label == name or label.startswith((f"{name},", f"{name}:"))), None)
     for colour in _colours(artist):

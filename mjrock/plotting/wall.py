@@ -15,7 +15,7 @@ from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored, Effect, Point
 from ..problem.wall.effects import constant_forces_of
-from ..quantities import Array, require_flag, require_text
+from ..quantities import require_flag, require_text
 from ..result.bodies import Moving
 from .bodies import FORCE, GROUND_COLOUR, STONE, Bodies, Update, anchored, outlines, still, together
 from .picture import anything, picture
@@ -58,39 +58,34 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     toes = (1.0,) if case.one_sided else (1.0, -1.0)
     toe_x = [side * wall.half_base for side in toes]
     ax.plot(toe_x, [0.0] * len(toes), "o", markersize=5, color=FORCE, zorder=5)
-    updates, moving = [_openings(ax, case, bodies)], bodies.moving
+    moving = bodies.moving
+    updates = [_openings(ax, case, moving)]
     for tie, text in zip(ties, tie_texts(ties, left, height), strict=True):
         updates.append(anchored(ax, moving, tie, markersize=6))
         at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
         look = {"fontsize": 8, "color": tie.colour, "va": "bottom", "zorder": 6}
         note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
         note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
-    updates += [_force(ax, case, effect, force, bodies) for effect, force in forces]
-    updates += [_mass(ax, case, added, bodies) for added in case.wall.masses if added.told is not None]
+    updates += [_force(ax, case, effect, force, moving) for effect, force in forces]
+    updates += [_mass(ax, added, moving) for added in case.wall.masses if added.told is not None]
     if bodies.limits is not None:
         ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
     return together(updates)
 
 
-def _local(case: Case, x: float, z: float) -> Array:
-    """A point given from the middle of the base, about the centroid [m], shape (1, 2)."""
-    return np.array([[x - case.wall.centroid_offset, z - case.wall.centroid_height]])
-
-
-def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
+def _openings(ax: Axes, case: Case, moving: Moving) -> Update:
     """Sill and head of each opening as dashed lines through the thickness."""
     wall = case.block
     profile = wall.profile or ((0.0, 2 * wall.b), (2 * wall.h, 2 * wall.b))
     heights = sorted({z for opening in wall.openings for z in (opening.sill, opening.head) if z > 0})
-    segments, lines = [], []
-    for z in heights:
-        outer = float(np.interp(z, *np.transpose(profile))) - wall.b
-        segments.append(np.concatenate([_local(case, -wall.b, z), _local(case, outer, z)]))
-        lines += ax.plot([], [], color="0.35", linewidth=0.9, linestyle="--", zorder=3, animated=True)
+    outer = np.interp(heights, *np.transpose(profile)) - wall.b
+    places = [moving.placed(0, np.array([(-wall.b, z), (x, z)])) for x, z in zip(outer, heights, strict=True)]
+    look: Look = {"color": "0.35", "linewidth": 0.9, "linestyle": "--", "zorder": 3, "animated": True}
+    lines = [line for _ in heights for line in ax.plot([], [], **look)]
 
     def update(frame: int) -> None:
-        for line, ends in zip(lines, segments, strict=True):
-            line.set_data(*bodies.placed(frame, 0, ends).T)
+        for line, ends in zip(lines, places, strict=True):
+            line.set_data(*ends[frame].T)
 
     return update
 
@@ -108,10 +103,10 @@ def tie_texts(ties: Sequence[Anchored], left: float, height: float) -> list[str]
     return texts
 
 
-def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -> Update:
+def _force(ax: Axes, case: Case, effect: Effect, force: Point, moving: Moving) -> Update:
     """A force downwards as an arrow onto its point, any other as one from its point along the force."""
     length, loads = 2 * ARROW * case.block.h, force[0] == 0
-    point = _local(case, effect.offset, effect.height)
+    places = moving.placed(0, np.array([[effect.offset, effect.height]]))[:, 0]
     along = np.array([0.0, -length]) if loads else np.array([np.sign(force[0]) * length, 0.0])
     arrow = FancyArrowPatch((0, 0), (1, 0), arrowstyle="-|>", mutation_scale=12, color=FORCE, linewidth=1.6, zorder=6)
     arrow.set_animated(True)
@@ -123,7 +118,7 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -
     text = ax.annotate(f"{(force[0] - force[2]) / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)
 
     def update(frame: int) -> None:
-        at = bodies.placed(frame, 0, point)[0]
+        at = places[frame]
         tail, tip = (at - along, at) if loads else (at, at + along)
         arrow.set_positions(tuple(tail), tuple(tip))
         text.xy = tuple(tail if loads else tip)
@@ -131,21 +126,20 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -
     return update
 
 
-def _mass(ax: Axes, case: Case, added: Effect, bodies: Bodies) -> Update:
+def _mass(ax: Axes, added: Effect, moving: Moving) -> Update:
     """An added mass: its outline, or a dot with its size where it is at a point."""
-    if len(corners := added.outline):
-        outline = np.vstack([_local(case, x, z) for x, z in corners])
-        shape = Polygon(outline, facecolor=STONE, edgecolor="0.15", linestyle="--", zorder=1.8, animated=True)
+    if len(added.outline):
+        corners = moving.placed(0, added.outline)
+        shape = Polygon(added.outline, facecolor=STONE, edgecolor="0.15", linestyle="--", zorder=1.8, animated=True)
         ax.add_patch(shape)
-        return lambda frame: shape.set_xy(bodies.placed(frame, 0, outline))
-    point = _local(case, added.offset, added.height)
+        return lambda frame: shape.set_xy(corners[frame])
+    places = moving.placed(0, np.array([[added.offset, added.height]]))
     (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5, animated=True)
     text = ax.text(0, 0, f"  {added.mass_added:g} kg", fontsize=8, color="0.25", va="center", zorder=6, animated=True)
 
     def update(frame: int) -> None:
-        at = bodies.placed(frame, 0, point)[0]
-        dot.set_data([at[0]], [at[1]])
-        text.set_position(tuple(at))
+        dot.set_data(*places[frame].T)
+        text.set_position(tuple(places[frame, 0]))
 
     return update
 
@@ -241,7 +235,7 @@ def section(ax: Axes, case: Case, stop: str = "stop") -> None:
 
 
 def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, float]) -> None:
-    """What each effect is, in a column whose left end and lower and upper end are given [inch], with a line to it."""
+    """Write notes on effects, each with a line to it, in a column whose left, lower and upper ends are given [inch]."""
     figure = figure_of(ax)
     inch = figure.dpi_scale_trans.inverted()
     halves = [0.5 * LINE * (2 + text.count("\n")) for _, text in notes]
@@ -259,7 +253,7 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
 
 
 def _effects(case: Case, *, arguments: bool) -> list[Note]:
-    """Where each effect acts in the section, and what it is."""
+    """The place of each effect in the section, and a note on it."""
     face, said, made = -case.block.b, dict[Effect, str](), []
     _, breaking = case.limits_of_ties(np.linspace(0.0, case.overturning_rotation, POINTS))
     for name, effect in case.named.items():

@@ -27,7 +27,7 @@ SAME_IMPACT = 0.25
 
 
 class Measure(NamedTuple):
-    """What is compared of an impact: its name and unit, its property of `Comparison`, and how a table shows it."""
+    """A measure of an impact: name and unit, its property of `Comparison`, and its heading and format in a table."""
 
     name: str
     unit: str
@@ -47,7 +47,7 @@ OF_AN_IMPACT = (
 
 @dataclass(frozen=True)
 class Comparison(Drawn):
-    """What distinguishes `candidate` from `reference`. Rebounds are counted from 1; NaN where one has fewer.
+    """The differences of `candidate` from `reference`. Rebounds are counted from 1; NaN where one has fewer.
 
     On a base at rest the first impact of one belongs to the first of the other. Under ground motion impacts are paired
     by their times, and those before which the wall has less than a hundredth of the energy that overturns it are left
@@ -145,7 +145,7 @@ class Comparison(Drawn):
 
     @property
     def _measured(self) -> Array:
-        """What is in OF_AN_IMPACT, of reference and candidate, shape (impacts, measures, 2), NaN where one has none."""
+        """The measures of all impacts, reference and candidate, shape (n, measures, 2), NaN where one has none."""
         columns = [getattr(self, measure.of) for measure in OF_AN_IMPACT]
         measured = np.full((max(map(len, columns)), len(columns), 2), np.nan)
         for i, values in enumerate(columns):

@@ -184,18 +184,15 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
         pose: at these times, shape (steps, n nq).
     """
     masonry, points, count = case.masonry, JointPoints.of(case, scene), len(case.masonry.joints)
-    slid_off = _slid_off_in_space(case.standing) if masonry.in_space else _slid_off_in_plane(masonry)
-    widths, shift = (
-        np.array([each.width for each in masonry.joints]),
-        displacements(case.supports, t, scene.freedom.translations),
-    )
+    widths = np.array([joint.width for joint in masonry.joints])
+    shift = displacements(case.supports, t, scene.freedom.translations)
     opening, sliding, deepest = np.zeros(count), np.zeros(count), 0.0
     off, parted = np.zeros((2, len(pose), count), dtype=bool)
     size = max(1, AT_ONCE // max(1, count))
     for first in range(0, len(pose), size):
         some = slice(first, first + size)
         seen = _looked(scene, points, pose[some], shift[some])
-        far, off[some] = slid_off(seen.slid)
+        far, off[some] = _slid_off(case.standing, seen.slid)
         parted[some] = (far > widths) | (seen.nearest > PARTED * widths)
         opening, sliding = np.maximum(opening, seen.opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
         deepest = max(deepest, -float(seen.nearest.min()))
@@ -210,39 +207,24 @@ def slips(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Array:
 
 def displacements(supports: Sequence[Support], t: Array, d: int) -> Array:
     """Where supports that move are at some times, from where they are drawn [m], shape (times, supports, d)."""
-    moved = np.empty((len(t), len(supports), d))
-    for i, support in enumerate(supports):
-        moved[:, i] = support.at(t)
-    return moved
+    moved = np.array([support.at(t) for support in supports]).reshape(len(supports), len(t), d)
+    return np.swapaxes(moved, 0, 1)
 
 
-SlidOff = Callable[[Array], tuple[Array, Flags]]
-"""How far joints have slid [m], and whether one block has left the other, (steps, joints) each, from their slips."""
-
-
-def _slid_off_in_plane(masonry: Masonry) -> SlidOff:
-    ways = np.array([joint.along for joint in masonry.plane_joints])
-    back, forth = np.array([joint.travel for joint in masonry.plane_joints]).T
-
-    def slid_off(slid: Array) -> tuple[Array, Flags]:
-        along = np.einsum("sji,ji->sj", slid, ways)
+def _slid_off(standing: MasonryStanding, slid: Array) -> tuple[Array, Flags]:
+    """How far joints have slid [m], and whether one block has left the other, shape (steps, joints) each, from their
+    slips [m], shape (steps, joints, d)."""
+    if not standing.masonry.in_space:
+        joints = standing.masonry.plane_joints
+        along = np.einsum("sji,ji->sj", slid, np.array([joint.along for joint in joints]))
+        back, forth = np.array([joint.travel for joint in joints]).T
         return np.abs(along), (along > forth) | (along < -back)
-
-    return slid_off
-
-
-def _slid_off_in_space(standing: MasonryStanding) -> SlidOff:
-    widths, faces = np.array([joint.width for joint in standing.joints]), standing.faces
-
-    def slid_off(slid: Array) -> tuple[Array, Flags]:
-        far = np.linalg.norm(slid, axis=2)
-        off = far >= widths
-        for j in np.flatnonzero(off.any(axis=0)):
-            ways = slid[:, j] / np.maximum(far[:, j], widths[j])[:, None]
-            off[:, j] &= far[:, j] > travels(faces[j], ways)
-        return far, off
-
-    return slid_off
+    widths, far = np.array([joint.width for joint in standing.joints]), np.linalg.norm(slid, axis=2)
+    off = far >= widths
+    for j in np.flatnonzero(off.any(axis=0)):
+        ways = slid[:, j] / np.maximum(far[:, j], widths[j])[:, None]
+        off[:, j] &= far[:, j] > travels(standing.faces[j], ways)
+    return far, off
 
 
 class JointPoints(NamedTuple):
@@ -271,7 +253,7 @@ class JointPoints(NamedTuple):
 
 
 class Looked(NamedTuple):
-    """What joints do at some steps: the gap at the widest point and at the nearest [m], shape (steps, joints), and how
+    """Joints at some steps: the gap at the widest point and at the nearest [m], shape (steps, joints), and how
     far the block above has slid at the nearest [m], shape (steps, joints, d)."""
 
     opened: Array
@@ -280,7 +262,7 @@ class Looked(NamedTuple):
 
 
 def _looked(scene: Scene, points: JointPoints, pose: Array, shift: Array) -> Looked:
-    """What joints do at poses, shape (steps, n nq), with supports that are displaced [m], (steps, supports, d)."""
+    """The joints at poses, shape (steps, n nq), with supports that are displaced [m], (steps, supports, d)."""
     size = len(pose), len(scene.contacts.joints)
     seen = Looked(np.empty(size), np.empty(size), np.empty((*size, scene.freedom.translations)))
     pose, shift = np.ascontiguousarray(pose), np.ascontiguousarray(shift)
@@ -307,7 +289,7 @@ def _met(places: Places, i: int, frames: Array, shift: Array, support: int) -> M
 
 @compiled
 def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames: Array, seen: Looked) -> None:
-    """Write what joints do, see `_looked`; `frames` is room for those of a pose."""
+    """Write gaps and slips of joints, see `_looked`; `frames` is room for those of a pose."""
     opened, nearest, slid = seen
     for n in range(len(pose)):
         take_frames(pose[n], frames, places.axes)
@@ -340,7 +322,7 @@ def past_support(
 
     Args:
         standing: the masonry at rest.
-        motion: what the joints did.
+        motion: of the joints.
         slips: from the numbers of some steps, how far the block above each joint has slid on the one below [m], shape
             (steps, joints, d).
     """

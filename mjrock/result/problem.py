@@ -1,4 +1,4 @@
-"""What a solver takes: a wall on its contacts, or masonry, which has joints of its own; and the start of a run."""
+"""Problems that solvers take: a wall on its contacts, or masonry, which has its own joints; and the start of a run."""
 
 from __future__ import annotations
 

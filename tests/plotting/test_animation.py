@@ -31,7 +31,7 @@ def drawn(response, frame=0, magnify=1.0):
 def test_the_outline_turns_about_the_toe_and_away_from_the_side_stop():
     response = theory()
     bodies = Bodies.of(response)
-    corners = bodies.placed(0, 0, bodies.outlines[0])
+    corners = bodies.corners(0)[0]
     theta = 0.5 * WALL.alpha
     inner_edge = [0.3 - 0.6 * np.cos(theta), 0.6 * np.sin(theta)]
     np.testing.assert_allclose(corners[:2], [inner_edge, [0.3, 0.0]], atol=1e-12)
@@ -41,7 +41,7 @@ def test_the_outline_turns_about_the_toe_and_away_from_the_side_stop():
 def test_magnified_displacements_leave_the_toe_where_it_is():
     response = theory()
     bodies = Bodies.of(response, magnify=5.0)
-    corners, true = bodies.placed(0, 0, bodies.outlines[0]), Bodies.of(response).placed(0, 0, bodies.outlines[0])
+    corners, true = bodies.corners(0)[0], Bodies.of(response).corners(0)[0]
     at_rest = np.array([[-0.3, 0.0], [0.3, 0.0], [0.3, 4.2], [-0.3, 4.2]])
     np.testing.assert_allclose(corners[1], [0.3, 0.0], atol=1e-12)
     np.testing.assert_allclose(corners - at_rest, 5 * (true - at_rest), atol=1e-12)
@@ -124,9 +124,7 @@ def test_what_the_wall_meets_and_carries_is_drawn():
     assert [box.get_height() for box in boxes] == [2.5]
     dashed = [line for line in ax.get_lines() if line.get_linestyle() == "--"]
     turned = Bodies.of(mr.solve_analytical(case, mr.Restitution(0.97, -0.4)))
-    sill = turned.placed(
-        0, 0, np.array([[-0.3, 0.8], [0.3, 0.8]]) - (case.wall.centroid_offset, case.wall.centroid_height)
-    )
+    sill = turned.moving.placed(0, np.array([[-0.3, 0.8], [0.3, 0.8]]))[0]
     np.testing.assert_allclose(dashed[0].get_xydata(), sill)
     ties = [line for line in ax.get_lines() if line.get_color() == mr.Tie.colour and len(line.get_xdata()) == 2]
     assert [line.get_linestyle() for line in ties] == ["-", ":"]
@@ -182,7 +180,7 @@ def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
     poses = 0.1 * np.random.default_rng(0).normal(size=(4, 2, 3))
     ground = np.array([[-2.0, -0.5], [1.0, -0.5], [1.0, -0.2]])
     bodies = Bodies.loose(np.arange(4.0), (triangle, square), [[0.0, 0.5], [3.0, 1.5]], poses, 2.0, (ground,))
-    each = [[bodies.placed(i, j, one) for j, one in enumerate(bodies.outlines)] for i in range(4)]
+    each = [[bodies.corners(i)[j, : len(one)] for j, one in enumerate(bodies.outlines)] for i in range(4)]
     for i, (three, four) in enumerate(each):
         np.testing.assert_allclose(bodies.corners(i), [[*three, three[-1]], four])
     points = np.concatenate([ground, *(corners for frame in each for corners in frame)])
@@ -241,11 +239,11 @@ def test_blocks_of_masonry_are_drawn_where_they_are(mass):
     motion = SampledMotion(poses, np.zeros_like(poses), np.zeros(5))
     bodies = Bodies.of(dataclasses.replace(theory(), t=np.linspace(0, 1, 5), case=case, motion=motion))
     np.testing.assert_array_equal(bodies.moving.case.fixed[0], corners - [0, 2])
-    np.testing.assert_allclose(bodies.placed(-1, 0, bodies.outlines[0]), corners, atol=1e-12)
+    np.testing.assert_allclose(bodies.corners(-1)[0], corners, atol=1e-12)
     centroid = np.array([0.5, 3.0 + mass / (mass + blocks[2].mass)])
     from_it = corners + np.array([0, 2]) - centroid
     fallen = centroid + np.array([0.1, 0.0]) + np.column_stack([from_it[:, 1], -from_it[:, 0]])
-    np.testing.assert_allclose(bodies.placed(-1, 1, bodies.outlines[1]), fallen, atol=1e-12)
+    np.testing.assert_allclose(bodies.corners(-1)[1], fallen, atol=1e-12)
 
 
 def test_a_history_stops_where_the_wall_has_fallen():
