@@ -10,6 +10,7 @@ import copy
 import fnmatch
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, get_args
@@ -188,10 +189,10 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     `repr` shows the components of each record, and how `records_in` found that they go together, as `by` has it.
     """
 
-    def __init__(self, records: Records | tuple[()] = (), by: Mapping[str, str] | tuple[()] = ()) -> None:
-        super().__init__(records)
-        self.by: dict[str, str] = dict(by)
+    @cached_property
+    def by(self) -> dict[str, str]:
         """How the components of a record were found to go together: "header", "names" or "one file"."""
+        return {}
 
     def __repr__(self) -> str:
         lines = [f"<RecordSet of {len(self)} records>"]
@@ -232,7 +233,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         if alone := [name for name, components in self.items() if not _level(components)]:
             raise ValueError(f"{named(alone)}: no horizontal component; del records[{alone[0]!r}] leaves it out")
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
-        return RecordSet(scaled, self.by)
+        return _found(scaled, self.by)
 
     def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
         """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
@@ -324,7 +325,7 @@ def records_in(
         unused = key if key not in found else next(iter(tokens))
         found[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
         found.by |= {unused: by} if len(tokens) > 1 else {}
-    return RecordSet(dict(sorted(found.items())), found.by)
+    return _found(dict(sorted(found.items())), found.by)
 
 
 def _directed(motion: GroundMotion, token: str) -> GroundMotion:
@@ -341,9 +342,16 @@ def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
     return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
 
 
+def _found(records: Records, by: Mapping[str, str]) -> RecordSet:
+    """A set, and how the components of its records were found to go together."""
+    made = RecordSet(records)
+    made.by.update(by)
+    return made
+
+
 def _joined(one: Records, other: Records) -> RecordSet:
     """The records of two sets; those of the second where both have one of a name."""
-    return RecordSet({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
+    return _found({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
 
 
 def scaled_together(
