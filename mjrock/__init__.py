@@ -5,7 +5,7 @@ compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compli
 `solve_explicit` by explicit steps, for many blocks. `solve_analytical` is classical rocking theory, and `compare` sets
 two answers side by side.
 
-A name is imported when it is first asked for: who wants `contact_for` alone waits for MuJoCo and NumPy only.
+A name is imported when it is first used: `contact_for` alone imports MuJoCo and NumPy only.
 """
 
 import contextlib
@@ -21,30 +21,43 @@ from .interrupts import interrupts_held_back
 
 if TYPE_CHECKING:
     from . import plotting as plotting
-    from .anymodel.contact import PairContact
+    from .anymodel.contact import PairContact, PairContacts
     from .anymodel.coulomb import CoulombFriction
-    from .anymodel.flexes import FlexContact, inspect_flexes
-    from .anymodel.inspect import InspectedContact, inspect_contacts
-    from .anymodel.make import contact_for
-    from .anymodel.many import PairContacts, contacts_for
+    from .anymodel.inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
+    from .anymodel.make import contact_for, contacts_for
     from .anymodel.notes import ContactWarning
     from .distinct.explicit import solve_explicit
     from .engine.model import SimulationError
     from .engine.simulation import simulate
     from .engine.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
-    from .problem.damping.contacts import Contacts
-    from .problem.damping.forms import PowerLaw
-    from .problem.damping.inputs import MASONRY_TYPES, MasonryType, StiffnessRange, crushed_inset, stiffness_range
-    from .problem.damping.interface import Interface, reference_frequency
-    from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+    from .problem.damping.contacts import Contacts, Interface, reference_frequency
+    from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, PowerLaw
     from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
     from .problem.damping.restitution import Restitution, ScatteredRestitution
-    from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
-    from .problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, code_spectrum
+    from .problem.damping.stiffness import (
+        MASONRY_TYPES,
+        MasonryType,
+        StiffnessRange,
+        crushed_inset,
+        joint_stiffness,
+        layered_stiffness,
+        measured_stiffness,
+        stiffness_range,
+        wall_stiffness,
+    )
     from .problem.ground.motion import GroundMotion
     from .problem.ground.record_sets import RecordSet, components_in, records_in, scaled_together
-    from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
+    from .problem.ground.spectrum import (
+        CodeSpectrum,
+        FloorSpectrum,
+        PointSpectrum,
+        ResponseSpectrum,
+        code_spectrum,
+        response_spectrum,
+        scaled_to_sa,
+        scaled_to_spectrum,
+    )
     from .problem.masonry.actuator import Actuator
     from .problem.masonry.blocks.compound import Compound
     from .problem.masonry.blocks.joints import Joint
@@ -56,16 +69,13 @@ if TYPE_CHECKING:
     from .problem.masonry.laws.dry import Dry, Mortar
     from .problem.masonry.limit.collapse import Collapse
     from .problem.masonry.masonry import Masonry
-    from .problem.wall.bending import VerticalBending
+    from .problem.wall.bending import HorizontalBending, VerticalBending
     from .problem.wall.block import Block
     from .problem.wall.case import Case
-    from .problem.wall.corner import Corner
-    from .problem.wall.damper import Damper, FrictionDamper
-    from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
-    from .problem.wall.horizontal_bending import HorizontalBending
+    from .problem.wall.effects import AddedMass, Damper, FrictionDamper, Load, SideStop, Thrust
     from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie, strengths_of_bar
-    from .problem.wall.wedge import Wedge
+    from .problem.wall.wedge import Corner, Wedge
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report
@@ -81,22 +91,17 @@ if TYPE_CHECKING:
     from .scene.wall import wall_scene
     from .study.analysis import Analysis, MasonryAnalysis
     from .study.campaign.campaign import campaign, results
-    from .study.campaign.grid import Grid
     from .study.campaign.store import Store
-    from .study.intensity.capacities import PairedRatio, fit_capacities, lost, paired_ratio
-    from .study.intensity.capacity import Capacity
-    from .study.intensity.fragility import Fragility, fit_fragility
-    from .study.intensity.ida import ida, overturning_intensity
+    from .study.campaign.task import Grid
+    from .study.intensity.fragility import Fragility, PairedRatio, fit_capacities, fit_fragility, lost, paired_ratio
+    from .study.intensity.ida import Capacity, ida, overturning_intensity
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
-    from .study.loading.dynamic import DynamicCheck, dynamic_check
-    from .study.loading.limit_analysis import collapse_multiplier
-    from .study.loading.limit_curve import LimitCurve, limit_curve
-    from .study.loading.mechanism import MechanismCheck, mechanism_check
+    from .study.loading.code_check import DynamicCheck, MechanismCheck, dynamic_check, mechanism_check
+    from .study.loading.limit_analysis import LimitCurve, collapse_multiplier, limit_curve
     from .study.loading.push import Push, push
     from .study.loading.pushover import pushover
     from .study.matching.calibration import Plan, calibrate
-    from .study.matching.contacts import as_theory, matched_contacts
-    from .study.matching.masonry import matched_masonry
+    from .study.matching.matched import as_theory, matched_contacts, matched_masonry
     from .study.sensitivity import Sensitivity, sensitivity
     from .theory.analytical import solve_analytical
     from .theory.impact import RigidImpact, rigid_impact
@@ -124,16 +129,18 @@ __all__ = [
     "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
-IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)
+IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (\([^)]*|.+)", re.MULTILINE)
 """What a type checker imports above: a module and its public names."""
 HOME = {
-    name: module for module, names in IMPORTED.findall(Path(__file__).read_text("utf-8")) for name in names.split(", ")
+    name: module
+    for module, names in IMPORTED.findall(Path(__file__).read_text("utf-8"))
+    for name in re.findall(r"\w+", names)
 }
 """The module of each public name."""
 
 
 def _require_mujoco(version: str) -> None:
-    """Raise an ImportError that says what to install, if MuJoCo is older than this package takes."""
+    """Raise an ImportError that names what to install, if MuJoCo is older than this package needs."""
     if int(version.split(".")[0]) < 4:
         raise ImportError(f"mjrock needs MuJoCo 4.0 or newer, and {version} is installed: pip install 'mujoco>=4.0'")
 
@@ -146,7 +153,7 @@ else:
 
 
 def __getattr__(name: str) -> object:
-    """A public name, or `mjrock.plotting`, imported when it is first asked for. Ctrl-C is heard when it is there."""
+    """A public name, or `mjrock.plotting`, imported when it is first used. Ctrl-C is delayed until then."""
     if name != "plotting" and name not in HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     with interrupts_held_back():

@@ -1,4 +1,4 @@
-"""`python -m mjrock COMMAND ...`: what can be asked without a script."""
+"""`python -m mjrock COMMAND ...`: commands that need no script."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def parser() -> argparse.ArgumentParser:
     """The command that is named; the arguments after it are its own."""
     told = "; ".join(f"{name}: {text}" for name, text in HELP.items())
     made = argparse.ArgumentParser(
-        "python -m mjrock", f"python -m mjrock {{{','.join(COMMANDS)}}} ...", "What can be asked without a script."
+        "python -m mjrock", f"python -m mjrock {{{','.join(COMMANDS)}}} ...", "Commands that need no script."
     )
     made.add_argument("command", choices=COMMANDS, help=told)
     return made

@@ -17,19 +17,14 @@ PLAIN = "{desc}: {n:.0f} {unit} [{elapsed}{postfix}]"
 OF_ALL = "{desc}: {percentage:3.0f}%|{bar}| {n:.0f} of {total:g} {unit} [{elapsed}<{remaining}{postfix}]"
 
 
-def in_notebook() -> bool:
-    """Whether a kernel of Jupyter runs this, also that of VS Code or Colab."""
-    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    return hasattr(shell, "kernel")
-
-
 def shown_bar(what: str, unit: str, total: float | None, **options: object) -> tqdm:
     """The bar of tqdm that suits: a widget in a notebook with `ipywidgets`, otherwise text.
 
-    Seconds have two decimals. It shows nothing where nobody looks on, as in a file.
+    Seconds have two decimals. Nothing is shown where the output is a file.
     """
-    there = in_notebook()
-    if there and importlib.util.find_spec("ipywidgets"):
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    in_notebook = hasattr(shell, "kernel")  # of Jupyter, VS Code or Colab
+    if in_notebook and importlib.util.find_spec("ipywidgets"):
         from tqdm.notebook import tqdm as kind
     else:
         kind = tqdm
@@ -37,7 +32,7 @@ def shown_bar(what: str, unit: str, total: float | None, **options: object) -> t
     if unit == "s":
         form = form.replace("{n:.0f}", "{n:.2f}")
     options = {"total": total, "desc": what, "unit": unit, "bar_format": form} | options
-    return kind(disable=False if there else None, **options)
+    return kind(disable=False if in_notebook else None, **options)
 
 
 class Bar:
@@ -46,7 +41,7 @@ class Bar:
     Args:
         what: is in progress.
         unit: what is counted.
-        total: how much there is of it; None if nobody knows.
+        total: how much there is of it; None if that is unknown.
     """
 
     def __init__(self, what: str, unit: str, total: float | None = None) -> None:

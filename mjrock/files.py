@@ -132,7 +132,7 @@ def quoted(value: str) -> str:
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Rows as CSV text that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read, see `written`.
 
-    NumPy knows no quotation marks and takes # for the start of a comment. Commas, quotation marks and # are therefore
+    NumPy reads no quotation marks and takes # for the start of a comment. Commas, quotation marks and # are therefore
     left out of the header, and in the cells a comma becomes a semicolon. Numbers keep all their digits.
 
     Raises:

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def interrupts_held_back() -> Iterator[None]:
-    """Hear Ctrl-C only when the block has ended, for imports: one that is cut off leaves modules that are half made.
+    """Delay Ctrl-C to the end of the block, for imports: one that is cut off leaves modules that are half made.
 
-    Python hears signals in the main thread, and nothing is done in another. The same holds where no function of Python
-    answers to Ctrl-C.
+    Python receives signals in the main thread, and nothing is done in another. The same holds where no function of
+    Python handles Ctrl-C.
     """
     handler = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):

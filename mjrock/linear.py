@@ -8,8 +8,6 @@ Motions are held by rows `grip` of rates that are zero. They may depend on one a
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy  # which imports its parts when they are named
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array
@@ -125,7 +123,7 @@ class _Balance:
         return motion, holding
 
 
-def _factors(matrix: csc_array) -> Any:
+def _factors(matrix: csc_array) -> scipy.sparse.linalg.SuperLU:
     """Factors of a symmetric matrix with the pivots on its diagonal."""
     return scipy.sparse.linalg.splu(
         matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}

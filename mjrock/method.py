@@ -123,4 +123,4 @@ class Method(NamedTuple):
 
 
 METHOD = Method()
-"""The constants that are used unless a study asks for others."""
+"""The constants that are used unless a study takes others."""

@@ -21,10 +21,11 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+Result = TypeVar("Result")
 COMPILING = 20.0
 """Time that compiling the loops of a run in MuJoCo takes, of one core [s] (`scripts/measure/first_minute.py`)."""
 BEHIND = "behind"
@@ -45,8 +46,8 @@ class Run(NamedTuple):
 
 
 class _Process:
-    """What this process knows: time that plain Python has taken [s], the process that compiles, how many there have
-    been, and how many of them have ended."""
+    """State of this process: time that plain Python has taken [s], the process that compiles, how many have been
+    started, and how many have ended."""
 
     def __init__(self) -> None:
         self.taken = 0.0
@@ -96,7 +97,7 @@ def news() -> int:
     return _here.ended
 
 
-def as_plain_python(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+def as_plain_python(function: Callable[..., Result], arguments: tuple[object, ...]) -> Result:
     """What a loop gives as plain Python. Its time counts, and another process begins to compile."""
     run, begun = _run.get(), time.perf_counter()
     if run is not None and _here.compiling is None and _here.started < MOST and _cores() > 1:
@@ -117,15 +118,15 @@ def _cores() -> int:
 def _compiling(run: Run) -> subprocess.Popen[bytes]:
     """A process that makes a run, compiled. Ctrl-C does not reach it."""
     content = pickle.dumps(run)
-    # on Windows a process group and a low priority, elsewhere a session of its own
-    apart: dict[str, Any] = {"creationflags": 0x4200} if sys.platform == "win32" else {"start_new_session": True}
     process: subprocess.Popen[bytes] = subprocess.Popen(
         [sys.executable, "-c", f"import sys; sys.path = {sys.path!r}; from {__name__} import behind; behind()"],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         env=os.environ | {"MJROCK_INTERPRET": BEHIND},
-        **apart,
+        # on Windows a process group and a low priority, elsewhere a session of its own
+        creationflags=0x4200 if sys.platform == "win32" else 0,
+        start_new_session=sys.platform != "win32",
     )
     atexit.register(_end, process)
     threading.Thread(target=_tell, args=(process, content), daemon=True).start()
@@ -136,7 +137,7 @@ def _tell(process: subprocess.Popen[bytes], content: bytes) -> None:
     assert process.stdin is not None
     with contextlib.suppress(OSError):  # it has ended
         process.stdin.write(content)
-        process.stdin.flush()  # and stays open: its end tells the process that this one is gone
+        process.stdin.flush()  # and stays open: the process ends when it closes
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

@@ -7,7 +7,7 @@ import math
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields
 from functools import cache, wraps
 from numbers import Real as RealNumber
@@ -72,7 +72,7 @@ def spelt(value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """A value and its type on one line, short enough for a message; None says enough."""
+    """A value and its type on one line, short enough for a message; of None nothing but its name."""
     if value is None:
         return "None"
     text = " ".join(spelt(value).split())
@@ -190,12 +190,12 @@ def keep_declared(instance: object, owner: str = "") -> None:
 
     Args:
         instance: the dataclass.
-        owner: what messages say that the number is of, as in "length of the tie".
+        owner: the thing that messages name as the owner of the number, as in "length of the tie".
 
     Raises:
         TypeError, ValueError: with the name, the value and the range, as `require_within`.
     """
-    kind: Any = type(instance)  # mypy takes a class for a thing without a hash
+    kind: Callable[..., object] = type(instance)
     for field, (within, optional) in declared(kind).items():
         value = getattr(instance, field)
         if value is not None or not optional:
@@ -205,7 +205,7 @@ def keep_declared(instance: object, owner: str = "") -> None:
 
 def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
     """A function whose arguments are checked and converted, before it runs, by the ranges that they declare as fields
-    do: `height: Annotated[float, Within(0, 200, "m")]`. What is wrong is said as `keep_declared` says it."""
+    do: `height: Annotated[float, Within(0, 200, "m")]`. Errors are those of `keep_declared`."""
     parameters = inspect.signature(function)
 
     @wraps(function)
@@ -213,7 +213,7 @@ def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
         try:
             bound = parameters.bind(*given, **options)
         except TypeError:
-            return function(*given, **options)  # which says what is missing or too much
+            return function(*given, **options)  # whose error names what is missing or too much
         for name, (within, optional) in declared(function).items():
             if name in bound.arguments and not (optional and bound.arguments[name] is None):
                 bound.arguments[name] = within.checked(within.name or name, bound.arguments[name])
@@ -248,6 +248,13 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
 
 
+def require_one_of(name: str, value: object, known: Collection[str]) -> str:
+    """Return `value`, one of the names that are known; a ValueError lists them for any other value."""
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} = {spelt(value)} is not one of {', '.join(known)}")
+    return value
+
+
 def takes(value: object, count: int) -> bool:
     """Whether a value is a function that so many arguments by position call."""
     if not callable(value):
@@ -256,7 +263,7 @@ def takes(value: object, count: int) -> bool:
         inspect.signature(value).bind(*range(count))
     except TypeError:
         return False
-    except ValueError:  # some built-in functions tell nothing of their arguments
+    except ValueError:  # some built-in functions have no signature
         return True
     return True
 
@@ -311,7 +318,7 @@ def require_path(name: str, path: object) -> Path:
 
 
 def require_size(what: str, count: float, remedy: str) -> None:
-    """Raise a ValueError that says the number and what to change, if there are more samples than MOST_SAMPLES."""
+    """Raise a ValueError with the number and what to change, if there are more samples than MOST_SAMPLES."""
     if not count <= MOST_SAMPLES:
         raise ValueError(f"{what} would be {count:.3g}; at most {MOST_SAMPLES:.0e} fit into memory; {remedy}")
 

@@ -43,10 +43,7 @@ OTHERS = (
     "distinct/search/constants.py",
 )
 """Modules of the method without compiled functions."""
-TOOLS = (
-    *("contact", "make", "geoms", "inspect", "felt", "holding", "row_of_model"),
-    *("meeting", "others"),
-)
+TOOLS = ("contact", "make", "geoms", "inspect", "effective_mass", "row_of_model", "meeting", "notes")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
@@ -104,7 +101,7 @@ OWN = {
     "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space", "fallen"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
     "result/ledger.py": ("ledger",),
-    **{f"result/{name}.py": ("files_of_motion", "joint_frames") for name in ("bodies", "gltf", "vtk")},
+    **{f"result/{name}.py": ("files_of_motion", "joint_frames") for name in ("bodies", "files")},
     "result/ties.py": ("ties", "ties_that_break", "friction_damper", "masonry_effects"),
     "engine/run.py": ("marks", "end_of_run", "ledger", "books_of_masonry"),
     "engine/sliding.py": ("slipping", "sliding"),
@@ -113,8 +110,8 @@ OWN = {
     "problem/masonry/builders/vaults.py": ("vaults",),
     "problem/wall/section.py": ("section",),
     "problem/wall/tie.py": ("tie_of_bar",),
-    "problem/wall/ties_on_wall.py": ("effects", "pushover"),
-    "study/matching/masonry.py": ("matched_masonry",),
+    "problem/wall/restoring_moment.py": ("effects", "pushover"),
+    "study/matching/matched.py": ("matched", "matched_masonry"),
     "study/loading/pushover.py": ("pushover",),
     "theory/arcs.py": ("arcs", "free", "analytical", "effects"),
     "theory/impact.py": ("impact",),

@@ -16,7 +16,7 @@ from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, Samples, System
 from mjrock.geometry.frames import SPACE
-from mjrock.scene.ground import Ground
+from mjrock.scene.course import Ground
 
 GROUND = mr.Polyhedron.box((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground")
 

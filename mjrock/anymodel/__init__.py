@@ -1,1 +1,1 @@
-"""A contact in N/m for anyone's MuJoCo model. It needs the contact rows of the engine and nothing else of it."""
+"""Contacts in N/m for any MuJoCo model. Of the engine it uses the contact rows alone."""

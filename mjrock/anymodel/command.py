@@ -15,10 +15,9 @@ import mujoco
 from ..engine.replay import load
 from ..files import aligned, csv_text, write_text
 from ..quantities import named, require_within
-from .flexes import flex_report
 from .geoms import BODY, GeomPair, geom_label, names_of_objects
-from .inspect import InspectedContact, inspect_contacts
-from .notes import VARIES
+from .inspect import InspectedContact, inspect_contacts, inspect_flexes
+from .notes import VARIES, model_spoilers
 
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
@@ -115,6 +114,15 @@ def values(contact: InspectedContact, speed: float) -> list[str]:
         "-" if none else f"{contact.restitution:.3f}",
         "-" if none else f"{contact.restitution_at(speed):.3f}",
     ]
+
+
+def flex_report(model: mujoco.MjModel) -> str:
+    """A line for each flex and geom that can meet, and what the options of the model do; empty without any."""
+    found = [str(contact) for contact in inspect_flexes(model)]
+    if not found:
+        return ""
+    said = [f"For all of them: {sentence}." for sentence in model_spoilers(model)]
+    return "\n".join(["", "Contacts of flexes, at zero penetration:", *found, *said])
 
 
 def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import math
-import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
 from ..engine.solref import inertia_of
 from ..files import quoted
-from ..problem.damping.falling import rebound_at
-from ..problem.damping.rebound import rebound_restitution
-from ..quantities import require_flag, require_text, short_repr
-from .geoms import GeomPair, compiled_model, geom_label, kept_apart
+from ..problem.damping.rebound import rebound_at, rebound_restitution
+from ..quantities import named, require_flag, require_text, short_repr, warn_of
+from .geoms import GeomPair, compiled_model, every_pair, geom_label, kept_apart
 from .notes import (
     ENOUGH,
     SCATTER_WARNED_OF,
     UNSOUND,
+    VARIES,
     ContactWarning,
     SolverNeed,
     duplicates,
@@ -31,16 +30,21 @@ from .notes import (
     stiffest,
     uneven,
 )
-from .others import Changed, Others, sentence
-from .row_of_model import HOLD, Mixed
+from .row_of_model import HOLD, Mixed, ModelRow
 
+Attribute = str | float | tuple[float, ...]
+"""Of an element of MJCF."""
 SOFT_DEPTH = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
 GAINS = 0.5
-"""omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
-with 1.09 at 0.9 and with 2.4 at 1.9."""
+"""omega h from which a contact of the pyramidal cone is reported to gain energy [-]. Undamped it rebounds with 1.03
+there, with 1.09 at 0.9 and with 2.4 at 1.9."""
 NO_REBOUND, SMALL_REBOUND = 0.03, 0.2999
 """Restitutions between which gravity is warned of where no speed is given [-]."""
+SAME = 0.05
+"""Change of stiffness from which a contact is another [-]."""
+KEPT_WITHIN = 0.1
+"""Change of stiffness within which a contact is kept [-]; 5 % for MuJoCo's impedance of 0.9 to 0.95 and mu = 1.5."""
 LEAST_SPEED, MOST_SPEED = 1e-9, 1e4
 """Speeds of approach that are looked at [m/s]."""
 
@@ -67,7 +71,7 @@ class PairContact:
         load: static load of each contact point [N], that of the pose at rest, or the weight of the
             lighter tree of bodies where the geoms are apart.
         needs: iterations of the solver that the contact needs, found by a trial in the pose.
-        remarks: what in this pose keeps the contact from being what was asked, one sentence each.
+        remarks: reasons in this pose for which the contact differs from the request, one sentence each.
     """
 
     geom1: str
@@ -147,7 +151,7 @@ class PairContact:
         Raises:
             ValueError: if one of the geoms has no name.
         """
-        return document([self])
+        return PairContacts((self,)).xml
 
     def apply(
         self,
@@ -185,14 +189,16 @@ class PairContact:
             ContactWarning: of other contacts that are stiffer or softer now, with k before and after. The elliptic cone
                 makes contacts with friction mu softer by 2 impratio / (mu^2 (1 + mu^2)), or stiffer for mu above 1.
         """
-        write([self], model, Writing(on_geoms, keep_others, iterations, name_geoms))
+        PairContacts((self,)).apply(
+            model, on_geoms=on_geoms, keep_others=keep_others, iterations=iterations, name_geoms=name_geoms
+        )
 
     def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
         geoms = self._pair_in(whole)
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
-            self._write_spec(model, geoms)
+            self.of_pair.write_spec(_spec_pair(model, geoms))
         elif geoms.explicit >= 0 or on_geoms:
             self.write_numbers(model, geoms)
         else:
@@ -213,37 +219,33 @@ class PairContact:
         return replace(self, geom1=names[0], geom2=names[1])
 
     @property
-    def attributes(self) -> dict[str, Any]:
+    def attributes(self) -> dict[str, Attribute]:
         """The attributes of the explicit pair by name, for tools that make MJCF; see `options` for those of `<option>`.
 
         Raises:
             ValueError: if one of the geoms has no name.
         """
         self._require_names()
-        found = {"geom1": self.geom1, "geom2": self.geom2, "condim": self.condim}
-        found |= {"solref": self.solref, "solimp": self.solimp, "margin": 0.0, "gap": self.gap}
-        found |= {"adhesion": self.adhesion}
-        return found | ({"solreffriction": self.solreffriction, "friction": self.friction} if self.condim > 1 else {})
+        names = "condim", "solref", "solimp", "margin", "gap", "adhesion", "solreffriction", "friction"
+        numbers = {name: getattr(self.of_pair, name) for name in names[: 8 if self.condim > 1 else 6]}
+        return {"geom1": self.geom1, "geom2": self.geom2, **numbers}
 
     @property
-    def options(self) -> dict[str, Any]:
+    def options(self) -> dict[str, Attribute]:
         """The attributes of `<option>` that the contact needs, by name."""
-        return options_of([self])
+        return PairContacts((self,)).options
 
-    def _write_spec(self, spec: mujoco.MjSpec, geoms: GeomPair) -> None:
-        pair = _spec_pair(spec, geoms)
-        pair.condim, pair.friction = self.condim, self.friction
-        pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
-        pair.margin, pair.gap, pair.adhesion = 0.0, self.gap, self.adhesion
+    @property
+    def of_pair(self) -> Mixed:
+        """The numbers of the explicit pair."""
+        rows = self.solref, self.solimp, self.solreffriction
+        return Mixed(*rows, self.friction, self.condim, margin=0.0, gap=self.gap, adhesion=self.adhesion)
 
     def write_numbers(self, model: mujoco.MjModel, pair: GeomPair) -> None:
         """Write the numbers into the explicit pair of a compiled model or, without one, into both geoms, which mix to
         the contact, as equal geoms of equal priority do; margin, gap and adhesion add up."""
-        if (i := pair.explicit) >= 0:
-            model.pair_dim[i], model.pair_friction[i] = self.condim, self.friction
-            model.pair_solref[i], model.pair_solimp[i] = self.solref, self.solimp
-            model.pair_solreffriction[i] = self.solreffriction
-            model.pair_margin[i], model.pair_gap[i], model.pair_adhesion[i] = 0.0, self.gap, self.adhesion
+        if pair.explicit >= 0:
+            self.of_pair.write(model, pair.explicit)
             return
         geoms = list(pair.geoms)
         model.geom_margin[geoms], model.geom_gap[geoms] = 0.0, 0.5 * self.gap
@@ -253,7 +255,7 @@ class PairContact:
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
-        """What in a model keeps the contact from being what it says, one sentence each; empty if nothing does.
+        """Reasons in a model for which the contact differs from its numbers, a sentence each; empty without any.
 
         Args:
             model: a model with the contact, from `apply` or from the text of `xml`.
@@ -297,62 +299,175 @@ class PairContact:
             )
 
 
-def _text(value: Any) -> str:
+@dataclass(frozen=True)
+class PairContacts:
+    """Contacts of one model with one time step.
+
+    Args:
+        contacts: the contacts, in the order of the request.
+    """
+
+    contacts: tuple[PairContact, ...]
+
+    __repr__ = short_repr
+
+    def __iter__(self) -> Iterator[PairContact]:
+        return iter(self.contacts)
+
+    def __len__(self) -> int:
+        return len(self.contacts)
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether any of them has friction."""
+        return any(contact.condim > 1 for contact in self)
+
+    @property
+    def impratio(self) -> float:
+        """The impratio with which the friction of every contact holds [-]."""
+        return max(contact.impratio for contact in self.contacts)
+
+    @property
+    def xml(self) -> str:
+        """The elements to put into `<mujoco>`: one `<option>`, and the explicit pairs; see `PairContact.xml`.
+
+        Raises:
+            ValueError: if a geom has no name.
+        """
+        pairs = "".join(f"  {_element('pair', contact.attributes)}\n" for contact in self)
+        return f"{_element('option', self.options)}\n<contact>\n{pairs}</contact>\n"
+
+    @property
+    def options(self) -> dict[str, Attribute]:
+        """The attributes of `<option>` that the contacts need together, by name; see `PairContact.attributes`."""
+        found: dict[str, Attribute] = {"timestep": self.contacts[0].timestep}
+        return found | ({"cone": "elliptic", "impratio": self.impratio} if self.has_friction else {})
+
+    def apply(
+        self,
+        model: mujoco.MjModel | mujoco.MjSpec,
+        *,
+        on_geoms: bool = False,
+        keep_others: bool = False,
+        iterations: bool = False,
+        name_geoms: bool = False,
+    ) -> None:
+        """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
+        flags = {"on_geoms": on_geoms, "keep_others": keep_others, "iterations": iterations, "name_geoms": name_geoms}
+        for name, value in flags.items():
+            require_flag(name, value)
+        whole, contacts, h = compiled_model(model), self.contacts, self.contacts[0].timestep
+        if name_geoms and isinstance(model, mujoco.MjSpec):
+            contacts = tuple(contact.with_names(model, whole) for contact in contacts)
+            whole = compiled_model(model)
+        option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
+        switches = self.has_friction and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
+        others: list[tuple[GeomPair, ModelRow]] = []
+        if switches or on_geoms or option.timestep != h:
+            written = {frozenset(contact._pair_in(whole).geoms) for contact in contacts}
+            others = [(pair, ModelRow.of(pair)) for pair in every_pair(whole) if frozenset(pair.geoms) not in written]
+        for contact in contacts:
+            contact.put_into(model, whole, on_geoms)
+        for each in (option, whole.opt):
+            each.timestep = h
+            if self.has_friction:
+                each.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+                each.impratio = max(float(each.impratio), self.impratio)
+            for name in ("iterations", "ls_iterations") if iterations else ():
+                setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
+            if iterations:
+                each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
+        found = [Changed(pair, before, ModelRow.of(pair)) for pair, before in others]
+        changed = [each for each in found if not math.isclose(*each.stiffness, rel_tol=SAME)]
+        changed = [each for each in changed if not (keep_others and _keep(model, each))]
+        if changed:
+            warn_of(changes_said(changed), ContactWarning)
+
+    def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
+        """Reasons in a model for which the contacts differ from their numbers, equal sentences once with the geoms that
+        they concern; see `PairContact.caveats`."""
+        whole = compiled_model(model)
+        return tuple(merged((contact, sentence) for contact in self for sentence in contact.caveats(whole, prefix)))
+
+    def __str__(self) -> str:
+        """A line for each contact."""
+        return "\n".join(str(contact) for contact in self)
+
+
+def merged(sentences: Iterable[tuple[PairContact, str]]) -> Iterator[str]:
+    """Sentences that are alike once, with the geoms that they concern. The first of several with other numbers or
+    names is given in full."""
+    alike: dict[str, dict[str, list[str]]] = {}
+    for contact, sentence in sentences:
+        alike.setdefault(VARIES.sub("#", sentence), {}).setdefault(sentence, []).append(contact.label)
+    for (sentence, about), *others in (each.items() for each in alike.values()):
+        rest = list(dict.fromkeys(label for _, labels in others for label in labels))
+        yield f"{named(about)}: {sentence}" + (f" [and alike for {named(rest)}]" if rest else "")
+
+
+def _text(value: Attribute) -> str:
     """The value of an attribute, numbers with all of their digits."""
     if isinstance(value, tuple):
         return " ".join(repr(float(number)) for number in value)
     return value if isinstance(value, str) else repr(value)
 
 
-def _element(name: str, attributes: dict[str, Any]) -> str:
+def _element(name: str, attributes: dict[str, Attribute]) -> str:
     return f"<{name} {' '.join(f'{key}={quoted(_text(value))}' for key, value in attributes.items())}/>"
 
 
-def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> Any:
+def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> mujoco.MjsPair:
     """The explicit pair of two geoms in a specification, made where there is none."""
     first, second = geoms.names
     listed = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {first, second})
     return next(listed, None) or spec.add_pair(geomname1=first, geomname2=second)
 
 
-class Writing(NamedTuple):
-    """How contacts are written; see `PairContact.apply`."""
+class Changed(NamedTuple):
+    """A contact that the options change, and its rows before and after."""
 
-    on_geoms: bool
-    keep_others: bool
-    iterations: bool
-    name_geoms: bool
+    pair: GeomPair
+    before: ModelRow
+    after: ModelRow
+
+    @property
+    def kept(self) -> Mixed | None:
+        """Parameters of an explicit pair that keep its row as before; None where MuJoCo has no such row.
+
+        With the pyramidal cone the rows of a contact with friction are as stiff as one row of the elliptic cone times
+        `Mixed.pyramid`, f. A contact is kept by a row that is f times as large in all three of its numbers. For K
+        [1/s2], B [1/s] and the impedance d these are K d / R, B / R and 1 / R with 1 / R = d / ((1 - d) W), so that
+
+            d' = f d / (1 - d + f d),    K' = K d / d',    B' = B.
+
+        Where d grows with penetration, both of its ends become d', and K' belongs to their geometric mean.
+        """
+        before, factor = self.before, self.before.scale / self.after.scale
+        d, dw, *shape = before.solimp
+        if before.constant:
+            dw = d
+        near, full = (factor * end / (1 - end + factor * end) for end in (d, dw))
+        spring = before.spring * math.sqrt(d * dw / (near * full))
+        made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
+        load, row = self.pair.load, ModelRow(self.pair.model, self.pair.inverse_weight, made)
+        return made if math.isclose(row.loaded(load), before.loaded(load), rel_tol=KEPT_WITHIN) else None
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """k before and after, under the weight [N/m]."""
+        return self.before.loaded(self.pair.load), self.after.loaded(self.pair.load)
 
 
-def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, how: Writing) -> None:
-    """Write contacts of one time step into a model or a specification, and warn of others that this changes."""
-    whole = compiled_model(model)
-    on_geoms, keep_others, iterations, named = (require_flag(name, value) for name, value in how._asdict().items())
-    if named and isinstance(model, mujoco.MjSpec):
-        contacts = [contact.with_names(model, whole) for contact in contacts]
-        whole = compiled_model(model)
-    option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
-    rubs = any(contact.condim > 1 for contact in contacts)
-    switches = rubs and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
-    others = None
-    if switches or on_geoms or option.timestep != contacts[0].timestep:
-        others = Others(whole, {frozenset(contact._pair_in(whole).geoms) for contact in contacts})
-    for contact in contacts:
-        contact.put_into(model, whole, on_geoms)
-    for each in (option, whole.opt):
-        each.timestep = contacts[0].timestep
-        if rubs:
-            each.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-            each.impratio = max([float(each.impratio), *(contact.impratio for contact in contacts)])
-        for name in ("iterations", "ls_iterations") if iterations else ():
-            setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
-        if iterations:
-            each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
-    changed = [] if others is None else list(others.changed())
-    if keep_others:
-        changed = [each for each in changed if not _keep(model, each)]
-    if changed:
-        warnings.warn(sentence(changed), ContactWarning, stacklevel=3)
+def changes_said(changed: Collection[Changed]) -> str:
+    """Contacts that the options change, the one that changes most first, as a sentence."""
+    told = []
+    for each in sorted(changed, key=lambda one: -abs(math.log(one.stiffness[1] / one.stiffness[0]))):
+        told.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(each.pair.labels), *each.stiffness))
+    return (
+        f"the options that the contact needs change the stiffness of {len(told)} other contacts of the model under the "
+        f"weight: {named(told)}; contacts_for gives them numbers of their own, or keep_others=True writes pairs that "
+        "keep named geoms as they were"
+    )
 
 
 def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
@@ -362,30 +477,12 @@ def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
         return False
     if isinstance(model, mujoco.MjModel):
         if geoms.explicit >= 0:
-            model.pair_solref[geoms.explicit], model.pair_solimp[geoms.explicit] = numbers.solref, numbers.solimp
+            numbers.write(model, geoms.explicit)
         return geoms.explicit >= 0
     if not all(geoms.names):
         return False
-    pair = _spec_pair(model, geoms)
-    pair.solref, pair.solimp = numbers.solref, numbers.solimp
-    if geoms.explicit < 0:
-        pair.condim, pair.friction = numbers.condim, numbers.friction
-        pair.margin, pair.gap, pair.adhesion = numbers.margin, numbers.gap, numbers.adhesion
+    numbers.write_spec(_spec_pair(model, geoms))
     return True
-
-
-def options_of(contacts: Sequence[PairContact]) -> dict[str, Any]:
-    """The attributes of `<option>` that contacts of one time step need together."""
-    found: dict[str, Any] = {"timestep": contacts[0].timestep}
-    if any(contact.condim > 1 for contact in contacts):
-        found |= {"cone": "elliptic", "impratio": max(contact.impratio for contact in contacts)}
-    return found
-
-
-def document(contacts: Sequence[PairContact]) -> str:
-    """The options that contacts of one time step need together, and their explicit pairs."""
-    pairs = "".join(f"  {_element('pair', contact.attributes)}\n" for contact in contacts)
-    return f"{_element('option', options_of(contacts))}\n<contact>\n{pairs}</contact>\n"
 
 
 def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:

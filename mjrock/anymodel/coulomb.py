@@ -1,4 +1,4 @@
-"""Coulomb's law for contacts that slide, in anyone's steps: `CoulombFriction`.
+"""Coulomb's law for contacts that slide, in steps of any program: `CoulombFriction`.
 
 MuJoCo's cone presses a contact that slides apart, by the friction that its row would need to stop it; see
 `engine/sliding.py`. Here a contact that slides through the next step has no friction row. Mu times the force of its law

@@ -1,6 +1,6 @@
-"""Geoms of anyone's model that can meet: their names, their bodies, and the mass of their approach.
+"""Geoms of any model that can meet: their names, their bodies, and the direction in which they part.
 
-Which geoms MuJoCo lets collide without an explicit pair are the rules of its manual (Computation, Selection)."""
+Geoms that collide without an explicit pair are found by the rules of MuJoCo's manual (Computation, Selection)."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
         return model
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # MuJoCo repeats what it said when the parts were attached
+            warnings.simplefilter("ignore")  # MuJoCo repeats its warnings of when the parts were attached
             return model.compile()
     except ValueError as error:
         raise ValueError(f"model does not compile: {error}") from error
@@ -218,15 +218,14 @@ class GeomPair:
 
     def apart(self, data: mujoco.MjData) -> tuple[Array, float, Array | None]:
         """The unit vector along which the first geom parts from the second, their distance [m], and the nearest points
-        of both [m], shape (2, 3), or None where MuJoCo knows none.
+        of both [m], shape (2, 3), or None where MuJoCo finds none.
 
         The vector is the normal of a plane, otherwise it points along the shortest distance of the geoms.
         """
         between = data.geom_xpos[self.geoms[0]] - data.geom_xpos[self.geoms[1]]
         distance, ends = self._shortest(data)
-        for geom, sign in zip(self.geoms, (-1.0, 1.0), strict=True):
-            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
-                return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2]), distance, ends
+        if (axis := self.axis(data, mujoco.mjtGeom.mjGEOM_PLANE)) is not None:
+            return axis, distance, ends
         apart = np.zeros(3) if ends is None else np.copysign(1.0, distance) * (ends[0] - ends[1])
         if np.linalg.norm(apart) < TOUCHING_SHARE * np.linalg.norm(between):
             place = np.array(data.geom_xpos[self.geoms[0]])
@@ -238,10 +237,11 @@ class GeomPair:
         vector = next(vector for vector in (apart, between, up) if np.any(np.abs(vector) > 1e-12))
         return np.array(vector / np.linalg.norm(vector)), distance, ends
 
-    def field_axis(self, data: mujoco.MjData) -> Array | None:
-        """The unit vector along which the first geom parts from a height field, its axis; None for other geoms."""
+    def axis(self, data: mujoco.MjData, kind: mujoco.mjtGeom) -> Array | None:
+        """The unit vector along which the first geom parts from the second, where one of them is a plane or a height
+        field, as `kind` says: its axis. None for other geoms."""
         for geom, sign in zip(self.geoms, (-1.0, 1.0), strict=True):
-            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_HFIELD:
+            if self.model.geom_type[geom] == kind:
                 return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2])
         return None
 
@@ -265,7 +265,7 @@ class GeomPair:
         return bool(found) and max(found) < FACING
 
     def _shortest(self, data: mujoco.MjData) -> tuple[float, Array | None]:
-        """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo knows none."""
+        """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo finds none."""
         ends = np.zeros(6)
         try:
             distance = float(mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST_GEOM, ends))

@@ -1,4 +1,8 @@
-"""What the contacts of anyone's MuJoCo model are in N/m and N s/m: `inspect_contacts`."""
+"""The contacts of any MuJoCo model in N/m and N s/m: `inspect_contacts`, and `inspect_flexes` for flexes.
+
+MuJoCo mixes the parameters of a flex and a geom as those of two geoms. The inverse weight of a contact is that of the
+body of the geom and of the bodies of the vertices that meet it, with the weights of the contact point among them. On a
+plane it is one vertex. The contacts of all vertices are therefore between the softest and the stiffest of them."""
 
 from __future__ import annotations
 
@@ -7,15 +11,26 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
+import numpy as np
 
-from ..problem.damping.falling import rebound_at
-from ..problem.damping.rebound import rebound_restitution
+from ..problem.damping.rebound import rebound_at, rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within, short_repr
-from .geoms import GeomPair, compiled_model, every_pair
-from .holding import holding
-from .meeting import IMMOVABLE, Keyframe, PairMeeting, Pose, meeting_of_geoms, other_keyframes
-from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
-from .row_of_model import ModelRow
+from .geoms import GeomPair, compiled_model, every_pair, geom_label
+from .meeting import Keyframe, PairMeeting, Pose, meeting_of_geoms
+from .notes import (
+    IMMOVABLE,
+    UNSOUND,
+    duplicates,
+    holding,
+    model_spoilers,
+    other_keyframes,
+    resolving_step,
+    rounded_down,
+    turned,
+    uneven,
+    unknown,
+)
+from .row_of_model import Mixed, ModelRow
 
 
 @dataclass(frozen=True)
@@ -24,7 +39,7 @@ class InspectedContact:
 
     Args:
         geom1, geom2: names of the geoms; without a name, that of the body with the number of the geom in brackets.
-        explicit: whether an explicit `<pair>` says so, or MuJoCo mixes it from the two geoms.
+        explicit: whether it has an explicit `<pair>`; otherwise MuJoCo mixes it from the two geoms.
         k, c: spring [N/m] and dashpot [N s/m] of each contact point.
         inertia: inertia that the row adds in a contact, beyond what the Euler step takes [kg].
         mass: effective mass of the whole contact in the pose [kg]; infinity if the geoms cannot approach each other.
@@ -34,7 +49,7 @@ class InspectedContact:
         k_loaded: load over the indentation at which the contact carries it [N/m].
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         bodies: names of the two bodies, or their numbers in brackets.
-        notes: what else is to be known of it, one sentence each.
+        notes: further facts about it, one sentence each.
     """
 
     geom1: str
@@ -145,12 +160,12 @@ def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | N
         k=row.k,
         c=row.c,
         inertia=row.inertia,
-        mass=met.felt.mass,
+        mass=met.effective.mass,
         impedance=row.impedance,
         points=met.points,
         load=force,
         k_loaded=row.loaded(force),
-        gravity=max(0.0, met.felt.gravity),
+        gravity=max(0.0, met.effective.gravity),
         bodies=pair.body_names,
         notes=(),
     )
@@ -162,11 +177,11 @@ def _notes(
 ) -> Iterator[str]:
     yield from duplicates(pair)
     yield from row.notes()
-    yield from pose.turned(pair, found.k)
+    yield from turned(pair, pose, found.k)
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)
-    if met.company.level:
-        yield f"it lands together with {len(met.company.level)} other contacts of its bodies, and shares the mass"
+    if met.neighbours.level:
+        yield f"it lands together with {len(met.neighbours.level)} other contacts of its bodies, and shares the mass"
     if pair.is_uneven:
         yield uneven(found.points)
     elif contacts == 1 and pair.makes_several_points:
@@ -184,9 +199,9 @@ def _notes(
             f"and the mass {found.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
         )
         return
-    yield from pose.unknown(pair)
+    yield from unknown(pair, pose)
     if found.k > 0:
-        yield from holding(pose, met.felt, found.k * met.points, found.xi, found.mass)
+        yield from holding(pose, met.effective, found.k * met.points, found.xi)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
         yield from other_keyframes(pair, pose, met, contacts, row.mixed.sliding)
 
@@ -209,3 +224,60 @@ def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:
         f"timestep = {h:g} s is long for it, omega h = {contact.frequency * h:.2g}: e leaves out the step, and the "
         f"rebound can be another{gain}; {rounded_down(longest)} s resolves it"
     )
+
+
+@dataclass(frozen=True, eq=False)
+class FlexContact:
+    """The contacts of a flex with a geom.
+
+    Args:
+        flex, geom: their labels.
+        points: vertices of the flex.
+        k, c: spring [N/m] and dashpot [N s/m] at zero penetration of the softest and the stiffest vertex, shape (2,).
+    """
+
+    flex: str
+    geom: str
+    points: int
+    k: Array
+    c: Array
+
+    __repr__ = short_repr
+
+    def __str__(self) -> str:
+        """Its numbers as one line of text."""
+        k, c = (" to ".join(dict.fromkeys(f"{value:.4g}" for value in values)) for values in (self.k, self.c))
+        return f"{self.flex} on {self.geom}: k = {k} N/m, c = {c} N s/m at each of up to {self.points} points"
+
+
+def inspect_flexes(model: mujoco.MjModel | mujoco.MjSpec) -> tuple[FlexContact, ...]:
+    """Every contact that a flex of a model can make with a geom, in physical units; those of flexes alone are left out.
+
+    Args:
+        model: a compiled model or a specification; it is not changed.
+
+    Raises:
+        TypeError: unless it is a model.
+        ValueError: if the specification does not compile.
+    """
+    return tuple(_flex_contacts(compiled_model(model)))
+
+
+def _flex_contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
+    for flex in range(model.nflex):
+        start = int(model.flex_vertadr[flex])
+        bodies = model.flex_vertbodyid[start : start + int(model.flex_vertnum[flex])]
+        if model.flex_interp[flex]:  # its vertices hang on nodes
+            start = int(model.flex_nodeadr[flex])
+            bodies = model.flex_nodebodyid[start : start + int(model.flex_nodenum[flex])]
+        vertices = model.body_invweight0[bodies, 0]
+        kinds, masks = int(model.flex_contype[flex]), int(model.flex_conaffinity[flex])
+        for geom in np.flatnonzero(model.geom_contype & masks | model.geom_conaffinity & kinds).tolist():
+            weights = model.body_invweight0[model.geom_bodyid[geom], 0] + vertices
+            if weights.max() > 0:
+                mixed = Mixed.of_sides(model, (("geom", geom), ("flex", flex)))
+                ends = (weights.max(), weights[weights > 0].min())
+                rows = [ModelRow(model, float(weight), mixed) for weight in ends]
+                name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, flex) or f"[{flex}]"
+                k, c = (np.array([getattr(row, each) for row in rows]) for each in ("k", "c"))
+                yield FlexContact(name, geom_label(model, geom), int(model.flex_vertnum[flex]), k, c)

@@ -1,36 +1,59 @@
-"""`contact_for`: a stiffness in N/m and a restitution for two geoms of anyone's MuJoCo model."""
+"""`contact_for` and `contacts_for`: a stiffness in N/m and a restitution for geoms of any MuJoCo model.
+
+How many iterations MuJoCo's solver needs for contacts is found by a trial. They are written into a copy of the model,
+on its pairs and its geoms. Geoms that are apart act at the distance at which they are, so that every contact carries.
+The copy steps with a solver that converges, from a state that moves in all of its joints. At each state the solver of
+the model solves the same equations. Where it ends at its last iteration or finds other forces, it has too few.
+"""
 
 from __future__ import annotations
 
+import copy
+import itertools
 import math
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from fnmatch import fnmatchcase
+from typing import Annotated
 
 import mujoco
+import numpy as np
 
 from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_values, row
 from ..method import METHOD
-from ..problem.damping.falling import MOST_PULL, falling_damping
-from ..problem.damping.rebound import rebound_damping
-from ..quantities import Array, named, require_whole, require_within, shown, spelt
-from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
-from .geoms import GeomPair, compiled_model
-from .holding import holding
-from .meeting import Company, Keyframe, PairMeeting, Pose, giving_way, meeting_of_geoms, other_keyframes
+from ..problem.damping.rebound import MOST_PULL, falling_damping, rebound_damping
+from ..quantities import Array, Within, keep_declared, named, require_within, shown, spelt
+from .contact import PairContact, PairContacts, merged, soft_spoilers, spoilers, weight_spoilers
+from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
+from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms, posed_alike
 from .notes import (
+    LINE_SEARCHES,
     LONG_STEP,
+    MOST_TURNS,
     UNSOUND,
     ContactWarning,
+    SolverNeed,
+    giving_way,
+    holding,
+    other_keyframes,
     resolving_step,
     rounded_down,
     stiffest,
+    turned,
+    unknown,
 )
 from .row_of_model import Grip, Mixed, ModelRow, unused
-from .trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
+STEPS = 50
+"""Steps of a trial of the solver."""
+MOVING = 0.1
+"""Largest speed of a joint at the start of a trial [m/s or rad/s]."""
+OTHER_FORCES = 0.01
+"""Change of the forces, as a share of the largest, from which they are others [-]."""
+Geom = str | int
 
 
 def contact_for(
@@ -108,55 +131,201 @@ def contact_for(
     pair = GeomPair.named(whole, geom1, geom2)
     asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta, normal)
     pose = Pose(whole, keyframe, qpos)
-    contact = beside(*contact_of(pair, pose, asked), {})
-    contact = replace(contact, needs=solver_need(whole, pose, [contact]))
-    for sentence in (*spoilers(pair, contact), *contact.remarks):
+    made = _made(pose, [(pair, asked)])
+    for _, sentence in _sentences(whole, made):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
-    return contact
+    return made.contacts[0]
+
+
+def contacts_for(
+    model: mujoco.MjModel | mujoco.MjSpec,
+    pairs: Mapping[tuple[Geom, Geom], Mapping[str, object]],
+    *,
+    keyframe: Keyframe = None,
+    qpos: Sequence[float] | Array | None = None,
+    timestep: float | None = None,
+) -> PairContacts:
+    """Contacts of many geoms at once. A specification is compiled once.
+
+    Args:
+        model: a compiled model or a specification; it is not changed.
+        pairs: what is asked of the contacts of two geoms, by their names or numbers: arguments of `contact_for` by
+            name, such as `{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}`. Names may have the wildcards `*`, `?`
+            and `[...]`. They are looked for among the geoms, and where none has it among the bodies with one geom. They
+            name what MuJoCo lets collide, by contype and conaffinity, `<exclude>`, and parent and child, or by an
+            explicit pair. Names without wildcards override that. A later entry replaces what wildcards named before.
+        keyframe, qpos: the pose in which all of them meet; see `contact_for`.
+        timestep: MuJoCo's step [s], positive. None takes the model's.
+
+    Returns:
+        The contacts, with ``.xml``, `.apply(model)` and `.caveats(model)` of them all.
+
+    Raises:
+        TypeError, ValueError: as `contact_for` does, and for names that nothing has, wildcards of which MuJoCo lets
+            none collide, or two geoms named twice without wildcards.
+
+    Warns:
+        ContactWarning: as `contact_for` does, sentences that are alike once, with the geoms that they are about.
+    """
+    whole = compiled_model(model)
+    if not isinstance(pairs, Mapping):
+        raise TypeError(
+            f"pairs = {shown(pairs)} has to be a dictionary, such as "
+            '{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}'
+        )
+    pose = Pose(whole, keyframe, qpos)
+    meant: dict[frozenset[int], tuple[tuple[int, int], ContactRequest, bool]] = {}
+    for key, values in pairs.items():
+        asked = _asked(key, values, timestep)
+        for geoms in _meant(whole, key):
+            if not meant.get(frozenset(geoms), (geoms, asked, True))[2]:
+                raise ValueError(f"pairs name the geoms {GeomPair(whole, geoms).labels} twice, last by {shown(key)}")
+            meant[frozenset(geoms)] = geoms, asked, any(map(_is_wild, key))
+    if not meant:
+        raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
+    made = _made(pose, [(GeomPair.named(whole, *geoms), asked) for geoms, asked, _ in meant.values()])
+    for sentence in merged(_sentences(whole, made)):
+        warnings.warn(sentence, ContactWarning, stacklevel=2)
+    return made
+
+
+def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> PairContacts:
+    """The requested contacts in a pose, with the iterations that they need and remarks on what lands with each."""
+    found = [contact_of(pair, pose, each) for pair, each in asked]
+    made = {frozenset(contact.ids): contact for contact, _ in found}
+    needs = solver_need(pose, PairContacts(tuple(made.values())))
+    whole = (replace(beside(contact, neighbours, made), needs=needs) for contact, neighbours in found)
+    return PairContacts(tuple(whole))
+
+
+def _sentences(model: mujoco.MjModel, contacts: Iterable[PairContact]) -> Iterator[tuple[PairContact, str]]:
+    """Reasons for which contacts differ from the request, each with its contact."""
+    for contact in contacts:
+        for sentence in (*spoilers(GeomPair(model, contact.ids), contact), *contact.remarks):
+            yield contact, sentence
+
+
+def _asked(key: object, values: object, timestep: float | None) -> ContactRequest:
+    if not isinstance(key, tuple) or len(key) != 2:
+        raise TypeError(f"pairs have the key {shown(key)}; it has to be two geoms, such as ('foot*', 'floor')")
+    if not isinstance(values, Mapping):
+        raise TypeError(f"pairs of {shown(key)} = {shown(values)} has to be arguments of contact_for by name")
+    unknown = [str(name) for name in values if name not in TAKES]
+    if unknown:
+        raise ValueError(f"pairs of {shown(key)} have {named(unknown)}; each takes {', '.join(TAKES)}")
+    return ContactRequest(**values, timestep=timestep)
+
+
+def _meant(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:
+    """The numbers of the geoms that a key names; with wildcards, of those for which MuJoCo makes contacts."""
+    firsts, seconds = (
+        _matching(model, argument, value) for argument, value in zip(("geom1", "geom2"), key, strict=True)
+    )
+    if not any(map(_is_wild, key)):
+        yield firsts[0], seconds[0]
+        return
+    found: dict[frozenset[int], tuple[int, int]] = {}
+    for geoms in itertools.product(firsts, seconds):
+        if frozenset(geoms) not in found and makes(GeomPair(model, geoms)):
+            found[frozenset(geoms)] = geoms
+    if not found:
+        raise ValueError(
+            f"pairs of {shown(key)} are geoms that MuJoCo keeps apart, by contype and conaffinity, <exclude>, or as "
+            "one body or parent and child; names without wildcards override that"
+        )
+    yield from found.values()
+
+
+def _is_wild(name: object) -> bool:
+    """Whether a name has wildcards."""
+    return isinstance(name, str) and any(mark in name for mark in "*?[")
+
+
+def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
+    """The numbers of the geoms that a name with wildcards means."""
+    if not isinstance(value, str) or not _is_wild(value):
+        return [geom_id(model, argument, value)]
+    geoms = names_of_objects(model, GEOM)
+    found = [i for i, name in enumerate(geoms) if name and fnmatchcase(name, value)]
+    if not found:
+        alike = (i for i, name in enumerate(names_of_objects(model, BODY)) if fnmatchcase(name, value))
+        found = [int(model.body_geomadr[i]) for i in alike if model.body_geomnum[i] == 1]
+    if not found:
+        known = named([name for name in geoms if name]) or "none"
+        raise ValueError(
+            f"{argument} = {shown(value)} matches no geom, nor a body with a single one; geoms are: {known}"
+        )
+    return found
 
 
 @dataclass(frozen=True)
 class ContactRequest:
-    """What is asked of a contact: the arguments of `contact_for` by name, as they were given."""
+    """The request for a contact: the arguments of `contact_for` by name.
 
-    k: object = None
-    c: object = None
-    restitution: object = None
-    xi: object = None
+    Raises:
+        TypeError, ValueError: for a number outside its range, if both a mass and a point are given, and unless exactly
+            one of c, restitution and xi is.
+    """
+
+    k: Annotated[float | None, Within(1e-30, 1e30, "N/m", "stiffness k")] = None
+    c: Annotated[float | None, Within(0.0, 1e30, "N s/m", "damping c")] = None
+    restitution: Annotated[float | None, Within(0.0, 1.0)] = None
+    xi: Annotated[float | None, Within(0.0, 1e6, name="damping ratio xi")] = None
     friction: object = None
-    mass: object = None
+    mass: Annotated[float | None, Within(1e-30, 1e30, "kg")] = None
     at: object = None
-    contacts: object = None
-    speed: float | None = None
-    timestep: object = None
-    newmark_beta: object = 0.25
+    contacts: Annotated[int | None, Within(1, mujoco.mjMAXCONPAIR, whole=True)] = None
+    speed: Annotated[float | None, Within(1e-9, 1e6, "m/s")] = None
+    timestep: Annotated[float | None, Within(1e-12, 1e3, "s")] = None
+    newmark_beta: Annotated[float, Within(0.0, 1e6)] = 0.25
     normal: object = None
 
+    def __post_init__(self) -> None:
+        if self.mass is not None and self.at is not None:
+            raise ValueError(f"mass = {shown(self.mass)} and at = {shown(self.at)} are both given; give one of them")
+        losses = {"c": self.c, "restitution": self.restitution, "xi": self.xi}
+        given = {name: value for name, value in losses.items() if value is not None}
+        if len(given) != 1:
+            listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
+            raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
+        if self.k is None and self.c is not None:
+            raise ValueError(f"k = None takes restitution or xi, and c = {spelt(self.c)} is given; give k")
+        keep_declared(self)
 
-def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:
-    """The contact of a pair in a pose, with `remarks` on how it differs from what was asked, and what lands
+
+TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
+"""Arguments that each contact of several may have."""
+
+
+def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Neighbours]:
+    """The contact of a pair in a pose, with `remarks` on how it differs from the request, and what lands
     with it."""
     option, pose = pair.model.opt, pose.along(asked.normal)
-    k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
-    beta = require_within("newmark_beta", asked.newmark_beta, 0.0, 1e6)
-    points = None if asked.contacts is None else require_whole("contacts", asked.contacts, 1, mujoco.mjMAXCONPAIR)
-    speed = None if asked.speed is None else require_within("speed", asked.speed, 1e-9, 1e6, "m/s")
-    if asked.mass is not None and asked.at is not None:
-        raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
     grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
-    rate = None if k is not None else LONG_STEP / h
-    alone = asked.mass is not None
     met = meeting_of_geoms(
-        pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k
+        pair,
+        pose,
+        contacts=asked.contacts,
+        at=asked.at,
+        alone=asked.mass is not None,
+        friction=grip.sliding,
+        frequency=LONG_STEP / h if asked.k is None else None,
+        k=asked.k,
     )
-    share = _mass(pair, pose, asked.mass, met)
-    _require_one_loss(asked)
-    if k is None:
-        k = _stiffest(pair, asked, h, share, met.felt.gravity)
-    c = _dashpot(k, share, asked, met.felt.gravity)
+    if asked.mass is None and not met.effective.mass < math.inf:
+        raise ValueError(
+            f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at {pose.label}, so that "
+            "the model gives no mass for the restitution; give mass"
+        )
+    share = met.share if asked.mass is None else asked.mass / met.points
+    gravity = met.effective.gravity
+    k = _stiffest(pair, asked, h, share, gravity) if asked.k is None else asked.k
+    c = asked.c
+    if c is None:
+        c = 2 * _damping_ratio(asked, math.sqrt(k / share), gravity) * math.sqrt(k * share)
     staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, beta, staged)
+    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, asked.newmark_beta, staged)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
     contact = PairContact(
         *pair.names,
@@ -173,91 +342,60 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
         adhesion=mixed.adhesion,
         gap=mixed.gap,
-        speed=speed,
-        gravity=max(0.0, met.felt.gravity),
+        speed=asked.speed,
+        gravity=max(0.0, gravity),
         pose=pose.label,
-        load=pose.load(pair, met.points, points),
-        remarks=(
-            *unused(asked.friction, grip),
-            *pose.turned(pair, k),
-            *_remarks(pair, pose, asked, met, k, c, grip.sliding),
-        ),
+        load=pose.load(pair, met.points, asked.contacts),
     )
-    weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
-    load = contact.load
-    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow.of(pair).loaded(load), pair.thickness))
-    return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
+    remarks = [*unused(asked.friction, grip), *turned(pair, pose, k)]
+    remarks += _remarks(pair, pose, asked, met, k, c, grip.sliding)
+    if asked.restitution is not None:
+        remarks += weight_spoilers(contact)
+    if asked.k is None:
+        remarks += soft_spoilers(contact, ModelRow.of(pair).loaded(contact.load), pair.thickness)
+    return replace(contact, remarks=tuple(remarks)), met.neighbours
 
 
-def beside(contact: PairContact, company: Company, made: Mapping[frozenset[int], PairContact]) -> PairContact:
+def beside(contact: PairContact, neighbours: Neighbours, made: Mapping[frozenset[int], PairContact]) -> PairContact:
     """The contact with `remarks` on what lands with it: what is not `made` the same, and what is not level."""
-    label = {pair: " on ".join(pair.labels) for pair in (*company.level, *company.apart)}
+    label = {pair: " on ".join(pair.labels) for pair in (*neighbours.level, *neighbours.apart)}
     others = {pair: made.get(frozenset(pair.geoms)) for pair in label}
-    strangers = [label[pair] for pair in company.level if not (other := others[pair]) or not contact.is_like(other)]
-    apart = [label[pair] for pair in company.apart if others[pair]]
+    unlike = [label[pair] for pair in neighbours.level if not (other := others[pair]) or not contact.is_like(other)]
+    apart = [label[pair] for pair in neighbours.apart if others[pair]]
     level = f"give the pose in which the bodies stand level, not {contact.pose}"
     remarks = []
-    if strangers:
+    if unlike:
         remarks.append(
-            f"it lands together with {named(strangers)}, and shares the mass; give them the same contact, or contacts= "
+            f"it lands together with {named(unlike)}, and shares the mass; give them the same contact, or contacts= "
             "to this one for the mass at its own points"
         )
-    if company.late > 0:
+    if neighbours.late > 0:
         remarks.append(
-            f"what is taken to land together with it touches up to {company.late:.2g} m sooner or later; {level}"
+            f"what is taken to land together with it touches up to {neighbours.late:.2g} m sooner or later; {level}"
         )
     if apart:
         remarks.append(f"it lands together with {named(apart)}, and shares the mass, only on a level; {level}")
     return replace(contact, remarks=(*contact.remarks, *remarks))
 
 
-def _mass(pair: GeomPair, pose: Pose, mass: object, met: PairMeeting) -> float:
-    """The effective mass of a contact point [kg]."""
-    if mass is not None:
-        return require_within("mass", mass, 1e-30, 1e30, "kg") / met.points
-    if not met.felt.mass < math.inf:
-        raise ValueError(
-            f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at {pose.label}, so that "
-            "the model gives no mass for the restitution; give mass"
-        )
-    return met.share
-
-
 def _damping_ratio(asked: ContactRequest, omega: float, gravity: float) -> float:
     """The damping ratio [-] of a frequency, from the restitution or the damping ratio that is given."""
-    if asked.restitution is None:
-        return require_within("damping ratio xi", asked.xi, 0.0, 1e6)
-    e = max(require_within("restitution", asked.restitution, 0.0, 1.0), LEAST_RESTITUTION)
+    if asked.xi is not None:
+        return asked.xi
+    e = max(asked.restitution or 0.0, LEAST_RESTITUTION)
     if asked.speed is None or gravity <= 0:
         return rebound_damping(e)
-    pull = gravity / (omega * float(asked.speed))
+    pull = gravity / (omega * asked.speed)
     if pull > MOST_PULL:
         slowest = gravity / (omega * MOST_PULL)
         raise ValueError(
-            f"speed = {float(asked.speed):g} m/s is too slow to rebound; the valid range is from {slowest:.3g} m/s on"
+            f"speed = {asked.speed:g} m/s is too slow to rebound; the valid range is from {slowest:.3g} m/s on"
         )
     return falling_damping(e, pull)
 
 
-def _require_one_loss(asked: ContactRequest) -> None:
-    losses = {"c": asked.c, "restitution": asked.restitution, "xi": asked.xi}
-    given = {name: value for name, value in losses.items() if value is not None}
-    if len(given) != 1:
-        listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
-        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
-
-
-def _dashpot(k: float, mass: float, asked: ContactRequest, gravity: float) -> float:
-    """The dashpot of a contact point [N s/m], from the one of the three that is given."""
-    if asked.c is not None:
-        return require_within("damping c", asked.c, 0.0, 1e30, "N s/m")
-    return 2 * _damping_ratio(asked, math.sqrt(k / mass), gravity) * math.sqrt(k * mass)
-
-
 def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, gravity: float) -> float:
     """The stiffest contact that the step resolves, rounded down [N/m]."""
-    if asked.c is not None:
-        raise ValueError(f"k = None takes restitution or xi, and c = {spelt(asked.c)} is given; give k")
     omega = LONG_STEP / h
     for _ in range(20):  # with gravity the damping depends on the frequency, a little
         k = stiffest(h, _damping_ratio(asked, omega, gravity), mass)
@@ -268,18 +406,17 @@ def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, grav
 
 def _remarks(
     pair: GeomPair, pose: Pose, asked: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
-) -> tuple[str, ...]:
-    """Reasons in the pose for which a contact differs from what was asked, one sentence each."""
-    if asked.mass is not None or not met.felt.mass < math.inf:
-        return ()
-    xi = c / (2 * math.sqrt(k * met.share))
-    found = [*pose.unknown(pair)] if asked.at is None else []
-    found += giving_way(pair, pose, met, k, xi, mu, float(asked.speed or 1.0))
-    found += holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0))
+) -> Iterator[str]:
+    """Reasons in the pose for which a contact differs from the request, one sentence each."""
+    if asked.mass is not None:
+        return
+    xi, speed = c / (2 * math.sqrt(k * met.share)), asked.speed or 1.0
+    if asked.at is None:
+        yield from unknown(pair, pose)
+    yield from giving_way(pair, pose, met, k, xi, mu, speed)
+    yield from holding(pose, met.effective, k * met.points, xi, speed)
     if asked.c is None and asked.at is None:
-        contacts = None if asked.contacts is None else met.points
-        found += other_keyframes(pair, pose, met, contacts, mu)
-    return tuple(found)
+        yield from other_keyframes(pair, pose, met, asked.contacts, mu)
 
 
 def _row(
@@ -310,3 +447,73 @@ def _row(
     if inertia > inertia_of(WITHIN[1], inverse_weight):
         raise ValueError(f"newmark_beta = {newmark_beta:g} asks for more inertia than MuJoCo represents; lower it")
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
+
+
+def solver_need(pose: Pose, contacts: PairContacts) -> SolverNeed:
+    """What contacts need of the solver of their model, by a trial in a pose.
+
+    Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
+    """
+    tried = _with(pose, contacts)
+    own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
+    cap, searches = max(own[0], MOST_TURNS), max(own[1], LINE_SEARCHES)
+    most, enough = _stepped(tried, pose, cap, searches)
+    if most < cap:
+        return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), searches)
+    full = float(tried.opt.impratio) if contacts.has_friction else 1.0
+    for power in range(math.ceil(math.log10(full)) - 1, -1, -1):
+        tried.opt.impratio, (tried.opt.iterations, tried.opt.ls_iterations) = 10.0**power, own
+        most, _ = _stepped(tried, pose, cap, searches)
+        if 2 * most <= cap:
+            return SolverNeed(max(2 * most, own[0]), searches, converges=False, impratio=10.0**power)
+    return SolverNeed(*own, converges=False)
+
+
+def _stepped(tried: mujoco.MjModel, pose: Pose, cap: int, searches: int) -> tuple[int, bool]:
+    """The most iterations of a step, of `cap` with so many line searches, and whether those of the model find the same
+    forces."""
+    own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
+    data, other = posed_alike(tried, pose.data), mujoco.MjData(tried)
+    data.qvel[:] = MOVING * np.cos(np.arange(tried.nv))
+    most, enough = 0, True
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for _ in range(STEPS):
+            tried.opt.iterations, tried.opt.ls_iterations = own
+            mujoco.mj_copyData(other, tried, data)
+            mujoco.mj_forward(tried, other)
+            tried.opt.iterations, tried.opt.ls_iterations = cap, searches
+            mujoco.mj_step(tried, data)
+            if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
+                break
+            most = max(most, int(data.solver_niter.max(initial=0)))
+            enough &= _alike(other, data)
+    return most, enough
+
+
+def _with(pose: Pose, contacts: PairContacts) -> mujoco.MjModel:
+    """A copy of the model with contacts on its pairs and geoms, which act at the distance at which they are."""
+    tried = copy.copy(pose.model)
+    option = tried.opt
+    option.timestep = contacts.contacts[0].timestep
+    if contacts.has_friction:
+        option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+        option.impratio = max(float(option.impratio), contacts.impratio, 1.0)
+    for contact in contacts:
+        pair = GeomPair(tried, contact.ids)
+        contact.write_numbers(tried, pair)
+        here = max(0.0, pose.landing(GeomPair(pose.model, contact.ids)).distance) + contact.depth
+        if pair.explicit >= 0:
+            tried.pair_margin[pair.explicit] = here
+        else:
+            first, second = contact.ids
+            tried.geom_margin[first] = max(float(tried.geom_margin[first]), here - float(tried.geom_margin[second]))
+    return tried
+
+
+def _alike(other: mujoco.MjData, data: mujoco.MjData) -> bool:
+    """Whether the forces of two solutions of one state are the same."""
+    if other.nefc != data.nefc or not data.nefc:
+        return True
+    difference = np.abs(np.array(other.efc_force) - data.efc_force).max()
+    return bool(difference <= OTHER_FORCES * np.abs(data.efc_force).max())

@@ -1,12 +1,11 @@
-"""The contact of two geoms in a pose: in how many points they meet, and what each of them feels."""
+"""The contact of two geoms in a pose: in how many points they meet, and the mass that each of them stops."""
 
 from __future__ import annotations
 
 import copy
 import itertools
-import math
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -14,9 +13,8 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
-from .felt import EffectiveMass, ModelSprings, PoseConstraints, felt
+from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass
 from .geoms import FARTHEST_GEOM, GeomPair, makes
 
 DEPTH = 1e-3
@@ -29,16 +27,10 @@ DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFI
 KEY = mujoco.mjtObj.mjOBJ_KEY
 Keyframe = str | int | Sequence[str | int] | None
 """A keyframe by name or number, or several."""
-FOREIGN = 1.2
-"""Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
 NEARLY_LEVEL = 0.05
 """Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
 SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
-IMMOVABLE = 10.0
-"""Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
-TURN = 0.01
-"""Turn about the normal with which the points of two faces are counted again [degrees]."""
 TOUCHING_AT_REST = 1e-4
 """Distance within which geoms of a pose at rest touch [m]."""
 MOST_KEYFRAMES = 20
@@ -54,9 +46,7 @@ class Trial:
         option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
         option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
         option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
-        self.data = mujoco.MjData(self.model)
-        for name in ("qpos", "mocap_pos", "mocap_quat"):
-            getattr(self.data, name)[:] = getattr(data, name)
+        self.data = posed_alike(self.model, data)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         for name in ("geom_contype", "geom_conaffinity", "body_contype", "body_conaffinity"):
@@ -119,6 +109,13 @@ class Trial:
         self.model.body_contype[bodies] = self.model.body_conaffinity[bodies] = value
 
 
+def posed_alike(model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
+    """Data of a copy of a model in the pose of others."""
+    made = mujoco.MjData(model)
+    made.qpos[:], made.mocap_pos[:], made.mocap_quat[:] = data.qpos, data.mocap_pos, data.mocap_quat
+    return made
+
+
 class Landing(NamedTuple):
     """Where two geoms meet.
 
@@ -133,29 +130,6 @@ class Landing(NamedTuple):
     distance: float
     first: Array
     second: Array
-
-
-def landing(pair: GeomPair, data: mujoco.MjData, ground: Trial | None, normal: Array | None = None) -> Landing:
-    """Where two geoms meet.
-
-    Args:
-        pair: the geoms.
-        data: the pose, see `state_of`.
-        ground: a copy of the model in this pose; None for geoms that meet in a single point, without a normal.
-        normal: unit vector along which the first parts from the second, shape (3,). None is that of a plane, the axis
-            of a height field, or the shortest line.
-    """
-    along = pair.field_axis(data) if normal is None else normal
-    if along is not None and ground is not None and (found := ground.drop(pair, along)):
-        return found
-    away, distance, ends = pair.apart(data)
-    away = away if along is None else along
-    if ground is not None:
-        points = ground.points(pair, away, distance)
-        if len(points):
-            return Landing(away, distance, points, points - distance * away)
-    first, second = [pair.centre(data, body) for body in pair.bodies] if ends is None else ends
-    return Landing(away, distance, first[None, :], second[None, :])
 
 
 def keyframe_names(model: mujoco.MjModel) -> tuple[str, ...]:
@@ -211,15 +185,6 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
     return data
 
 
-def awake(model: mujoco.MjModel) -> mujoco.MjModel:
-    """The model without the sleep flag, with which MuJoCo makes no constraints of bodies that begin asleep."""
-    sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
-    if model.opt.enableflags & sleep:
-        model = copy.copy(model)
-        model.opt.enableflags &= ~sleep
-    return model
-
-
 def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset[int], list[float]]:
     """Normal forces of all contact points of a pose at rest [N], by the numbers of their geoms.
 
@@ -234,9 +199,7 @@ def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset
     held.body_invweight0[:] *= 1e-4  # of the regularisation
     first = held.dof_bodyid[held.tree_dofadr[held.dof_treeid]]
     held.dof_armature[held.dof_bodyid != first] += 1e6 * float(held.body_mass.sum())
-    state = mujoco.MjData(held)
-    for name in ("qpos", "mocap_pos", "mocap_quat"):
-        getattr(state, name)[:] = getattr(data, name)
+    state = posed_alike(held, data)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         mujoco.mj_forward(held, state)
@@ -258,7 +221,10 @@ class Pose:
     """
 
     def __init__(self, model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> None:
-        model = awake(model)
+        sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # MuJoCo makes no constraints of bodies that begin asleep
+        if model.opt.enableflags & sleep:
+            model = copy.copy(model)
+            model.opt.enableflags &= ~sleep
         self.model, self.data = model, state_of(model, keyframe, qpos)
         self.given, self.exact = keyframe is not None or qpos is not None, qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
@@ -270,9 +236,24 @@ class Pose:
         """Where two geoms meet in the pose."""
         key = (*pair.geoms, *([] if self.normal is None else self.normal.tolist()))
         if key not in self._landings:
-            tried = pair.makes_several_points or self.normal is not None
-            self._landings[key] = landing(pair, self.data, self.ground if tried else None, self.normal)
+            self._landings[key] = self._land(pair)
         return self._landings[key]
+
+    def _land(self, pair: GeomPair) -> Landing:
+        """Where two geoms meet: along the normal that is given, that of a plane, the axis of a height field, or the
+        shortest line."""
+        ground = self.ground if pair.makes_several_points or self.normal is not None else None
+        along = pair.axis(self.data, mujoco.mjtGeom.mjGEOM_HFIELD) if self.normal is None else self.normal
+        if along is not None and ground is not None and (found := ground.drop(pair, along)):
+            return found
+        away, distance, ends = pair.apart(self.data)
+        away = away if along is None else along
+        if ground is not None:
+            points = ground.points(pair, away, distance)
+            if len(points):
+                return Landing(away, distance, points, points - distance * away)
+        first, second = [pair.centre(self.data, body) for body in pair.bodies] if ends is None else ends
+        return Landing(away, distance, first[None, :], second[None, :])
 
     def along(self, normal: object) -> Pose:
         """The pose in which geoms part along a direction, in the world's frame, shape (3,); itself for None."""
@@ -284,35 +265,6 @@ class Pose:
         other = copy.copy(self)
         other.normal, other._groups = given / size, {}
         return other
-
-    def unknown(self, pair: GeomPair) -> Iterator[str]:
-        """A sentence where the pose does not show how two geoms land."""
-        here = self.landing(pair)
-        if self.normal is None and int(mujoco.mjtGeom.mjGEOM_SDF) in self.model.geom_type[list(pair.geoms)]:
-            yield (
-                "MuJoCo has no shortest line to a geom of signed distances, and that of the centres is taken; give "
-                "normal, the direction in which the first geom parts from the second"
-            )
-        elif self.normal is None and here.distance > TOUCHING_AT_REST and pair.meets_edges(self.data, here.away):
-            yield (
-                f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
-                "neither: how they land is not known, nor the mass; give normal, the direction in which the first "
-                "parts from the second, or the pose in which they land"
-            )
-
-    def turned(self, pair: GeomPair, k: float) -> Iterator[str]:
-        """A sentence where a small turn gives the faces of two geoms another number of points, with both stiffnesses of
-        the joint. Each point has the stiffness k [N/m]."""
-        here = self.landing(pair)
-        if not pair.has_two_faces or not pair.can_turn(self.data, here.away):
-            return
-        before, after = len(here.first), len(self.ground.points(pair, here.away, here.distance, TURN))
-        if after > before:
-            yield (
-                f"a turn of {TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
-                f"joint then has {k * after:.3g} N/m for {k * before:.3g} N/m, and as much more "
-                "damping; faces of which one lies within the other, and meshes in place of boxes, keep their points"
-            )
 
     def group(self, pair: GeomPair) -> Group:
         """The geoms of the two bodies of a pair."""
@@ -362,7 +314,7 @@ class Pose:
         return not any(tree[bodies].any() for tree in pair.trees)
 
 
-class Company(NamedTuple):
+class Neighbours(NamedTuple):
     """The other geoms of two bodies that land at about the same time as a pair.
 
     Args:
@@ -382,18 +334,18 @@ class PairMeeting:
 
     Args:
         points: contact points that share the mass.
-        felt: what the contact feels.
-        company: the other geoms that land with these.
+        effective: the effective mass, and what else of the model acts on the contact.
+        neighbours: the other geoms that land with these.
     """
 
     points: int
-    felt: EffectiveMass
-    company: Company
+    effective: EffectiveMass
+    neighbours: Neighbours
 
     @property
     def share(self) -> float:
         """Mass that each contact point stops [kg]."""
-        return self.felt.mass / self.points
+        return self.effective.mass / self.points
 
 
 def meeting_of_geoms(
@@ -411,18 +363,18 @@ def meeting_of_geoms(
 
     Args:
         pair, pose: the geoms and the pose.
-        contacts: contact points that share the mass. None takes those of a trial landing, with those of its `company`.
+        contacts: contact points that share the mass. None takes those of a trial landing, with those of `neighbours`.
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
-            the centres of mass if the landing has other points than `contacts` says.
+            the centres of mass if the landing has other points than `contacts`.
         alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
-        friction, frequency, k: see `felt`.
+        friction, frequency, k: see `effective_mass`.
     """
     if at is not None:
         point = require_array("at", at, (3,))
         if np.abs(point).max() > FARTHEST_GEOM:
             raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST_GEOM:g} m")
     here = pose.landing(pair)
-    others = Company() if alone or contacts is not None or at is not None else company(pair, pose)
+    others = Neighbours() if alone or contacts is not None or at is not None else neighbours(pair, pose)
     landings = [here, *(pose.landing(other) for other in others.level)]
     first, second = (np.concatenate([getattr(each, side) for each in landings]) for side in ("first", "second"))
     count = len(first) if contacts is None else contacts
@@ -433,12 +385,12 @@ def meeting_of_geoms(
     else:
         places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
-    felt_there = felt(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
-    return PairMeeting(count, felt_there, others)
+    effective = effective_mass(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
+    return PairMeeting(count, effective, others)
 
 
 class Group:
-    """All geoms of two bodies of which MuJoCo makes contacts, in a pose, and where they land once they are asked for.
+    """All geoms of two bodies of which MuJoCo makes contacts, in a pose, and where they land, found when needed.
 
     Attributes:
         pairs: the geoms, those of the first body first.
@@ -462,7 +414,7 @@ class Group:
         return self._landed[chosen, 0], self._landed[chosen, 1:4], self._landed[chosen, 4:]
 
 
-def company(pair: GeomPair, pose: Pose) -> Company:
+def neighbours(pair: GeomPair, pose: Pose) -> Neighbours:
     """The other geoms of the two bodies that land about when a pair does. They part along the same line, and their
     distances differ by less than a share of what lies between them."""
     group, here, place = pose.group(pair), pose.landing(pair), pose.data.geom_xpos
@@ -479,65 +431,8 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
     level = along & (differs <= NEARLY_LEVEL * between)
     late = level & (differs > DEPTH * (between + pair.thickness))
-    return Company(
+    return Neighbours(
         tuple(group.pairs[i] for i in near[level]),
         float(differs[late].max(initial=0.0)),
         tuple(group.pairs[i] for i in near[along & ~level]),
     )
-
-
-def giving_way(
-    pair: GeomPair, pose: Pose, met: PairMeeting, k: float, xi: float, friction: float, speed: float
-) -> Iterator[str]:
-    """A sentence where joints give way within a blow, so that the mass at its end is another.
-
-    Args:
-        pair, pose, met: the geoms, the pose, and how they meet in it.
-        k, xi: stiffness of a contact point [N/m] and damping ratio [-].
-        friction: coefficient of friction [-].
-        speed: speed of the approach [m/s].
-
-    A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
-    """
-    if met.felt.yielding:  # what else moves then is said of them
-        return
-    model, here = pair.model, pose.landing(pair)
-    lasts = math.pi / math.sqrt(k / met.share)
-    moved = np.array(pose.data.qpos)
-    mujoco.mj_integratePos(model, moved, met.felt.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
-    later = Pose(model, qpos=moved)
-    before, after = [], []
-    for body, point in zip(pair.bodies, (here.first.mean(axis=0), here.second.mean(axis=0)), strict=True):
-        turned = later.data.xmat[body].reshape(3, 3) @ pose.data.xmat[body].reshape(3, 3).T
-        before.append(point)
-        after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
-    first, last = (
-        felt(pair, each.held, here.away, (points[0], points[1]), friction=friction, k=k * met.points).mass
-        for each, points in ((pose, before), (later, after))
-    )
-    if max(last / first, first / last) > FOREIGN:
-        yield (
-            f"joints give way within a blow of {lasts:.2g} s at {speed:g} m/s, in which a contact of {first:.3g} kg "
-            f"comes to stop {last:.3g} kg, and the restitution is another; a stiffer contact is over sooner"
-        )
-
-
-def other_keyframes(
-    pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
-) -> Iterator[str]:
-    """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
-    if pose.given and (pose.exact or not pose.leaves(pair)):
-        return
-    names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
-    for name, other in zip(names, pose.others, strict=False):
-        if pose.given and other.leaves(pair):
-            continue
-        share = meeting_of_geoms(pair, other, contacts=contacts, friction=friction).share
-        if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be
-            worst = max(worst, (max(share / here.share, here.share / share), name, share))
-    _, name, share = worst
-    if name:
-        yield (
-            f"a contact point stops {share:.3g} kg at keyframe '{name}' and {here.share:.3g} kg at {pose.label}, "
-            f"for which the contact is made; give keyframe='{name}' if that is where the model stands"
-        )

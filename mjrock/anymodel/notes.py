@@ -13,9 +13,13 @@ from decimal import ROUND_DOWN, Context
 from typing import NamedTuple
 
 import mujoco
+import numpy as np
 
-from ..problem.damping.rebound import rebound_restitution
+from ..problem.damping.rebound import rebound_at, rebound_restitution
+from ..quantities import Array, named
+from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, effective_mass
 from .geoms import GeomPair
+from .meeting import TOUCHING_AT_REST, PairMeeting, Pose, keyframe_names, meeting_of_geoms
 
 SCATTER_WARNED_OF = 0.02
 """Scatter of the restitution from step to step that is worth a warning [-]."""
@@ -23,6 +27,17 @@ LONG_STEP = 0.3
 """omega h from which a step is called long [-]. The mean of e is then off by up to 0.025, most at e = 0.1."""
 UNSOUND = 1.0
 """omega h from which a step does not resolve the contact [-]. `contact_for` then makes it lose what the step takes."""
+STIFF_BESIDE = 0.05
+"""Stiffness beside that of the contact, as a share of it, from which it is named [-]."""
+SHIFTS = 0.02
+"""Change of the restitution by dampers and dry friction from which they are named [-]."""
+FOREIGN = 1.2
+"""Ratio of the masses of two poses from which a warning names the pose that the contact is made for [-]."""
+IMMOVABLE = 10.0
+"""Effective mass over that of all that moves from which a body is reported as hardly able to move [-]."""
+TURN = 0.01
+"""Turn about the normal with which the points of two faces are counted again [degrees]."""
+CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
 ENABLE, DISABLE = mujoco.mjtEnableBit, mujoco.mjtDisableBit
 JUDGED: dict[mujoco.mjtEnableBit | mujoco.mjtDisableBit, str] = {
     ENABLE.mjENBL_OVERRIDE: "the override flag is set, so that o_solref and o_solimp take the place of the solref and "
@@ -69,7 +84,7 @@ VARIES = re.compile(
 
 
 class ContactWarning(UserWarning):
-    """What keeps a contact in N/m from being what was asked, or what it does to the rest of the model."""
+    """A reason for which a contact in N/m differs from the request, or an effect of it on the rest of the model."""
 
 
 def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
@@ -169,3 +184,164 @@ def stiffest(h: float, xi: float, mass: float) -> float:
 def rounded_down(value: float, digits: int = 2) -> str:
     """A positive number as text with so many digits, never above what it is."""
     return f"{float(Context(prec=digits, rounding=ROUND_DOWN).create_decimal_from_float(value)):g}"
+
+
+def unknown(pair: GeomPair, pose: Pose) -> Iterator[str]:
+    """A sentence where the pose does not show how two geoms land."""
+    here = pose.landing(pair)
+    if pose.normal is None and int(mujoco.mjtGeom.mjGEOM_SDF) in pose.model.geom_type[list(pair.geoms)]:
+        yield (
+            "MuJoCo has no shortest line to a geom of signed distances, and that of the centres is taken; give "
+            "normal, the direction in which the first geom parts from the second"
+        )
+    elif pose.normal is None and here.distance > TOUCHING_AT_REST and pair.meets_edges(pose.data, here.away):
+        yield (
+            f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
+            "neither: how they land is not known, nor the mass; give normal, the direction in which the first "
+            "parts from the second, or the pose in which they land"
+        )
+
+
+def turned(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
+    """A sentence where a small turn gives the faces of two geoms another number of points, with both stiffnesses of
+    the joint. Each point has the stiffness k [N/m]."""
+    here = pose.landing(pair)
+    if not pair.has_two_faces or not pair.can_turn(pose.data, here.away):
+        return
+    before, after = len(here.first), len(pose.ground.points(pair, here.away, here.distance, TURN))
+    if after > before:
+        yield (
+            f"a turn of {TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
+            f"joint then has {k * after:.3g} N/m for {k * before:.3g} N/m, and as much more "
+            "damping; faces of which one lies within the other, and meshes in place of boxes, keep their points"
+        )
+
+
+def holding(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float = 1.0) -> Iterator[str]:
+    """What holds the bodies of a contact besides, one sentence each. The whole contact has the stiffness k [N/m], the
+    damping ratio xi [-]; dry friction is judged at the speed of approach [m/s]."""
+    model, data = pose.model, pose.data
+    if effective.slides:
+        yield (
+            "the joints let the point approach only while it slides, so that friction takes part in the blow and the "
+            "restitution depends on it; with friction=0 it is what was asked for"
+        )
+    if effective.yielding:
+        names = [_name(model, CONSTRAINT, number) for number in effective.yielding]
+        many, one = ("s", "") if len(names) > 1 else ("", "s")
+        yield (
+            f"equality constraint{many} {named(names)} yield{one} in a contact, so that bodies move neither as one nor "
+            "apart, and the restitution is another; shorten the time of solref there"
+        )
+    if effective.limits:
+        tendon = int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON)
+        kinds = (TENDON if data.efc_type[row] == tendon else JOINT for row in effective.limits)
+        rows = {_name(model, kind, data.efc_id[row]) for kind, row in zip(kinds, effective.limits, strict=True)}
+        be = "is at its limit" if len(rows) == 1 else "are at their limits"
+        yield f"{named(sorted(rows))} {be} in this pose, which holds the contact too; give mass"
+    yield from _beside(pose, effective, k, xi, speed)
+
+
+def _beside(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float) -> Iterator[str]:
+    """What springs, dampers and dry friction do, where they do much together.
+
+    A dry friction F that is small beside the force m omega v of the contact lowers e by F / (m omega v) times
+    2 sqrt(e) - 2 xi e, which is its work on the way in and out. MuJoCo's row of dry friction yields, and in a short
+    contact it pulls the bodies together on both ways, as gravity does. What it takes is at most the larger of both.
+    """
+    springs, e = pose.springs, rebound_restitution(xi)
+    stiffness, damping = springs.along(effective.motion, speed)
+    friction, mass = springs.friction(effective.motion), effective.mass
+    added = float(stiffness.sum())
+    if abs(added) > STIFF_BESIDE * k:
+        yield (
+            f"{_names(pose, stiffness)} {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
+            "approach, which changes its restitution"
+        )
+    omega = math.sqrt(k / mass)
+    ratio, pull = float(damping.sum()) / (2 * mass * omega), float(friction.sum()) / (mass * omega * speed)
+    damped = e - rebound_restitution(xi + ratio) if ratio > 0 else 0.0
+    rubbed = (
+        min(e, max(pull * (2 * math.sqrt(e) - 2 * xi * e), e - rebound_at(1.0, xi, 1.0, pull))) if pull > 0 else 0.0
+    )
+    least = SHIFTS if damped + rubbed <= SHIFTS else 0.25 * SHIFTS
+    if damped > least:
+        yield (
+            f"{_names(pose, damping)} a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
+            "along the approach, which lowers its restitution"
+        )
+    if rubbed > least:
+        yield (
+            f"{_names(pose, friction)} a dry friction of {friction.sum():.3g} N along the approach, which "
+            f"lowers e = {e:.3g} by up to {rubbed:.2g} at {speed:g} m/s, and by more at a lower speed"
+        )
+
+
+def _names(pose: Pose, shares: Array) -> str:
+    """Those that add nearly all of it, the largest first, and the verb."""
+    shares = np.abs(shares)
+    order = np.argsort(-shares, kind="stable")
+    most = [_name(pose.model, *pose.springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]]
+    return f"{named(most)} add{'s' * (len(most) == 1)}"
+
+
+def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
+    words = {JOINT: "joint", TENDON: "tendon", ACTUATOR: "actuator", CONSTRAINT: ""}[kind]
+    return f"{words} {mujoco.mj_id2name(model, kind, number) or f'[{number}]'!s}".strip()
+
+
+def giving_way(
+    pair: GeomPair, pose: Pose, met: PairMeeting, k: float, xi: float, friction: float, speed: float
+) -> Iterator[str]:
+    """A sentence where joints give way within a blow, so that the mass at its end is another.
+
+    Args:
+        pair, pose, met: the geoms, the pose, and how they meet in it.
+        k, xi: stiffness of a contact point [N/m] and damping ratio [-].
+        friction: coefficient of friction [-].
+        speed: speed of the approach [m/s].
+
+    A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
+    """
+    if met.effective.yielding:  # `holding` names them
+        return
+    model, here = pair.model, pose.landing(pair)
+    lasts = math.pi / math.sqrt(k / met.share)
+    moved = np.array(pose.data.qpos)
+    mujoco.mj_integratePos(model, moved, met.effective.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
+    later = Pose(model, qpos=moved)
+    before, after = [], []
+    for body, point in zip(pair.bodies, (here.first.mean(axis=0), here.second.mean(axis=0)), strict=True):
+        turned = later.data.xmat[body].reshape(3, 3) @ pose.data.xmat[body].reshape(3, 3).T
+        before.append(point)
+        after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
+    first, last = (
+        effective_mass(pair, each.held, here.away, (points[0], points[1]), friction=friction, k=k * met.points).mass
+        for each, points in ((pose, before), (later, after))
+    )
+    if max(last / first, first / last) > FOREIGN:
+        yield (
+            f"joints give way within a blow of {lasts:.2g} s at {speed:g} m/s, in which a contact of {first:.3g} kg "
+            f"comes to stop {last:.3g} kg, and the restitution is another; a stiffer contact is over sooner"
+        )
+
+
+def other_keyframes(
+    pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
+) -> Iterator[str]:
+    """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
+    if pose.given and (pose.exact or not pose.leaves(pair)):
+        return
+    names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
+    for name, other in zip(names, pose.others, strict=False):
+        if pose.given and other.leaves(pair):
+            continue
+        share = meeting_of_geoms(pair, other, contacts=contacts, friction=friction).share
+        if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be
+            worst = max(worst, (max(share / here.share, here.share / share), name, share))
+    _, name, share = worst
+    if name:
+        yield (
+            f"a contact point stops {share:.3g} kg at keyframe '{name}' and {here.share:.3g} kg at {pose.label}, "
+            f"for which the contact is made; give keyframe='{name}' if that is where the model stands"
+        )

@@ -104,6 +104,16 @@ class Mixed:
             float(sum(pulls)),
         )
 
+    def write(self, model: mujoco.MjModel, pair: int) -> None:
+        """Write the numbers into an explicit pair of a compiled model, by its number."""
+        for name, value in vars(self).items():
+            getattr(model, "pair_dim" if name == "condim" else f"pair_{name}")[pair] = value
+
+    def write_spec(self, pair: mujoco.MjsPair) -> None:
+        """Write the numbers into an explicit pair of a specification."""
+        for name, value in vars(self).items():
+            setattr(pair, name, value)
+
     @property
     def sliding(self) -> float:
         """Coefficient of sliding friction, 0 without friction [-]."""

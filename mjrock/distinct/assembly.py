@@ -11,7 +11,7 @@ from ..geometry.vectors import tangents
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.histories import Support
 from ..quantities import Array
-from ..scene.ground import Ground
+from ..scene.course import Ground
 from ..scene.scene import Scene
 from .contacts.faces import edges_of, margins
 from .contacts.touches import FIRST_OPENING

@@ -15,9 +15,8 @@ from ..quantities import require_flag, require_size, require_within
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.motion import required_spacing
-from ..result.problem import problem_of
+from ..result.problem import problem_of, required_start
 from ..result.response import End, Response, State
-from ..result.start import required_start
 from ..result.ties import warn_of_ties
 from ..scene.explicit_step import warn_if_tiny
 from .following import Stepping, follow, warn_if_long

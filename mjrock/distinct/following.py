@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bars import Bar
+from ..compiled import for_types_of
 from ..quantities import Array
 from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
@@ -125,7 +126,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     )
     clock = clock._replace(lead=LEAD if setup.foresees(stepping.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)
-    next_search = 0
+    next_search, steps = 0, advance
     require_sound_rows(system)
     if memory is not None:
         clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
@@ -137,15 +138,17 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
                 if search is not None:
                     memory = memory._replace(search=deepcopy(search.state), until_search=next_search - clock.step)
             if search is not None and clock.step == next_search:
-                system, books, steps = searched(search, system, books, clock)
-                next_search = clock.step + steps
+                system, books, valid = searched(search, system, books, clock)
+                next_search = clock.step + valid
             begun = time.perf_counter()
             ahead = (next_search if search is not None else stop, clock.step + at_once)
             clock = clock._replace(stop=min(stop if clock.step == stepping.last else stepping.last, *ahead))
-            step, row, ended = advance(system, books, samples, clock)
+            step, row, ended = steps(system, books, samples, clock)
             took = time.perf_counter() - begun
             at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
             bar.to(step * clock.h)
+            if steps is advance:  # what a search replaces has the same types
+                steps = for_types_of(advance, system, books, samples, clock)
             clock = clock._replace(step=step, row=row)
             for body in unsound(system.bodies)[:1].tolist():
                 raise breakdown(f"the motion of {setup.scene.bodies.names[body]}", step * clock.h)

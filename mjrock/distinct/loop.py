@@ -26,7 +26,7 @@ from ..geometry.vectors import (
 )
 from ..problem.masonry.laws.joint_law import stored, stored_along
 from ..quantities import GRAVITY, Array
-from ..scene.ground import Ground, mean_acceleration
+from ..scene.course import Ground, mean_acceleration
 from .contacts.contact import press_lines, settle_touches
 from .contacts.friction import book_rubbing, stick
 from .contacts.touches import in_transit, was_open

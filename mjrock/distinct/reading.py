@@ -207,7 +207,8 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
     for table, row, name in run.links:
         for i, part in enumerate(table.booked):
             booked[part][name] = samples.links[:, row.account + i]
-    may_break = dict(zip(run.scene.links.sprung.names, np.isfinite(run.scene.links.sprung.ultimate), strict=True))
+    sprung = run.scene.links.sprung
+    may_break = dict(zip(sprung.names, np.isfinite(sprung.law["ultimate"]), strict=True))
     booked["broken"] = {name: account for name, account in booked["broken"].items() if may_break[name]}
     groups = (*run.scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
     booked["dashpots"] |= dict(zip(groups, samples.dashpots.T, strict=True))

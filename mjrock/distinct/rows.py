@@ -167,8 +167,10 @@ MAY_BE_INFINITE = ("k_s", "margin")
 
 def unsound(table: Rows, endless: tuple[str, ...] = MAY_BE_INFINITE) -> Integers:
     """Numbers of the rows with a number that is not finite, or is none where it may be infinite."""
-    finite, infinite = _words(table.dtype, endless)
     words = as_bytes(table).view(float)
+    if np.isfinite(words).all():
+        return np.zeros(0, dtype=np.int64)
+    finite, infinite = _words(table.dtype, endless)
     sound = np.isfinite(words[:, finite]).all(axis=1) & ~np.isnan(words[:, infinite]).any(axis=1)
     return np.flatnonzero(~sound)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.frames import PLANE, SPACE
 from ..quantities import Array, Integers
-from ..scene.ground import Ground
+from ..scene.course import Ground
 from .rows import TAKEN_BY_LAWS, Rows, kinds, rows
 from .supports import Supports
 

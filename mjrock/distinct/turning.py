@@ -305,7 +305,7 @@ def set_rotations(bodies: Rows, pose: Array) -> None:
 
 def is_flat(bodies: Rows) -> bool:
     """Whether bodies are those of the plane."""
-    return bool(bodies["spin"].shape[1] == 1)
+    return "angle" in (bodies.dtype.names or ())
 
 
 def rotations(bodies: Rows) -> Array:

@@ -21,9 +21,8 @@ from ..geometry.poses import moved
 from ..geometry.vectors import dot
 from ..quantities import Array, Integers
 from ..result.ledger import Ledger
-from ..scene.course import Course
+from ..scene.course import Course, Shaking, mean_acceleration
 from ..scene.dampers import taken_by_dampers
-from ..scene.ground import Shaking, mean_acceleration
 from ..scene.potential import breaks, spring_energy
 from ..scene.scene import Scene
 from .record import Record, StepKinds, Steps, Windows

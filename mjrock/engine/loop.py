@@ -2,7 +2,7 @@
 
 A step that fits the motion is made in four moves: predict (which contacts will touch), change the step, let the engine
 step, judge (how long the next may be). The rules are in modules of their own: `pace` (how long), `touches` (when),
-`sticking` (where), `sliding` (friction), and `mjrock.scene.ground` (the force of the moving base). The loops call
+`sticking` (where), `sliding` (friction), and `mjrock.scene.course` (the force of the moving base). The loops call
 `mj_step` by its address and change timestep, rows, friction and velocities in the memory of the engine.
 """
 
@@ -17,16 +17,93 @@ from ..compiled import compiled, inlined
 from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array, Flags
+from ..scene.course import Ground, mean_acceleration, push_along
 from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
 from .pace import Pace, approached, judged, step_of, while_loaded, while_taut
 from .record import Record
 from .rows import Points, set_rows
 from .setting import Setting, push
-from .shaken import Shaken, add_change, find_answer, take_mean
-from .sliding import Sliding, any_slid, find_acceleration, give_rows_back, slide, sliding_changed, time_to_stop
+from .sliding import (
+    STAGE_VELOCITY,
+    Sliding,
+    any_slid,
+    find_acceleration,
+    give_rows_back,
+    slide,
+    sliding_changed,
+    time_to_stop,
+)
 from .sticking import Joints, Moved, put_sticking_edges_back
 from .touches import Openings, Touches, closure_changed, follow_openings, step_to_break, step_to_touch
+
+
+class Shaken(NamedTuple):
+    """The ground in the last step, and the answer of the bodies. Directions are x, z, and y in space, as in `Ground`.
+
+    The acceleration of the ground has a kink at every sample of its record, and bodies on stiff contacts answer to it
+    at once. Extrapolated from the last steps it would be the largest error of a run. So the accelerations of the bodies
+    are split, q'' = s + G a: a is the acceleration of the ground, whose mean over any time is known exactly, and s
+    changes smoothly between touches. The engine itself gives G wherever the length of the step changes: contacts hold
+    and let go as they do then, and the ground accelerates by one unit more. Accelerations of several bodies are not
+    split, so that there is no direction then: where they slide and strike, their answer changes from step to step.
+
+    Args:
+        mean: mean acceleration of the ground over the window of the last step [m/s2], shape (2 or 3,).
+        answer: acceleration of the bodies for a unit of it, G, shape (2 or 3, n nv); zero until it is found.
+    """
+
+    mean: Array
+    answer: Array
+
+    @classmethod
+    def of(cls, setting: Setting) -> Shaken:
+        """Before the first step."""
+        directions = len(setting.points.places.axes) if setting.splits else 0
+        return cls(np.zeros(directions), np.zeros((directions, len(setting.masses))))
+
+
+@inlined
+def find_answer(
+    memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, shaken: Shaken, t: float
+) -> None:
+    """Find how the bodies answer to the ground at the pose, with the step and the velocity that are set."""
+    if not slide(memory, setting, sliding, frames, t):
+        push(memory, setting, frames, t)
+        memory.forward(memory.model, memory.data)
+    for d in range(len(shaken.mean)):
+        for j in range(len(memory.acceleration)):
+            shaken.answer[d, j] = -memory.acceleration[j]
+    axes, masses = setting.points.places.axes, setting.masses
+    for d in range(len(shaken.mean)):
+        if len(setting.ground[d].accel) > 0:
+            push_along(d, 1.0, masses, axes, memory.applied)
+            memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
+            push_along(d, -1.0, masses, axes, memory.applied)
+            for j in range(len(memory.acceleration)):
+                shaken.answer[d, j] += memory.acceleration[j]
+    give_rows_back(memory, sliding)
+
+
+@inlined
+def add_change(shaken: Shaken, ground: Ground, t: float, h: float, weight: float, to: Array) -> None:
+    """Add to `to` the weight times what the bodies answer to the change of the ground.
+
+    The change is that of its mean acceleration, from the window of the last step to a time h [s] around t [s].
+    """
+    for d in range(len(shaken.mean)):
+        if len(ground[d].accel) > 0:
+            change = mean_acceleration(ground[d], t, h) - shaken.mean[d]
+            for j in range(len(to)):
+                to[j] += weight * change * shaken.answer[d, j]
+
+
+@inlined
+def take_mean(shaken: Shaken, ground: Ground, t: float, h: float) -> None:
+    """Take the mean acceleration of the ground over the window of a step h [s] at t [s]."""
+    for d in range(len(shaken.mean)):
+        shaken.mean[d] = mean_acceleration(ground[d], t, h)
+
 
 LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
 """x^2 + y^2 of the quaternion of a body of space whose axis that stood at rest lies on the ground [-]."""
@@ -361,7 +438,7 @@ def fixed_loop(
     """
     last = max(1, round(setting.duration / h))
     for n in range(len(record.t)):
-        if sliding.coulomb or len(setting.dampers.c) > 0:
+        if sliding.coulomb or len(setting.dampers.law) > 0:
             take_frames(memory.pose, frames, setting.points.places.axes)
         record.t[n], record.h[n] = h * (first + n), h
         make_step(memory, setting, sliding, frames, record, n)

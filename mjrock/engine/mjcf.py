@@ -19,8 +19,9 @@ import numpy as np
 from .._version import __version__
 from ..geometry.frames import PLANE
 from ..method import METHOD, Method
+from ..problem.wall.effect import LinkLaw
 from ..quantities import GRAVITY, Array
-from ..scene.checks import GROUND
+from ..scene.parts import GROUND
 from ..scene.scene import Scene
 from .rows import ContactRows, Step, points_of, set_rows
 from .shapes import in_space, meshes, section, sites, tag, value_text, world
@@ -162,20 +163,21 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float = 0.25, method:
     """The rows of a scene at a fixed step."""
     points, m = points_of(scene, method), len(scene.contacts.k)
     rows, step = ContactRows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
-    return FixedRows(rows, set_rows(points, step, rows), scene.links.c)
+    return FixedRows(rows, set_rows(points, step, rows), scene.links.law["c"])
 
 
 def linked(scene: Scene) -> Iterator[str]:
     """The links: tendons with a spring that is slack up to a length and yields at a force, and with a dashpot."""
     links, lengths = scene.links, dict(zip(scene.links.sprung.names, scene.ties.reach.tolist(), strict=True))
     for i, name in enumerate(links.names):
-        law: dict[str, object] = {"damping": links.c[i]} if links.c[i] > 0 or links.k[i] == 0 else {}
-        if links.k[i] > 0:
-            yields = {} if links.strength[i] == np.inf else {"springyield": links.strength[i] / links.k[i]}
-            slack_from = lengths[name] if links.push[i] > 0 else 0
-            law = {"springlength": (slack_from, lengths[name]), "stiffness": links.k[i], **yields, **law}
+        law = LinkLaw(*links.law[i])
+        said: dict[str, object] = {"damping": law.c} if law.c > 0 or law.k == 0 else {}
+        if law.k > 0:
+            yields = {"springyield": law.strength / law.k} if law.yields else {}
+            slack_from = lengths[name] if law.push > 0 else 0
+            said = {"springlength": (slack_from, lengths[name]), "stiffness": law.k, **yields, **said}
         ends = "".join(tag("site", site=site) for site in (f"{name}_anchor", name))
-        yield "  " + tag("spatial", ends, name=name, **law)
+        yield "  " + tag("spatial", ends, name=name, **said)
 
 
 def forced(scene: Scene) -> Iterator[str]:

@@ -81,7 +81,7 @@ class Engine:
             model,
             data,
             EngineArrays.of(model, data),
-            Record.of(CHUNK, (model.nq, model.nv), model.npair, len(scene.links.damped.c)),
+            Record.of(CHUNK, (model.nq, model.nv), model.npair, len(scene.links.damped.names)),
         )
 
     def follow(self, timestep: float, fixed: FixedRows) -> None:

@@ -9,7 +9,7 @@ The lengths follow from the contacts, the rocking and an error estimate:
   change x accuracy x |v|, and doubled after two steps in a row that changed by less than a quarter of that. |.| weighs
   with the masses, and |v| is the speed at which the bodies arrived at their last touch, or a share `faster` of the
   present kinetic energy as a speed, if that is more. What bodies answer to the ground does not count, see
-  `mjrock.engine.shaken`;
+  `mjrock.engine.loop`;
 * on a shaken base a touch is approached: a step ends before it, but for the last short ones;
 * a loaded contact stays loaded: no step moves a loaded point by more than the share `stays` of its penetration through
   the velocities alone;
@@ -81,7 +81,7 @@ class Pace(NamedTuple):
         return cls(
             short,
             longest,
-            math.sqrt(method.taut * accuracy) / scene.tie_frequency if len(scene.links.sprung.k) else math.inf,
+            math.sqrt(method.taut * accuracy) / scene.tie_frequency if scene.links.sprung.names else math.inf,
             accuracy,
             2 * float(scene.rest_energies[2]),
             scene.highest_frequency,

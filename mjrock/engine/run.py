@@ -114,9 +114,10 @@ class EngineRun:
         when = np.append(steps.windows.t, np.inf)[np.minimum(self.broken, len(steps.t))]
         when[when > duration] = np.inf
         gone = np.isfinite(when)
-        energy[gone] = (links.strength * links.ultimate)[gone]
-        lost = np.where(gone, 0.5 * links.strength**2 / links.k, 0.0)
-        return plastic_of(self.scene, energy / links.strength, energy, when, lost)
+        strength = links.law["strength"]
+        energy[gone] = (strength * links.law["ultimate"])[gone]
+        lost = np.where(gone, 0.5 * strength**2 / links.law["k"], 0.0)
+        return plastic_of(self.scene, energy / strength, energy, when, lost)
 
     def stats(self) -> dict[str, float | str | None]:
         """What a run took, for the `stats` of its response."""
@@ -177,7 +178,7 @@ def balance(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:
         marks: which windows, in order.
     """
     windows = steps.windows
-    yields = bool(np.isfinite(scene.links.sprung.strength).any())  # a tie yields between the marks too
+    yields = bool(np.isfinite(scene.links.sprung.law["strength"]).any())  # a tie yields between the marks too
     at = np.arange(marks[-1] + 1) if yields else marks
     broken = (breaks(scene.ties, steps.pose),) if yields else ()
     stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)

@@ -11,9 +11,8 @@ from ..geometry.kinematics import Ties
 from ..geometry.vectors import increase, minus
 from ..method import METHOD, Method
 from ..quantities import Array
-from ..scene.course import Course
+from ..scene.course import Course, Ground, push_ground
 from ..scene.dampers import Dampers, damp, damping_forces
-from ..scene.ground import Ground, push_ground
 from ..scene.masses import gyroscopic
 from ..scene.scene import Scene
 from .memory import TIMESTEP, EngineArrays
@@ -34,7 +33,7 @@ class Setting(NamedTuple):
         refines: whether dampers, and what MuJoCo's gyroscopic moments lack, act as applied forces at the velocity of
             the pose; otherwise the engine does what is in its text.
         splits: whether accelerations are split into the answer to the ground and what is smooth, see
-            `mjrock.engine.shaken`: those of one body on moving ground.
+            `mjrock.engine.loop`: those of one body on moving ground.
         duration: how long the motion is followed [s].
     """
 
@@ -52,7 +51,7 @@ class Setting(NamedTuple):
     @classmethod
     def of(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
         """That of a run, whose ties yield in it alone."""
-        ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.c))
+        ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.names))
         splits = len(scene.bodies.names) == 1 and any(len(shaking.accel) for shaking in course.ground)
         acting = scene.dampers, damping, refines, splits, float(course.duration)
         return cls(points_of(scene, method), ties, scene.bodies.masses, scene.bodies.products, course.ground, *acting)
@@ -87,7 +86,7 @@ def push(memory: EngineArrays, setting: Setting, frames: Array, t: float) -> Non
     is with the gyroscopic moments of bodies of space.
     """
     dampers, axes, ahead = setting.dampers, setting.points.places.axes, 0.5 * memory.options[TIMESTEP]
-    if len(dampers.c) > 0:
+    if len(dampers.law) > 0:
         for j in range(len(memory.applied)):
             memory.applied[j] = memory.velocity[j] + (ahead * memory.acceleration[j] if setting.refines else 0.0)
         damping_forces(dampers, frames, memory.applied, setting.damping)

@@ -11,7 +11,7 @@ import numpy as np
 from ..files import quoted
 from ..geometry.frames import PLANE
 from ..quantities import Array
-from ..scene.checks import GROUND
+from ..scene.parts import GROUND
 from ..scene.scene import Scene
 from ..scene.tints import TINTS, told_apart
 

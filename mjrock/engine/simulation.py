@@ -13,15 +13,13 @@ from ..quantities import require_flag
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.ledger import StepError
-from ..result.problem import Problem, problem_of
+from ..result.problem import Problem, problem_of, require_in_text, required_start
 from ..result.response import End, Response, State
-from ..result.start import require_unbreakable, required_start
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
 from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
-from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .options import Options
@@ -29,11 +27,13 @@ from .pace import short_step
 from .plain.run import simulate_plain
 from .run import EngineRun, Settings, explained
 from .run_warnings import (
+    interpreted_seconds,
     require_still,
     warn_if_coarse,
     warn_if_lifted,
     warn_if_sheared,
     warn_if_slid,
+    warn_if_slow,
     warn_of_gain,
 )
 from .stepping import fitted_steps, fixed_steps
@@ -118,7 +118,7 @@ def simulate(
     if start is None:
         warn_if_still(case, forces=forces)
     if options.timestep is not None:
-        require_unbreakable(case)
+        require_in_text(case)
     if forces:
         required_room(case, case.duration / options.apart)
     state = None if start is None else required_start(start, case)

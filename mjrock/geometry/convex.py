@@ -25,18 +25,27 @@ def clipped(polygon: Array, window: Array) -> Array:
         inwards = cross(way, polygon - start)
         if (inwards >= 0).all():
             continue
-        kept = []
-        for i in range(len(polygon)):
-            j = (i + 1) % len(polygon)
-            if inwards[i] >= 0:
-                kept.append(polygon[i])
-            if (inwards[i] >= 0) != (inwards[j] >= 0):
-                share = inwards[i] / (inwards[i] - inwards[j])
-                kept.append(polygon[i] + share * (polygon[j] - polygon[i]))
-        if len(kept) < 3:
+        polygon = kept_of(polygon, inwards)
+        if len(polygon) < 3:
             return np.zeros((0, 2))
-        polygon = np.array(kept)
     return polygon
+
+
+def kept_of(polygon: Array, inwards: Array) -> Array:
+    """The part of a convex polygon, shape (n, 2) or (n, 3), whose distances inwards from a line or plane are positive.
+
+    Args:
+        polygon: its corners.
+        inwards: these distances of the corners, shape (n,).
+    """
+    kept = []
+    for i in range(len(polygon)):
+        j = (i + 1) % len(polygon)
+        if inwards[i] >= 0:
+            kept.append(polygon[i])
+        if (inwards[i] >= 0) != (inwards[j] >= 0):
+            kept.append(polygon[i] + inwards[i] / (inwards[i] - inwards[j]) * (polygon[j] - polygon[i]))
+    return np.array(kept)
 
 
 def cleaned(polygon: Array, tolerance: float) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import scipy
@@ -37,6 +36,6 @@ def nearest_roots(pairs: ArrayLike, count: int, roots: Sequence[int]) -> Integer
     return np.asarray(found[2], dtype=np.int64)
 
 
-def _graph(pairs: ArrayLike, count: int) -> Any:
+def _graph(pairs: ArrayLike, count: int) -> scipy.sparse.coo_array:
     rows, columns = np.reshape(np.asarray(pairs, dtype=np.int64), (-1, 2)).T
     return scipy.sparse.coo_array((np.ones(len(rows)), (rows, columns)), shape=(count, count))

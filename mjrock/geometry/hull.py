@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -104,10 +105,15 @@ class Convex:
         return float((self.offsets - (points @ self.normals.T).min(axis=0)).min())
 
     @cached_property
+    def edge_ends(self) -> Array:
+        """Ends of the edges [m], each once, shape (edges, 2, 3)."""
+        pairs = {(min(edge), max(edge)) for face in self.faces for edge in face_edges(face)}
+        return self.corners[np.array(sorted(pairs))]
+
+    @cached_property
     def edges(self) -> Array:
         """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
-        pairs = {(min(i, j), max(i, j)) for face in self.faces for i, j in zip(face, face[1:] + face[:1], strict=True)}
-        ways = np.array([self.corners[j] - self.corners[i] for i, j in sorted(pairs)])
+        ways = self.edge_ends[:, 1] - self.edge_ends[:, 0]
         return unlike_ways(ways / np.linalg.norm(ways, axis=1)[:, None])
 
     @cached_property
@@ -136,11 +142,11 @@ def hull_of(points: Array) -> Hull:
     centred = (points - points.mean(axis=0)) / extent
     thickness = float(np.ptp(centred @ np.linalg.svd(centred, full_matrices=False)[2][-1]))
     if not thickness > THINNEST:
-        raise ValueError(f"lie in a plane: they are {thickness * extent:.3g} m thick")
+        raise ValueError(f"vertices lie in a plane: they are {thickness * extent:.3g} m thick")
     try:
         facets = scipy.spatial.ConvexHull(centred)
     except scipy.spatial.QhullError:
-        raise ValueError(f"enclose no body: they are {thickness * extent:.3g} m thick") from None
+        raise ValueError(f"vertices enclose no body: they are {thickness * extent:.3g} m thick") from None
     sets = _coplanar(centred, facets)
     number_of_faces = np.zeros(len(points), dtype=int)
     for members in sets:
@@ -156,7 +162,7 @@ def hull_of(points: Array) -> Hull:
             faces.append(tuple(int(number[ring[i]]) for i in order))
             normals.append(normal)
     if len(faces) < 4:
-        raise ValueError(f"enclose no body: they are {thickness * extent:.3g} m thick")
+        raise ValueError(f"vertices enclose no body: they are {thickness * extent:.3g} m thick")
     outwards = np.array(normals) + 0.0  # no negative zeros
     offsets = np.array([centred[corners[list(face)]].mean(axis=0) for face in faces])
     depth = (np.einsum("fi,fi->f", outwards, offsets) - centred @ outwards.T).min(axis=1)
@@ -190,6 +196,16 @@ def _around(ring: Array, middle: Array) -> tuple[list[int], Array]:
         order, normal = order[::-1], -normal
     first = int(np.argmin(order))  # each face starts at its lowest number
     return np.roll(order, -first).tolist(), normal / np.linalg.norm(normal)
+
+
+def face_edges(face: tuple[int, ...]) -> list[tuple[int, int]]:
+    """The edges of a face, in its order."""
+    return list(pairwise((*face, face[0])))
+
+
+def triangles_of(faces: Iterable[tuple[int, ...]]) -> list[tuple[int, int, int]]:
+    """The triangles of faces with their first corners."""
+    return [(face[0], i, j) for face in faces for i, j in pairwise(face[1:])]
 
 
 def area_vector(ring: Array) -> Array:
@@ -228,8 +244,7 @@ def bulk_of(corners: Array, faces: tuple[tuple[int, ...], ...]) -> Bulk:
         faces: numbers of the corners of each face, counterclockwise as seen from outside.
     """
     origin = corners.mean(axis=0)
-    triangles = np.array([(face[0], i, j) for face in faces for i, j in pairwise(face[1:])])
-    edges = corners[triangles] - origin  # one tetrahedron each: three edges from the origin
+    edges = corners[triangles_of(faces)] - origin  # one tetrahedron each: three edges from the origin
     determinants = np.linalg.det(edges)
     volume = float(determinants.sum()) / 6
     sums = edges.sum(axis=1)

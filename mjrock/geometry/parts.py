@@ -1,14 +1,15 @@
-"""A body that is not convex, cut along the planes of its own faces into convex parts."""
+"""Bodies of convex parts: how one that is not convex is cut into them, and the edges that they show together."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain, combinations, pairwise
+from itertools import chain, combinations
 
 import numpy as np
 
 from ..quantities import Array
-from .hull import Hull, area_vector, bulk_of, hull_of
+from .convex import kept_of
+from .hull import Convex, Hull, area_vector, bulk_of, face_edges, hull_of, triangles_of
 
 ON_PLANE = 1e-6
 """Distance from a plane below which a corner lies on it, over the extent of the body [-]."""
@@ -22,8 +23,8 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
     """The corners of convex parts that fill a closed body, shape (n, 3) each.
 
     The hull of the body is cut by the plane of the largest face that goes through it, each piece by that of the largest
-    face within it, and so on. A piece that no face goes through is whole or empty, which the winding number about
-    its centroid says. Neighbours whose union is convex are then put together.
+    face within it, and so on. A piece that no face goes through is whole or empty, by the winding number about its
+    centroid. Neighbours whose union is convex are then put together.
 
     Args:
         corners: of the body [m], shape (n, 3).
@@ -36,7 +37,7 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
     """
     origin, extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
     about = (corners - origin) / extent
-    fans = [about[[(face[0], i, j) for i, j in pairwise(face[1:])]] for face in faces]
+    fans = [about[triangles_of([face])] for face in faces]
     triangles = np.concatenate(fans)
     plane = [np.ptp(about[list(face)] @ _normal(about[list(face)])) <= ON_PLANE for face in faces]
     sides = [[about[list(face)]] if flat else [*fan] for face, fan, flat in zip(faces, fans, plane, strict=True)]
@@ -94,14 +95,7 @@ def _kept(polygon: Array, normal: Array, offset: float) -> Array:
         return np.zeros((0, 3))
     if above.min() >= -ON_PLANE:
         return polygon
-    points = []
-    for i in range(len(polygon)):
-        j = (i + 1) % len(polygon)
-        if above[i] >= 0:
-            points.append(polygon[i])
-        if (above[i] >= 0) != (above[j] >= 0):
-            points.append(polygon[i] + above[i] / (above[i] - above[j]) * (polygon[j] - polygon[i]))
-    return np.array(points)
+    return kept_of(polygon, above)
 
 
 def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
@@ -110,7 +104,7 @@ def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
     above = np.where(np.abs(above) <= ON_PLANE, 0.0, above)
     points = list(cell[above >= 0])
     for face in hull.faces:
-        for i, j in zip(face, (*face[1:], face[0]), strict=True):
+        for i, j in face_edges(face):
             if i < j and above[i] * above[j] < 0:
                 points.append(cell[i] + above[i] / (above[i] - above[j]) * (cell[j] - cell[i]))
     return np.array(points)
@@ -153,3 +147,55 @@ def _touch(part: Array, other: Array) -> bool:
 def _volume(points: Array) -> float:
     hull = hull_of(points)
     return bulk_of(points[list(hull.corners)], hull.faces).volume
+
+
+PROBES = 72
+"""Points around an edge that are tested for lying within the body."""
+ASIDE_OF_EDGE = 1e-3
+"""Distance of these points from the edge, over the extent of the body [-]."""
+ALONG_EDGE = 1e-6
+"""Distance from an edge at which a corner lies on it, over the extent of the body [-]."""
+
+
+def creases_of(parts: Sequence[Convex]) -> Array:
+    """Ends of the edges of a body [m], shape (n, 2, 3).
+
+    An edge of a part is cut at the corners of other parts that lie on it. A piece of it is shown unless the points
+    around it lie all within the body, or those of one half of a circle do: its surface is plane there.
+    """
+    edges = np.concatenate([part.edge_ends for part in parts])
+    if len(parts) == 1:
+        return edges
+    corners = np.concatenate([part.corners for part in parts])
+    extent = float(np.ptp(corners, axis=0).max())
+    pieces = np.concatenate([_cut(edge, corners, ALONG_EDGE * extent) for edge in edges])
+    middles = pieces.mean(axis=1)
+    _, once = np.unique(np.round(middles / (ALONG_EDGE * extent)), axis=0, return_index=True)
+    pieces, middles = pieces[np.sort(once)], middles[np.sort(once)]
+    around = np.stack([_circle(end - start) for start, end in pieces])
+    probes = middles[:, None] + ASIDE_OF_EDGE * extent * around
+    within = np.zeros(probes.shape[:2], dtype=bool)
+    for part in parts:
+        within |= (probes @ part.normals.T <= part.offsets + ALONG_EDGE * extent).all(axis=2)
+    count = within.sum(axis=1)
+    return np.asarray(pieces[(count < PROBES) & (np.abs(count - PROBES // 2) > 1)])
+
+
+def _cut(edge: Array, corners: Array, near: float) -> Array:
+    """The pieces of an edge between the corners that lie on it [m], shape (n, 2, 3)."""
+    start, along = edge[0], edge[1] - edge[0]
+    length = float(np.linalg.norm(along))
+    places = (corners - start) @ along / length
+    off = np.linalg.norm(corners - start - places[:, None] * along / length, axis=1)
+    inner = np.unique(np.round(places[(off < near) & (places > near) & (places < length - near)] / near)) * near
+    points = start + np.concatenate([[0.0], inner, [length]])[:, None] * along / length
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def _circle(along: Array) -> Array:
+    """Unit vectors square to a vector, all around it, shape (PROBES, 3)."""
+    first = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+    first /= np.linalg.norm(first)
+    second = np.cross(along, first) / np.linalg.norm(along)
+    angles = 2 * np.pi * (np.arange(PROBES) + 0.5) / PROBES
+    return np.asarray(np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second))

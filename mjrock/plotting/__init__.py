@@ -6,14 +6,12 @@ that imports matplotlib.
 
 from .animation import animate, animate_bodies
 from .browser import view
-from .earthquakes import fragility, incremental, record, spectra
-from .figures import PALETTE
 from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
 from .masonry import blocks, mechanism, thrust
-from .pushing import moment_rotation, push, pushover
-from .sketch import sketch
-from .style import STYLES, Drawing, panels, save, single
-from .tornado import tornado
+from .picture import panels, single
+from .studies import fragility, incremental, moment_rotation, push, pushover, record, spectra, tornado
+from .style import PALETTE, STYLES, Drawing, save
+from .wall import sketch
 
 __all__ = [
     "PALETTE", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "displacement",

@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from shutil import which
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
@@ -30,43 +30,27 @@ from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
-from .bodies import Bodies, round_length
+from .bodies import Bodies, Update, frame_view, outlines, round_length, ties_of_masonry, together
 from .forces import forces_on, require_shown
 from .histories import acceleration, rotation, ties
-from .perspective import TITLED, fill, solids, ties_in_view
-from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
-from .solids import Solids
-from .style import Drawing, titled
-
-
-class Filmed(Protocol):
-    """A wall or masonry as a film sees it."""
-
-    @property
-    def is_below(self) -> bool:
-        """Whether the histories stand below the bodies, as a strip, and not beside them."""
-
-    def around(self, ax: Axes, bodies: Bodies | Solids) -> Update:
-        """Draw what its bodies meet."""
-
-    def beside(self, response: Response) -> list[Drawing]:
-        """What stands beside the bodies, each on an Axes of its own, over the time."""
+from .solids import TITLED, Solids, fill, solids, ties_in_view
+from .style import Drawing, Look, titled
+from .wall import surroundings
 
 
 @dataclass(frozen=True)
-class FilmedWall(Filmed):
-    """A wall, see `Filmed`."""
+class FilmedWall:
+    """A wall as a film shows it, with its histories beside it."""
 
     case: Case
     is_below: ClassVar[bool] = False
 
-    def around(self, ax: Axes, bodies: Bodies | Solids) -> Update:
-        """Base, side stop and effects."""
-        assert isinstance(bodies, Bodies)
+    def around(self, ax: Axes, bodies: Bodies) -> Update:
+        """Draw its base, side stop and effects."""
         return surroundings(ax, self.case, bodies)
 
     def beside(self, response: Response) -> list[Drawing]:
-        """The motion of its base, its rotation and the forces of its ties."""
+        """The motion of its base, its rotation and the forces of its ties over time, each on an Axes of its own."""
         drawn: list[Drawing] = []
         if self.case.shaken:
             drawn.append(lambda ax: acceleration(ax, self.case, float(response.t[-1])))
@@ -77,16 +61,14 @@ class FilmedWall(Filmed):
 
 
 @dataclass(frozen=True)
-class FilmedMasonry(Filmed):
-    """Masonry, see `Filmed`."""
+class FilmedMasonry:
+    """Masonry as a film shows it, with its histories below it as a strip."""
 
     case: MasonryCase
     is_below: ClassVar[bool] = True
 
-    def around(self, ax: Axes, bodies: Bodies | Solids) -> Update:
-        """Its ties."""
-        if isinstance(bodies, Solids):
-            return ties_in_view(ax, bodies)
+    def around(self, ax: Axes, bodies: Bodies) -> Update:
+        """Draw the ties of blocks of the plane, and a scale bar."""
         frame_view(ax, bodies)
         ax.axis("off")
         length = round_length(float(bodies.extent_seen[0]))
@@ -100,15 +82,15 @@ class FilmedMasonry(Filmed):
         def strip(ax: Axes) -> Axes:
             acceleration(ax, self.case, float(response.t[-1]))
             if ax.get_legend() is not None:
-                place: Any = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.0}
+                place: Look = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.0}
                 ax.legend(frameon=False, fontsize=8, ncols=3, **place)
             return ax
 
         return [strip] if self.case.grounds else []
 
 
-def filmed(case: AnyCase) -> Filmed:
-    """A case as a film sees it."""
+def filmed(case: AnyCase) -> FilmedWall | FilmedMasonry:
+    """A case as a film shows it."""
     return FilmedMasonry(case) if isinstance(case, MasonryCase) else FilmedWall(case)
 
 
@@ -123,7 +105,7 @@ WIDE = 8.0
 LOWEST, HIGHEST, OTHERWISE = 2.0, 6.0, 4.5
 """Heights of what shows masonry, which fills it in between, and of a film of a wall or of other bodies [inch]."""
 STRIP, CLOCK = 1.3, 0.4
-"""Heights of a strip below the bodies and of what is said above them [inch]."""
+"""Heights of a strip below the bodies and of the text above them [inch]."""
 HELD = 1.0
 """How much longer than others a GIF shows its last frame, after which it begins anew [s]."""
 JUST = 1 - 1e-9
@@ -173,7 +155,7 @@ class GifWriter(PillowWriter):
 
     stage: Stage
 
-    def grab_frame(self, **options: Any) -> None:
+    def grab_frame(self, **options: object) -> None:
         """Take the figure as it is now."""
         self._frames.append(self.stage.picture())  # type: ignore[attr-defined]
 
@@ -201,7 +183,7 @@ class PageWriter(HTMLWriter):
 
     stage: Stage
 
-    def grab_frame(self, **options: Any) -> None:
+    def grab_frame(self, **options: object) -> None:
         """Take the figure as it is now."""
         file = BytesIO()
         self.stage.picture().save(file, "PNG")
@@ -367,8 +349,8 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
             return MovieWriter(fps=fps, codec=codec, extra_args=["-pix_fmt", "yuv420p"]), 1 / fps  # type: ignore[arg-type]
         case ".html":
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
-            options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
-            return PageWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
+            writer = PageWriter(JUST / interval, embed_frames=True, embed_limit=4096, default_mode="loop")  # type: ignore[arg-type]
+            return writer, interval
     raise ValueError(f"path = {(path.name or str(path))!r} does not end in .gif, .mp4, .webm or .html")
 
 
@@ -430,28 +412,27 @@ def scene(
 
 
 def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tuple[Figure, Axes, Sequence[Axes]]:
-    """A figure as high as its bodies ask for, the Axes that shows them, and so many over the time."""
+    """A figure as high as its bodies need, the Axes that shows them, and so many over the time."""
     is_below, (wide, high) = case is not None and filmed(case).is_below, bodies.extent_seen
     shown = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST)) if is_below else OTHERWISE
-    figure: Any = Figure(figsize=(WIDE, shown + is_below * STRIP * count), layout="constrained")
-    part: Any = figure
-    others: Any = None
-    if count:
-        ratios = {"height_ratios": (shown, STRIP * count)} if is_below else {"width_ratios": (1.0, 1.5)}
-        part, others = figure.subfigures(1 + is_below, 2 - is_below, **ratios)
-    ax: Axes = part.subplots(subplot_kw={"projection": "3d"} if isinstance(bodies, Solids) else None)
-    return figure, ax, others.subplots(count, 1, sharex=True, squeeze=False)[:, 0] if count else ()
+    figure = Figure(figsize=(WIDE, shown + is_below * STRIP * count), layout="constrained")
+    kind = {"projection": "3d"} if isinstance(bodies, Solids) else None
+    if not count:
+        return figure, figure.subplots(subplot_kw=kind), ()
+    ratios: Look = {"height_ratios": (shown, STRIP * count)} if is_below else {"width_ratios": (1.0, 1.5)}
+    part, others = figure.subfigures(1 + is_below, 2 - is_below, **ratios)
+    return figure, part.subplots(subplot_kw=kind), others.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
 
 
 def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None, box: BboxBase) -> list[Update]:
     """Draw bodies and what they meet."""
-    updates = [blocks(ax, bodies) if isinstance(bodies, Bodies) else solids(ax, bodies, box)]
-    if case is not None:
-        updates.append(filmed(case).around(ax, bodies))
-    elif isinstance(bodies, Bodies):
+    if isinstance(bodies, Solids):
+        return [solids(ax, bodies, box), *([] if case is None else [ties_in_view(ax, bodies)])]
+    updates = [outlines(ax, bodies)]
+    if case is None:
         frame_view(ax, bodies)
-    if isinstance(bodies, Bodies) and bodies.limits is not None:
-        ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
+    else:
+        updates.append(filmed(case).around(ax, bodies))
     return updates
 
 

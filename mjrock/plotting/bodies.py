@@ -1,19 +1,23 @@
-"""Rigid bodies in motion, as a picture needs them: outlines, where they rest, and how they move."""
+"""Rigid bodies of the plane in motion, as a picture shows them: outlines, how they move, what it shows, and ties."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
-from ..problem.masonry.case import AnyCase
-from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.wall.effect import Anchored
 from ..quantities import (
     Array,
+    Flags,
     Integers,
     require_array,
     require_kind,
@@ -24,26 +28,22 @@ from ..quantities import (
 )
 from ..result.bodies import Moving
 from ..result.response import Response
-from ..scene.tints import TINTS, colours_of, told_apart
+from ..result.ties import LinkEnd, elongation_of, link_ends
+from ..scene.tints import FIXED_COLOUR, TINTS, colours_of, told_apart
+from .style import Look
 
-
-def require_masonry(what: str, response: Response) -> Masonry:
-    """The masonry of a response; for one of a wall a ValueError says what takes masonry alone."""
-    if response.joints is None:
-        raise ValueError(f"{what} takes masonry or a response of it, and this response is one of a wall")
-    return response.of_masonry.masonry
-
-
+STONE, GROUND_COLOUR, FORCE = TINTS[0], FIXED_COLOUR, "#a8201a"
+"""Colours of a wall, of what does not move, and of forces."""
+Update = Callable[[int], None]
+"""Moves what is drawn to a frame."""
 BAR = 0.25
 """Longest scale bar over the width of what is seen [-]."""
-Ends = tuple[Array, Array]
-"""The lowest and the highest x and z of something [m], shape (2,) each."""
 
 
-def ends_of(points: Array) -> tuple[Array, Array]:
-    """The lowest and the highest x and z of points [m], shape (..., 2)."""
-    flat = points.reshape(-1, 2)
-    return flat.min(axis=0), flat.max(axis=0)
+def ends_of(points: Array) -> Array:
+    """The lowest and the highest coordinates of points [m], shape (..., d), as (2, d)."""
+    every = points.reshape(-1, points.shape[-1])
+    return np.array([every.min(axis=0), every.max(axis=0)])
 
 
 def round_length(wide: float) -> float:
@@ -72,20 +72,6 @@ def required_limits(limits: ArrayLike | None, axes: str) -> Array | None:
         if not a < b:
             raise ValueError(f"limits along {name} = {a:g} to {b:g} m are not a lower and a higher one")
     return checked
-
-
-def window(rest: Ends, moving: Ends, fixed: Ends) -> Ends:
-    """The part of the plane that a picture shows [m]: bodies up to one extent of all from where they are at rest, and a
-    quarter of it below, and fixed ones up to a quarter of it beyond. All are given by their lowest and highest x and z.
-    """
-    room = float((rest[1] - rest[0]).max())
-    beyond = 0.25 * room
-    low, high = np.maximum(moving[0], rest[0] - [room, beyond]), np.minimum(moving[1], rest[1] + room)
-    low, high = np.minimum(low, rest[1]), np.maximum(high, rest[0])
-    return (
-        np.minimum(low, np.maximum(fixed[0], low - beyond)),
-        np.maximum(high, np.minimum(fixed[1], high + beyond)),
-    )
 
 
 def _outlines(name: str, given: object) -> tuple[Array, ...]:
@@ -154,21 +140,14 @@ class Bodies:
         if response.case.in_space:
             response.of_masonry.masonry.require_plane("Bodies")
         magnify = require_within("magnify", magnify, 0.01, 1e4)
-        return cls.at_poses(response.case, response.t, response.pose, magnify, limits)
+        return cls.of_moving(replace(response.moving, magnify=magnify), limits)
 
     @classmethod
-    def at_poses(
-        cls,
-        case: AnyCase,
-        t: Array,
-        pose: Array,
-        magnify: float = 1.0,
-        limits: ArrayLike | None = None,
-    ) -> Bodies:
-        """The bodies of a case at times [s] and poses, see `Moving`."""
-        free = [solid.body >= 0 for solid in case.standing.solids]
-        colours = colours_of(case.standing)[free]
-        return cls(Moving(case, t, pose, magnify), colours, required_limits(limits, "xz"))
+    def of_moving(cls, moving: Moving, limits: ArrayLike | None = None) -> Bodies:
+        """The bodies of a case."""
+        standing = moving.case.standing
+        free = [solid.body >= 0 for solid in standing.solids]
+        return cls(moving, colours_of(standing)[free], required_limits(limits, "xz"))
 
     @classmethod
     def loose(
@@ -235,28 +214,34 @@ class Bodies:
         """
         return self.moving.placed_at(frame, self._numbers, self._padded)
 
-    def extent(self) -> tuple[Array, Array]:
-        """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2,) each.
+    def extent(self) -> Array:
+        """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2, 2).
 
         What moves farther than one extent of the bodies at rest, or falls by a quarter of it below all of them, is
         outside. Fixed bodies are shown up to a quarter beyond those that move. Given limits come first.
         """
         if self.limits is not None:
-            return self.limits[:, 0], self.limits[:, 1]
-        fixed = [*self.moving.case.fixed.values()]
+            return self.limits.T
+        case, fixed = self.moving.case, [*self.moving.case.fixed.values()]
         if not self.outlines:
             return ends_of(np.concatenate(fixed))
-        some = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int))
-        moving = np.array([ends_of(self.corners(int(frame))) for frame in some])
-        rests = self.moving.case.rests
-        stays = np.concatenate(fixed) if fixed else rests
-        return window(ends_of(rests[:, None] + self._padded), ends_of(moving), ends_of(stays))
+        some = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int)).tolist()
+        moving, rest = (
+            ends_of(np.array([self.corners(frame) for frame in some])),
+            ends_of(case.rests[:, None] + self._padded),
+        )
+        stays = ends_of(np.concatenate(fixed) if fixed else case.rests)
+        room = float((rest[1] - rest[0]).max())
+        beyond = 0.25 * room
+        low = np.minimum(np.maximum(moving[0], rest[0] - [room, beyond]), rest[1])
+        high = np.maximum(np.minimum(moving[1], rest[1] + room), rest[0])
+        shown = np.maximum(stays[0], low - beyond), np.minimum(stays[1], high + beyond)
+        return np.array([np.minimum(low, shown[0]), np.maximum(high, shown[1])])
 
     @property
     def extent_seen(self) -> Array:
         """Width and height of what the picture has to hold [m], shape (2,)."""
-        low, high = self.extent()
-        return np.asarray(high - low)
+        return np.asarray(np.ptp(self.extent(), axis=0))
 
     @cached_property
     def _numbers(self) -> Integers:
@@ -268,3 +253,114 @@ class Bodies:
     def _padded(self) -> Array:
         """The outlines as one array, shape (bodies, corners, 2)."""
         return evened(self.outlines) if self.outlines else np.empty((0, 0, 2))
+
+
+def together(updates: Sequence[Update]) -> Update:
+    """One update that makes several."""
+
+    def update(frame: int) -> None:
+        for move in updates:
+            move(frame)
+
+    return update
+
+
+def still(ax: Axes) -> None:
+    """Make all that is drawn part of a picture that does not move."""
+    for artist in ax.get_children():
+        artist.set_animated(False)
+
+
+def outlines(ax: Axes, bodies: Bodies) -> Update:
+    """Draw the outlines of bodies true to scale."""
+    moving, supports = bodies.moving, list[tuple[Polygon, Array]]()
+    for number, outline in moving.case.fixed.items():
+        patch = Polygon(outline, facecolor=GROUND_COLOUR, edgecolor="0.4", linewidth=0.8)
+        if moving.case.support_of(number) is not None:
+            supports.append((patch, moving.placed(number, outline)))
+            patch.set_animated(True)
+        ax.add_patch(patch)
+    width = min(1.2, 12 / np.sqrt(max(1, len(bodies.outlines))))  # lines of many blocks would hide them
+    look: Look = {"facecolors": bodies.colours, "edgecolor": "0.15", "linewidth": width}
+    drawn = PolyCollection([], **look, zorder=2, animated=True)
+    ax.add_collection(drawn, autolim=False)
+    ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
+
+    def update(frame: int) -> None:
+        for patch, places in supports:
+            patch.set_xy(places[frame])
+        drawn.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
+
+    return update
+
+
+def frame_view(ax: Axes, bodies: Bodies) -> None:
+    """Set limits that every frame fits into, with a margin unless they are given."""
+    low, high = bodies.extent()
+    margin = 0.0 if bodies.limits is not None else 0.06 * float((high - low).max())
+    ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
+
+
+def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
+    """Links of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
+    low, high = bodies.extent()
+    edge = float(low[0]) - 0.25 * float(high[1] - low[1])
+    updates = [anchored(ax, bodies.moving, tie, markersize=5, edge=edge) for tie in case.links.values()]
+    for name, tie in case.links.items():
+        place = edge, case.held_by(tie)[1] + tie.rise
+        ax.annotate(name, place, (4, 4), textcoords="offset points", fontsize=8, color=tie.colour)
+    if updates and bodies.limits is None:
+        ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
+    return together(updates)
+
+
+def anchored(ax: Axes, moving: Moving, tie: Anchored, *, markersize: float, edge: float = -np.inf) -> Update:
+    """Draw a link of the plane, and its anchor as a square. An anchor beyond an x [m] is drawn there."""
+    held, anchor = link_ends(moving.case, tie)
+    if anchor.block is None and anchor.point[0] < edge:
+        arm = anchor.point - held.point
+        anchor = LinkEnd(None, held.point + arm * (held.point[0] - edge) / tie.length)
+    ends = placed_ends(moving, anchor, held)
+    follow = link(ax, moving, tie, ends)
+    look: Look = {"marker": "s", "markersize": markersize, "color": tie.colour, "zorder": 4}
+    (mark,) = ax.plot(*anchor.point[:, None], animated=anchor.block is not None, **look)
+
+    def update(frame: int) -> None:
+        mark.set_data(ends[frame, 0][:, None])
+        follow(frame)
+
+    return update
+
+
+def link(ax: Axes, moving: Moving, tie: Anchored, ends: Array) -> Update:
+    """Draw a link between its ends [m], shape (n, 2, d): solid where it pulls, dotted where it is slack, gone once it
+    broke."""
+    pulls, broken = pulling(moving, tie)
+    (line,) = ax.plot(*np.empty((ends.shape[2], 0)), color=tie.colour, linewidth=1.8, zorder=4, animated=True)
+    put = getattr(line, "set_data" if ends.shape[2] == 2 else "set_data_3d")
+
+    def update(frame: int) -> None:
+        put(*ends[frame].T)
+        line.set_linestyle(tie.dashes if pulls[frame] else ":")
+        line.set_visible(not broken[frame])
+
+    return update
+
+
+def placed_ends(moving: Moving, *ends: LinkEnd) -> Array:
+    """Where the ends of a link are drawn [m], shape (n, ends, d)."""
+    return np.stack([moving.placed(end.block, end.point[None])[:, 0] for end in ends], axis=1)
+
+
+def pulling(moving: Moving, tie: Anchored) -> tuple[Flags, Flags]:
+    """Whether a link acts at each frame, and whether it has broken.
+
+    A tie acts where it is longer than when it was slack or last yielded, and what also pushes acts always.
+    """
+    law = tie.law
+    if not law.holds:
+        return np.ones(len(moving.t), dtype=bool), np.zeros(len(moving.t), dtype=bool)
+    elongation = elongation_of(moving, tie)
+    yielded = law.drawn(elongation)
+    broken: Flags = yielded > law.ultimate
+    return (elongation > yielded) & ~broken, broken

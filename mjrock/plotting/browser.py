@@ -15,15 +15,17 @@ from string import Template
 import numpy as np
 
 from ..files import write_text
-from ..geometry.creases import creases_of
+from ..geometry.parts import creases_of
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.wall.standing import Solid, in_space
 from ..quantities import Array, Integers, require_path
 from ..result.bodies import bodies_of, frames_at
 from ..result.response import Response
-from .arguments import kind, picture
+from ..result.ties import link_ends
+from .bodies import ends_of
 from .forces import LARGE, LONGEST, NOTHING, Acting, edges_of
+from .picture import kind, picture
 
 Json = dict[str, object]
 """An object in the data of the page."""
@@ -100,8 +102,8 @@ class Page:
         self.bodies = bodies_of(self.moving, response.velocity[samples])
         self.solids = self.case.standing.solids
         free = [body for body in self.bodies if not body.fixed]
-        self.low, self.high = _ends(np.concatenate([body.rest + body.corners for body in free]))
-        self.reached = _ends(np.concatenate([_ends(body.placed(body.corners)) for body in free]))
+        self.low, self.high = ends_of(np.concatenate([body.rest + body.corners for body in free]))
+        self.reached = ends_of(np.concatenate([ends_of(body.placed(body.corners)) for body in free]))
         self.extent = float((self.high - self.low).max())
         self.digits = max(0, 6 - int(np.floor(np.log10(self.extent))))
 
@@ -177,7 +179,7 @@ class Page:
         level = float(corners[:, 2].max())
         if self.reached[0, 2] < level - SUNK * self.extent:
             return None
-        low, high = _ends(np.concatenate([corners, self.reached])[:, :2])
+        low, high = ends_of(np.concatenate([corners, self.reached])[:, :2])
         radius = 0.5 * BEYOND * float(np.linalg.norm(high - low)) + 0.5 * self.extent
         return {"level": level - ON_LEVEL * self.extent, "middle": (0.5 * (low + high)).tolist(), "radius": radius}
 
@@ -197,8 +199,7 @@ class Page:
     def _ties(self) -> Iterator[Json]:
         """The two ends of each link, and when it breaks."""
         for name, link in self.case.links.items():
-            held, ties = self.case.held_by(link), self.response.ties
-            ends = ((link.block, held), (link.anchor_block, link.anchor_of(held)))
+            ends, ties = link_ends(self.case, link), self.response.ties
             start, end = (self._on_body(block, in_space(point)) for block, point in ends)
             life = [-LAST, min(float(ties[name].broken), LAST) if name in ties else LAST]
             bodies = [-1 if block is None else block for block, _ in ends]
@@ -252,12 +253,6 @@ class Page:
 def _by_row(values: Array) -> Array:
     """Vectors of things at samples, shape (things, samples, d), as rows, shape (things d, samples)."""
     return np.swapaxes(values, 1, 2).reshape(-1, values.shape[1])
-
-
-def _ends(corners: Array) -> Array:
-    """The lowest and the highest x, y and z of corners [m], shape (..., d), as (2, d)."""
-    every = corners.reshape(-1, corners.shape[-1])
-    return np.array([every.min(axis=0), every.max(axis=0)])
 
 
 def _line(name: str, unit: str, values: Array) -> Json:

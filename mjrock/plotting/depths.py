@@ -11,9 +11,9 @@ from ..compiled import compiled
 from ..quantities import Array, Flags, Integers
 
 MAP = 1500
-"""Pixels along each side of what the sun sees."""
+"""Pixels along each side of the view from the sun, which finds the shadows."""
 BEHIND = 6.0
-"""How far behind what the sun sees a point may lie and still be lit [pixel of the sun]."""
+"""How far behind the nearest surface a point may lie, seen from the sun, and still be lit [pixel of that view]."""
 FLOOR, INK = (0.91, 0.9, 0.87), (0.17, 0.13, 0.11)
 """Colours of the ground and of edges."""
 DARK, ALOFT, SUNNY = 0.60, 0.08, 0.40
@@ -25,7 +25,7 @@ FADES = 0.65
 ASIDE = 1e-9
 """Cosine of the angle between the line of sight and the normal of a face that is seen as a line [-]."""
 BARE, EMPTY = -1, -2
-"""Numbers of the surface where a picture shows the ground, and where it shows nothing."""
+"""Numbers of the surface where a picture shows the ground, and where it is empty."""
 
 
 class Surfaces(NamedTuple):
@@ -81,7 +81,7 @@ class View(NamedTuple):
 
     @classmethod
     def of_the_sun(cls, sun: Array, corners: Array) -> View:
-        """What the sun sees of all corners [m], shape (..., 3); `sun` is a unit vector to it."""
+        """The view from the sun of all corners [m], shape (..., 3); `sun` is a unit vector to it."""
         ends = corners.reshape(-1, 3)
         low, high = ends.min(axis=0), ends.max(axis=0)
         right = np.cross((0.0, 0.0, 1.0), sun)
@@ -190,8 +190,8 @@ def _paint(
 
     Args:
         seen: how far before the middle the parts lie, which surface they show, and of which plane piece each is.
-        ways: how far before the middle what the sun sees lies; how to get from a pixel to one of the sun, and to a
-            place over the radius of the ground, as `View.places` has it.
+        ways: how far before the middle the surfaces lie that are seen from the sun; how to get from a pixel to one of
+            that view, and to a place over the radius of the ground, as in `View.places`.
         tones: colours of each surface, and of the ground, in the shade and in the sun, shape (n + 1, 2, 3).
         sizes: width of edges, and number of parts along each side [pixel].
         colours: of the pixels, 0 at first, shape (height, width, 4).

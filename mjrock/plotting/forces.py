@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from ..problem.masonry.blocks.joints import Joint
 from ..quantities import Array, Integers, shown
 from ..result.bodies import Moving
 from ..result.response import Response
-from .section import FORCE, Update
+from .bodies import FORCE, Update
 
 SHOWN = ("thrust", "bars", "cracks")
 """How forces are shown."""
@@ -49,8 +49,8 @@ class Strokes(LineCollection):
 
     def do_3d_projection(self) -> float:
         """Bring the lines into the plane of the picture, whenever the axes are drawn."""
-        space: Any = self.axes
-        x, y, _ = proj_transform(*self.ends.reshape(-1, 3).T, space.M)
+        assert isinstance(self.axes, Axes3D)
+        x, y, _ = proj_transform(*self.ends.reshape(-1, 3).T, self.axes.M)
         self.set_segments(list(np.stack([x, y], axis=-1).reshape(-1, 2, 2)))
         return 0.0
 
@@ -132,17 +132,14 @@ class Acting:
         return np.stack([place[joint], node[body]], axis=1), WIDEST * np.minimum(share[joint], LARGE)
 
     def bars(self, frame: int) -> tuple[Array, Array | float]:
-        """A bar through the place of each joint's force along it, as long as the force is large, and their width."""
-        ends = self.every_bar(frame)
-        return ends[(ends[:, 0] != ends[:, 1]).any(axis=1)], BAR
-
-    def every_bar(self, frame: int) -> Array:
-        """Ends of the bar of each joint [m], shape (j, 2, d), the same twice where nothing presses."""
+        """A bar through the place of each joint's force along it, as long as the force is large: its ends [m], shape
+        (n, 2, d), of the joints that press; and the width of all [point]."""
         place, share = self.placed(frame)
-        size = np.linalg.norm(share, axis=1)
-        length = np.where(size > NOTHING, np.minimum(LARGE / np.maximum(size, 1e-300), 1.0), 0.0)
+        presses = np.linalg.norm(share, axis=1) > NOTHING
+        place, share = place[presses], share[presses]
+        length = np.minimum(LARGE / np.linalg.norm(share, axis=1), 1.0)
         half = 0.5 * LONGEST * self.extent * share * length[:, None]
-        return np.stack([place - half, place + half], axis=1)
+        return np.stack([place - half, place + half], axis=1), BAR
 
     @cached_property
     def edges(self) -> tuple[Integers, Array]:
@@ -171,12 +168,12 @@ def edges_of(outline: Array) -> Array:
     return np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
 
 
-def forces_on(ax: Axes, response: Response, bodies: Moving, how: str, *, animated: bool = True) -> Update:
+def forces_on(ax: Axes, response: Response, bodies: Moving, how: str) -> Update:
     """Draw the forces of the joints on blocks that are drawn already, and write the force of the scale."""
     acting = Acting(response, bodies)
     cracks = how == "cracks"
     colour, capstyle = (CRACKED, "butt") if cracks else (FORCE, "round")
-    strokes = Strokes([], colors=colour, zorder=7, animated=animated, capstyle=capstyle)
+    strokes = Strokes([], colors=colour, zorder=7, animated=True, capstyle=capstyle)
     ax.add_collection(strokes, autolim=False)
     said = f"line {WIDEST:g} pt wide" if how == "thrust" else f"bar {LONGEST * acting.extent:.2g} m long"
     if cracks:

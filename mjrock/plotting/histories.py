@@ -13,9 +13,8 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
-from .arguments import kind, listed, picture
-from .figures import BLACK, GREEN, ORANGE, Picture
-from .style import below_figure, figure_of, several, short, styles_of, wrapped
+from .picture import kind, listed, picture
+from .style import BLACK, GREEN, ORANGE, Picture, below_figure, figure_of, several, short, styles_of, wrapped
 
 TIME = "time $t$ [s]"
 MOST = 6
@@ -185,7 +184,7 @@ def history(
     for i, response in enumerate(given):
         if type(response.case) is not type(given[0].case):
             raise ValueError(f"responses[{i}] and responses[0] are one of a wall and one of masonry; draw each alone")
-        if not same_ground(given[0], response) and not reversed_ground(given[0], response):
+        if response.case.grounds != given[0].case.grounds and not reversed_ground(given[0], response):
             raise ValueError(
                 f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion "
                 "or its reverse"
@@ -209,11 +208,6 @@ def history(
     if len(given) > 1:
         below_figure(figure, axes[int(shaken)])
     return figure
-
-
-def same_ground(left: Response, right: Response) -> bool:
-    """Whether two responses are those to the same ground motions."""
-    return left.case.grounds == right.case.grounds
 
 
 def reversed_ground(left: Response, right: Response) -> bool:

@@ -20,13 +20,11 @@ from ..quantities import Array, require_flag, require_kind, require_within
 from ..result.bodies import Moving
 from ..result.motion import sample_at
 from ..result.response import Response
-from .arguments import anything, picture
-from .bodies import Bodies, require_masonry, required_limits
+from .bodies import FORCE, Bodies, outlines, required_limits, still, together
 from .forces import forces_on, require_shown
-from .perspective import fill, solids
-from .section import FORCE, surroundings, together
-from .section import blocks as outlines
-from .solids import Solids
+from .picture import anything, picture
+from .solids import Solids, fill, solids
+from .wall import surroundings
 
 MORTAR = "#12406b"
 
@@ -71,34 +69,34 @@ def blocks(
             dimensions for blocks in space.
     """
     run, time = masonry if isinstance(masonry, Response) else None, np.zeros(1)
+    if run is not None and run.joints is None:
+        raise ValueError("blocks takes masonry or a response of it, and this response is one of a wall")
     if run is None or pose is not None:
         if at is not None or forces is not None:
             raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
-        given = require_masonry("blocks", masonry) if isinstance(masonry, Response) else masonry
-        require_kind("masonry", given, Masonry)
-        case = MasonryCase(given, 1.0) if run is None else replace(run.of_masonry, supports=())
+        case = replace(masonry.of_masonry, supports=()) if isinstance(masonry, Response) else MasonryCase(masonry, 1.0)
     else:
-        _ = require_masonry("blocks", run)
         sample, case = sample_at(run.t, at), run.of_masonry
         pose, time = run.pose[sample], run.t[sample : sample + 1]
         if forces is not None:
             require_shown("forces", forces, run)
     magnified, freedom = require_within("magnified", magnified, 0.0, 1e6), SPACE if case.in_space else PLANE
-    still = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
-    placed = (still if pose is None else _of_free(case.masonry, pose))[None]
+    rest = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
+    placed = (rest if pose is None else _of_free(case.masonry, pose))[None]
     moving = Moving(case, time, placed, magnified)
     if case.in_space:
         bodies = Solids(moving, camera, required_limits(limits, "xyz"))
-        solids(ax, bodies, ax.bbox, animated=False)(0)
+        solids(ax, bodies, ax.bbox)(0)
         fill(ax, bodies, ax.bbox)
     else:
-        flat = Bodies.at_poses(case, time, placed, magnified, limits)
-        outlines(ax, flat, animated=False)(0)
+        flat = Bodies.of_moving(moving, limits)
+        outlines(ax, flat)(0)
         if joints and pose is None:
             _joints(ax, case.masonry.plane_joints)
         _view(ax, flat)
     if run is not None and forces is not None:
-        forces_on(ax, run, moving, forces, animated=False)(0)
+        forces_on(ax, run, moving, forces)(0)
+    still(ax)
     return ax
 
 
@@ -172,10 +170,7 @@ def thrust(
     updates = [outlines(ax, bodies), surroundings(ax, response.of_wall[0], bodies)]
     updates.append(forces_on(ax, response, bodies.moving, "thrust"))
     together(updates)(0)
-    for artist in ax.get_children():
-        artist.set_animated(False)
-    if bodies.limits is not None:
-        ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
+    still(ax)
     return ax
 
 

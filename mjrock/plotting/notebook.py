@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -18,18 +17,15 @@ from ..study.intensity.fragility import Fragility
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity
-from .earthquakes import fragility
-from .figures import png
 from .histories import history
 from .masonry import blocks, mechanism
-from .pushing import push, pushover
-from .sketch import sketch
-from .style import figure_of, wrapped
-from .tornado import tornado
+from .studies import fragility, push, pushover, tornado
+from .style import figure_of, png, wrapped
+from .wall import sketch
 
 MOST_BLOCKS = 3000
 """Blocks up to which masonry is drawn unasked, which takes some seconds."""
-PICTURES: dict[type, Callable[[Any, str], Figure | Axes | None]] = {
+PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Case: sketch,
     MasonryCase: lambda case, said: _masonry(case.masonry, said),
     Masonry: lambda masonry, said: _masonry(masonry, said),

@@ -1,4 +1,4 @@
-"""Blocks in space in motion, as a picture needs them: their faces, and where they are drawn and seen from."""
+"""Blocks in space in motion, as a picture shows them: their faces, the camera, the ground, a scale bar, and ties."""
 
 from __future__ import annotations
 
@@ -8,17 +8,24 @@ from functools import cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backend_bases import RendererBase
+from matplotlib.transforms import BboxBase
+from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 from numpy.typing import ArrayLike
 
-from ..problem.masonry.blocks.compound import SolidBlock
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Integers, keep, require_array, require_within
+from ..quantities import Array, Flags, Integers, keep, require_array, require_within
 from ..result.bodies import Moving
 from ..result.response import Response
+from ..result.ties import link_ends
 from ..scene.tints import colours_of
-from .bodies import evened, required_limits
-from .depths import Ground, Surfaces
+from .bodies import Update, ends_of, evened, link, placed_ends, required_limits, round_length, together
+from .depths import Ground, Surfaces, View
+from .style import figure_of
 
 AROUND, FARTHEST = 0.6, 3.0
 """How far the ground is drawn beyond all corners, and the farthest corners that count for it, over the extent [-]."""
@@ -28,6 +35,14 @@ PLANE_ROUNDING = 1e-6
 """Part of normals and of the extent to which two faces lie in one plane [-]."""
 SUN = np.array([-0.75, 0.55, 1.0])
 """Where the sun stands: to the right of the camera, towards it, and upwards."""
+MARGIN, TITLED = (0.2, 0.4), (0.2, 0.8)
+"""Width and height that stay free around a view, for the scale bar, and for a title too [inch]."""
+BELOW, BELOW_FLAT = 0.05, 0.02
+"""How far a scale bar stands below what is seen, over its height, and at least over its width [-]."""
+FINE, DENSE = 2, 150
+"""Pixels that are drawn along each side of one of the picture, where it has fewer than so many to an inch."""
+EDGE, RIM = 0.55, 0.1
+"""Width of edges [point], and of the rim of the box within which the picture fades [inch]."""
 
 
 class Facets(NamedTuple):
@@ -103,23 +118,18 @@ class Solids:
         level = np.cos(elevation)
         return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
 
-    @cached_property
+    @property
     def shown(self) -> Integers:
         """Numbers of the blocks that are drawn as bodies: all but the ground, fixed ones too."""
-        return np.flatnonzero(~np.array(self._are_ground))
-
-    @property
-    def _grounds(self) -> list[SolidBlock]:
-        """The fixed blocks below all that move, which are not moved themselves."""
-        return [block for block, is_ground in zip(self.masonry.polyhedra, self._are_ground, strict=True) if is_ground]
+        return np.flatnonzero(~self.are_ground)
 
     @cached_property
-    def _are_ground(self) -> list[bool]:
-        blocks = self.masonry.blocks
+    def are_ground(self) -> Flags:
+        """Which blocks are ground, shape (blocks,): fixed ones below all that move, which are not moved themselves."""
+        blocks, moved = self.masonry.blocks, {support.block for support in self.case.supports}
         lowest = min(float(blocks[i].corners[:, 2].min()) for i in self.masonry.free) + 1e-3
         below = [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
-        moved = {support.block for support in self.case.supports}
-        return [low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)]
+        return np.array([low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)])
 
     @cached_property
     def facets(self) -> Facets:
@@ -151,13 +161,13 @@ class Solids:
 
     @cached_property
     def _staged(self) -> Facets:
-        """The faces of the blocks that are shown, and those of the ground where blocks fall past its edge."""
+        """The facets, and those of the ground where blocks fall past its edge."""
         return self.facets if self.ground is not None else self._faces_of(np.arange(len(self.masonry.blocks)))
 
     @cached_property
     def ground(self) -> Ground | None:
         """The ground, which reaches beyond all corners; None where there is none, or blocks fall past its edge."""
-        tops = [float(block.corners[:, 2].max()) for block in self._grounds]
+        tops = [float(self.masonry.blocks[i].corners[:, 2].max()) for i in np.flatnonzero(self.are_ground).tolist()]
         low, high = self.extent()
         size = float((high - low).max())
         if not tops or self.reached[0, 2] < max(tops) - SUNK * size:
@@ -166,25 +176,23 @@ class Solids:
         low, high = np.minimum(near, low[:2]), np.maximum(far, high[:2])
         return Ground(max(tops), 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)) + AROUND * size)
 
-    def extent(self) -> tuple[Array, Array]:
-        """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (3,) each.
+    def extent(self) -> Array:
+        """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (2, 3).
 
         What goes farther than one extent of the blocks at rest is outside. Where all has, these are the blocks at rest.
         Given limits come first.
         """
         if self.limits is not None:
-            return self.limits[:, 0], self.limits[:, 1]
-        rest = self.facets.corners + self.case.centroids[self.facets.block, None]
-        rest_low, rest_high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
-        room = float((rest_high - rest_low).max())
-        low, high = np.maximum(self.reached[0], rest_low - room), np.minimum(self.reached[1], rest_high + room)
-        return (low, high) if (low < high).all() else (rest_low, rest_high)
+            return self.limits.T
+        rest = ends_of(self.facets.corners + self.case.centroids[self.facets.block, None])
+        room = float((rest[1] - rest[0]).max())
+        shown = np.array([np.maximum(self.reached[0], rest[0] - room), np.minimum(self.reached[1], rest[1] + room)])
+        return shown if (shown[0] < shown[1]).all() else rest
 
     @cached_property
     def reached(self) -> Array:
         """The lowest and the highest x, y and z of all corners [m], shape (2, 3)."""
-        ends = [(corners.min(axis=(0, 1)), corners.max(axis=(0, 1))) for corners in map(self.corners, self._some)]
-        return np.array([np.min(ends, axis=(0, 1)), np.max(ends, axis=(0, 1))])
+        return ends_of(np.array([ends_of(self.corners(frame)) for frame in self._some]))
 
     @cached_property
     def across(self) -> Array:
@@ -202,9 +210,7 @@ class Solids:
         low, high = self.extent()
         box = np.stack(np.meshgrid(*np.transpose([low, high]), indexing="ij"), axis=-1).reshape(-1, 3)
         held = [box] if self.limits is not None else [np.clip(self.corners(k), low, high) for k in self._some]
-        places = [corners.reshape(-1, 3) @ self.across.T for corners in held]
-        ends = [(place.min(axis=0), place.max(axis=0)) for place in places]
-        return np.array([np.min(ends, axis=(0, 1)), np.max(ends, axis=(0, 1))])
+        return ends_of(np.array([ends_of(corners.reshape(-1, 3) @ self.across.T) for corners in held]))
 
     @property
     def extent_seen(self) -> Array:
@@ -216,3 +222,121 @@ class Solids:
         """Numbers of at most 100 frames, from the first to the last."""
         numbers: list[int] = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int)).tolist()
         return numbers
+
+
+class Rendered(Artist):
+    """Blocks in space and the ground below them, drawn over a box of a figure.
+
+    Args:
+        ax: of three dimensions.
+        bodies: the blocks, and where they are seen from.
+        box: what is drawn over [pixel], such as the box of the figure.
+    """
+
+    def __init__(self, ax: Axes, bodies: Solids, box: BboxBase) -> None:
+        super().__init__()
+        self.ax, self.bodies, self.box, self.frame = ax, bodies, box, 0
+        self._kept: tuple[object, Integers] = None, np.empty(0, dtype=np.uint8)
+        self.set_zorder(2)
+        self.set_in_layout(False)
+        self.set_animated(True)
+
+    def draw(self, renderer: RendererBase) -> None:
+        """Draw it at the resolution of the renderer."""
+        times = renderer.get_image_magnification()
+        inch = times * figure_of(self.ax).dpi
+        fine = FINE if inch < DENSE else 1
+        view, gc = self.view(times, fine), renderer.new_gc()
+        key = self.frame, view.size, view.pixel, view.middle.tobytes()
+        if key != self._kept[0]:  # a figure is drawn once for its layout, and once more
+            self._kept = key, self._picture(view, fine, inch)
+        renderer.draw_image(gc, self.box.x0, self.box.y0, self._kept[1])
+        gc.restore()
+
+    def _picture(self, view: View, fine: int, inch: float) -> Integers:
+        """Red, green, blue and opacity, 0 to 255, with so many pixels to an inch, which fade at the rim."""
+        line = max(1, round(fine * EDGE * inch / 72))
+        colours = view.picture(*self.bodies.stage(self.frame), line, fine)
+        rows, columns = (np.arange(count) + 0.5 for count in colours.shape[:2])
+        rim = [np.clip(np.minimum(at, len(at) - at) / (RIM * inch), 0, 1) for at in (rows, columns)]
+        colours[..., 3] *= np.outer(*rim)
+        return np.rint(255 * colours).astype(np.uint8)
+
+    def view(self, times: float = 1.0, fine: int = 1) -> View:
+        """What the box shows, of so many pixels for each of its own, each as so many, along either side."""
+        space, bodies = in_three(self.ax), self.bodies
+        ends = np.mean([getattr(space, f"get_{name}lim")() for name in "xyz"], axis=1)
+        x, y, _ = proj_transform(*np.transpose([ends, ends + bodies.across[0]]), space.get_proj())
+        (at, beside) = space.transData.transform(np.column_stack([x, y]))
+        metre = float(np.hypot(*(beside - at)))
+        middle = ends + (self.box.get_points().mean(axis=0) - at) / metre @ bodies.across
+        wide, high = (fine * max(1, round(times * size)) for size in self.box.size)
+        return View(np.array([*bodies.across, bodies.eye]), middle, (wide, high), 1 / (metre * times * fine))
+
+
+def in_three(ax: Axes) -> Axes3D:
+    """Axes of three dimensions; ValueError for those of two."""
+    if not isinstance(ax, Axes3D):
+        raise ValueError('ax has two dimensions, and the masonry is in space; add_subplot(projection="3d") makes three')
+    return ax
+
+
+def solids(ax: Axes, bodies: Solids, box: BboxBase) -> Update:
+    """Draw blocks in space, true to scale, with a scale bar, and the ground below them, over a box [pixel]."""
+    space = in_three(ax)
+    _frame(space, bodies)
+    _scale_bar(space, bodies)
+    drawn = Rendered(ax, bodies, box)
+    space.add_artist(drawn)
+
+    def update(frame: int) -> None:
+        drawn.frame = frame
+
+    return update
+
+
+def fill(ax: Axes, bodies: Solids, box: BboxBase, margin: tuple[float, float] = MARGIN) -> None:
+    """Enlarge a view until its blocks fill a box [pixel], such as that of its figure, but for a margin."""
+    space = in_three(ax)
+    figure, seen = figure_of(ax), bodies.seen
+    limits = np.array([getattr(space, f"get_{name}lim")() for name in "xyz"])
+    if bodies.limits is None:
+        off = seen.mean(axis=0) - bodies.across @ limits.mean(axis=1)
+        limits += (off @ bodies.across)[:, None]
+        space.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
+    x, y, _ = proj_transform(*(seen @ bodies.across).T, space.get_proj())
+    space.apply_aspect()
+    spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0)
+    room = np.maximum(np.array(box.size) - figure.dpi * np.array(margin), 0.4 * np.array(box.size))
+    space.set_box_aspect(np.ptp(limits, axis=1), zoom=float((room / spans).min()))
+
+
+def ties_in_view(ax: Axes, bodies: Solids) -> Update:
+    """Draw the links of blocks, each from the point that it holds to its anchor."""
+    space, moving = in_three(ax), bodies.moving
+    links = bodies.case.links.values()
+    return together([link(space, moving, one, placed_ends(moving, *link_ends(moving.case, one))) for one in links])
+
+
+def _frame(ax: Axes3D, bodies: Solids) -> None:
+    """Set limits of the same scale along every axis, and the camera. No axes are drawn."""
+    low, high = bodies.extent()
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    ax.set_box_aspect(high - low)
+    ax.set_proj_type("ortho")
+    ax.view_init(*np.asarray(bodies.camera))
+    ax.computed_zorder = False  # the ground lies behind
+    ax.set_axis_off()
+
+
+def _scale_bar(ax: Axes3D, bodies: Solids) -> None:
+    """Draw a line of 1, 2 or 5 times a power of ten [m] across the line of sight, below what is seen at the left."""
+    (left, low), (right, high) = bodies.seen
+    length = round_length(float(right - left))
+    start = np.array([left, low - max(BELOW * (high - low), BELOW_FLAT * (right - left))])
+    ends = np.array([start, start + np.array([length, 0.0])]) @ bodies.across
+    (line,) = ax.plot(*ends.T, color="0.15", linewidth=2.5, solid_capstyle="butt", zorder=6, clip_on=False)
+    text = ax.text(*ends[1], f"  {length:g} m", va="center", fontsize=8, zorder=6)
+    for part in (line, text):
+        part.set_in_layout(False)  # its place is known when the view is
+        part.set_animated(True)

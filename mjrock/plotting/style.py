@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +22,13 @@ from matplotlib.text import Text
 from ..files import replacing
 from ..quantities import require_kind, require_path, warn_of
 from ..result.response import Response
-from .arguments import picture
-from .figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, Picture
 
+BLACK, ORANGE, BLUE, PURPLE, GREEN = "#262626", "#d97706", "#1f6fc4", "#7a2a6b", "#3a9d7a"
+PALETTE = (BLUE, ORANGE, GREEN, PURPLE, BLACK)
+"""Colours of lines, in the order in which a figure takes them.
+
+Each has a contrast of three on white, and they differ also for readers who do not see red, green or blue.
+"""
 Look = dict[str, Any]
 """Options of what matplotlib draws, such as its colour."""
 STYLES: dict[str, Look] = {
@@ -33,11 +38,13 @@ STYLES: dict[str, Look] = {
     "compliant": {"label": "contact law, SciPy", "color": PURPLE, "linestyle": ":", "linewidth": 1.5, "zorder": 3},
     "explicit": {"label": "explicit steps", "color": BLUE, "linestyle": "--", "linewidth": 1.6, "zorder": 2.5},
 }
-"""The line of each solver, the same in every figure. A black-and-white print still tells them apart."""
+"""The line of each solver, the same in every figure. They differ in black and white too."""
 WIDEST, SMALLEST = 7.4, 8.0
 """Largest width of a figure that is saved [inch], and smallest size of its text [pt]: pages show it as wide as that."""
 FINE = 200
 """Dots of a figure that is saved [1/inch]."""
+COARSE = 120
+"""Dots of a figure in a notebook [1/inch]."""
 EDGE = 3.0
 """How far a word may go beyond the edge of a figure [pixel]."""
 
@@ -53,6 +60,26 @@ OWN: tuple[Look, ...] = (
     {"color": BLACK, "linestyle": "-.", "linewidth": 1.4, "zorder": 2.1},
 )
 """Lines of responses that have labels of their own."""
+
+
+class Picture(Figure):
+    """A figure without `pyplot`, which a notebook shows by itself."""
+
+    def add_subplot(self, *given: Any, **options: Any) -> Axes:
+        """A new Axes, whose lines have the colours of this package."""
+        ax: Axes = super().add_subplot(*given, **options)
+        ax.set_prop_cycle(color=PALETTE)
+        return ax
+
+    def _repr_png_(self) -> bytes:
+        return png(self)
+
+
+def png(figure: Figure) -> bytes:
+    """A figure as a notebook shows it, a PNG."""
+    written = BytesIO()
+    figure.savefig(written, format="png", dpi=COARSE)
+    return written.getvalue()
 
 
 def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None) -> list[Look]:
@@ -74,18 +101,21 @@ def short(label: str) -> str:
     return textwrap.shorten(label, 24, placeholder=" ...")
 
 
-def below_figure(figure: Figure, ax: Axes, ncols: int = 3, **options: Any) -> None:
+def below_figure(figure: Figure, ax: Axes, ncols: int = 3, fontsize: float | None = None) -> None:
     """The legend of an Axes below its figure."""
-    legend_below(figure, *ax.get_legend_handles_labels(), ncols, **options)
+    legend_below(figure, *ax.get_legend_handles_labels(), ncols, fontsize)
 
 
-def legend_below(figure: Figure, handles: Sequence[Artist], labels: Sequence[str], ncols: int, **options: Any) -> None:
+def legend_below(
+    figure: Figure, handles: Sequence[Artist], labels: Sequence[str], ncols: int, fontsize: float | None = None
+) -> None:
     """A legend below a figure, in at most `ncols` columns and no more than its width has room for.
 
-    A legend of many lines makes the figure higher.
+    A legend of many lines makes the figure higher. The size of its text is given in pt.
     """
     for columns in range(max(1, min(ncols, len(labels))), 0, -1):
-        legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, **options)
+        look: Look = {"loc": "outside lower center", "ncols": columns, "frameon": False, "fontsize": fontsize}
+        legend = figure.legend(handles, labels, **look)
         box = legend.get_window_extent()
         if columns == 1 or box.width <= 0.98 * figure.bbox.width:
             break
@@ -220,20 +250,3 @@ def _colours(artist: Artist) -> set[str]:
         return set()
     found = np.concatenate([to_rgba_array(getattr(artist, f"get_{name}")()) for name in names])
     return {to_hex(colour) for colour in found if colour[3] > 0} - {"#ffffff"}
-
-
-@picture()
-def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
-    """A figure with one Axes, drawn by `draw`."""
-    figure = Picture(figsize=size, layout="constrained")
-    draw(figure.subplots())
-    return figure
-
-
-@picture()
-def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
-    """Several drawings, each on an Axes of its own under its title."""
-    figure, axes = several(len(drawings), columns, (4.4, 3.4))
-    for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
-        draw(ax).set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
-    return figure

@@ -1,1 +1,1 @@
-"""The contact law in SciPy, the independent check of the engine. This package knows no restitution and no MuJoCo."""
+"""The contact law in SciPy, the independent check of the engine. This package uses neither restitution nor MuJoCo."""

@@ -1,9 +1,9 @@
 """The contact law itself, integrated by SciPy: unilateral Kelvin-Voigt points.
 
-This solver knows no restitution and no MuJoCo, and it shares no kinematics with the engine that it checks. Each contact
-point carries f = max(0, -(k r + c dr/dt)) while its gap r is negative, so never a tension. The base does not slip.
-While an edge of it is loaded, friction without a bound holds the lower edge, halfway between the two faces that overlap
-there. An edge that lands with a sliding velocity loses it at once, in the impulse of that friction.
+This solver uses neither restitution nor MuJoCo, and it shares no kinematics with the engine that it checks. Each
+contact point carries f = max(0, -(k r + c dr/dt)) while its gap r is negative, so never a tension. The base does not
+slip. While an edge of it is loaded, friction without a bound holds the lower edge, halfway between the two faces that
+overlap there. An edge that lands with a sliding velocity loses it at once, in the impulse of that friction.
 """
 
 from __future__ import annotations

@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, fsolve
 
 from ..problem.damping.contacts import Contacts
 from ..problem.wall.case import Case
-from ..problem.wall.effect import Anchored, LinkLaw
+from ..problem.wall.effect import Anchored, LinkLaw, resistance
 from ..problem.wall.effects import constant_forces_of
-from ..quantities import GRAVITY, Array
+from ..quantities import GRAVITY, Array, Real
 
 SLIP_ROUNDING = 1e-9
 """Share of the slip force that is put down to rounding [-]."""
@@ -26,7 +25,7 @@ class Wall:
     The state is (x, z, theta, and their rates): the displacement of the centroid from the upright wall on an undeformed
     base [m], x away from the side stop and z upwards, and the rotation [rad], positive towards +x.
 
-    Friction dampers have a state beside it: where their sliders are, see `mjrock.reference.sliders`.
+    Friction dampers have a state beside it: the places of their sliders, see `Slider`.
 
     Raises:
         ValueError: for a tie that yields.
@@ -63,7 +62,7 @@ class Wall:
         for name, (_, link), (elongation, _) in placed:
             self.sliders[name] = Slider(link.law, float(elongation), start=float(elongation))
 
-    def elongations(self, y: Array) -> list[tuple[Any, Any]]:
+    def elongations(self, y: Array) -> list[tuple[Array, Array]]:
         """Elongations of the friction dampers from the length drawn [m], and their rates [m/s]."""
         x, z, theta, vx, vz, omega = y
         found = []
@@ -84,13 +83,13 @@ class Wall:
         at = zip(self.sliders.values(), self.elongations(states), strict=True)
         return np.vstack([states, *(slider.places(elongation) for slider, (elongation, _) in at)])
 
-    def base_gap(self, z: Any, theta: Any) -> Any:
+    def base_gap(self, z: Real, theta: Real) -> Array:
         """Height of each contact line of the base above the base [m]."""
-        return z + self.up * (1 - np.cos(theta)) - self.at * np.sin(theta)
+        return np.asarray(z + self.up * (1 - np.cos(theta)) - self.at * np.sin(theta))
 
-    def side_gap(self, x: Any, theta: Any) -> Any:
+    def side_gap(self, x: Real, theta: Real) -> Array:
         """Distance of each contact line of the inner face from the side stop [m]."""
-        return x + self.face * (1 - np.cos(theta)) + self.heights * np.sin(theta)
+        return np.asarray(x + self.face * (1 - np.cos(theta)) + self.heights * np.sin(theta))
 
     def released(self) -> Array:
         """The state at release: tilted about the toe, the base compressed until its springs carry the weight.
@@ -161,7 +160,7 @@ class Wall:
             doubled += link.law.k * (self._pulled(height, link, x, z, theta)[0] - place) ** 2
         return np.asarray(doubled / 2)
 
-    def _pulled(self, height: float, tie: Anchored, x: Any, z: Any, theta: Any) -> tuple[Any, Any, Any]:
+    def _pulled(self, height: float, tie: Anchored, x: Real, z: Real, theta: Real) -> tuple[Real, Real, Real]:
         """Elongation of a tie beyond its slack [m], and its direction from the anchor to the wall."""
         across = tie.length + x + self.face * (1 - np.cos(theta)) + height * np.sin(theta)
         up = z + self.face * np.sin(theta) - height * (1 - np.cos(theta)) - tie.rise
@@ -177,7 +176,7 @@ class Wall:
         above = z - px * sine + pz * (cosine - 1)
         length = math.hypot(across, above)
         rate_across, rate_above = vx + omega * (pz * cosine - px * sine), vz - omega * (px * cosine + pz * sine)
-        force = -damper.law.c * (across * rate_across + above * rate_above) / length
+        force = -resistance(damper.law, (across * rate_across + above * rate_above) / length)
         return px, pz, force * across / length, force * above / length
 
     def base_forces(self, y: Array) -> tuple[Array, Array]:
@@ -289,13 +288,6 @@ class Slider:
             return np.full(len(elongation), self.place)
         return np.asarray(elongation - self.way * self.law.strength / self.law.k)
 
-    def move_to(self, elongation: float) -> None:
-        """Let it slip to an elongation [m]."""
-        stretch = self.law.strength / self.law.k
-        place = min(max(self.place, elongation - stretch), elongation + stretch)
-        self.path += abs(place - self.place)
-        self.place = place
-
     def settle(self, elongation: float, rate: float, fired: bool) -> None:
         """Let it stick or slip in the next arc.
 
@@ -303,8 +295,10 @@ class Slider:
             elongation, rate: of the link now [m, m/s].
             fired: whether the last arc ended because `change` fell through zero.
         """
-        before = self.way
-        self.move_to(elongation)
+        before, stretch = self.way, self.law.strength / self.law.k
+        place = min(max(self.place, elongation - stretch), elongation + stretch)
+        self.path += abs(place - self.place)
+        self.place = place
         pull = self.law.k * (elongation - self.place)
         if before:
             slips = not fired and before * rate >= 0

@@ -68,7 +68,7 @@ msub > :last-child { font-size: .7em; vertical-align: sub }
 msup > :last-child { font-size: .7em; vertical-align: super }
 msqrt::before { content: "√" } msqrt > * { display: inline-block; border-top: .6pt solid; vertical-align: middle }
 """
-"""How WeasyPrint sets formulae, which knows no MathML."""
+"""How WeasyPrint sets formulae, which has no MathML."""
 
 
 class Markup(str):

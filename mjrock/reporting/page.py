@@ -20,10 +20,10 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
-from ..study.loading.dynamic import signals_of
-from . import content, subject, verdicts
+from ..study.loading.code_check import signals_of
+from . import subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
-from .pictures import PANELS, Run, capacity_curves, histories, strip
+from .pictures import PANELS, Run, by_variant, capacity_curves, histories, strip
 from .subject import Reported, reported
 from .texts import DASH, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
@@ -100,8 +100,8 @@ def report(
     mechanisms = required_checks(checks, words(f"kind_{whole.KIND}"))
     given = [
         (words(f"kind_{whole.KIND}"), whole.inputs(words)),
-        (words("effects"), content.of_effects(case, words)),
-        (words("contacts"), content.of_contacts(e, contacts, words)),
+        (words("effects"), subject.of_effects(case, words)),
+        (words("contacts"), subject.of_contacts(e, contacts, words)),
     ]
     rests = required_texts("basis", basis, [row.key for _, rows in given for row in rows])
     block = required_texts("project", project, HEADS)
@@ -205,9 +205,8 @@ def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanis
 def outcomes(runs: Sequence[Run], words: Words) -> str:
     """How many runs of each variant overturn."""
     said = []
-    for variant in dict.fromkeys(run.variant for run in runs):
-        own = [run.largest for run in runs if run.variant == variant]
-        count = sum(d == math.inf for d in own)
+    for variant, own in by_variant(runs).items():
+        count = sum(run.largest == math.inf for run in own)
         said.append(words("runs_overturn", name=variant or words("all_runs"), count=count, of=len(own)))
     return f"{words('falls')} {'; '.join(said)}."
 
@@ -230,7 +229,7 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
         limits["d₀"] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=words(check.limit_state))] = check.capacity
-    solved = content.solved_with([run.response for run in runs], words)
+    solved = subject.solved_with([run.response for run in runs], words)
     parts = [element("h2", words("runs"), kind="page"), *[element("p", said) for said in solved]]
     drawn = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
     parts.append(picture(drawn, words(f"strip_{whole.KIND}"), words))
@@ -249,7 +248,7 @@ def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
     parts += [element("h2", words("limits")), listed([*verdicts.limits(mechanisms, words), *whole.limits(runs, words)])]
     solvers = list(dict.fromkeys(run.response.solver for run in runs))
     kinematic = any(mechanism.kinematic for mechanism in mechanisms)
-    parts += [element("h2", words("ntc")), table((), content.code_chapter(solvers, kinematic, words), kind="block")]
+    parts += [element("h2", words("ntc")), table((), subject.code_chapter(solvers, kinematic, words), kind="block")]
     if by_hand := whole.by_hand(words):
         parts += [element("p", words("hand")), table((), by_hand, right=(1,))]
     return [*parts, element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))]
@@ -264,9 +263,9 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
         elif isinstance(piece, str):
             parts.append(element("p", piece))
         elif isinstance(piece, Fragility):
-            parts.append(content.of_fragility({"": piece}, words))
+            parts.append(subject.of_fragility({"": piece}, words))
         elif isinstance(piece, Mapping) and piece and all(isinstance(one, Fragility) for one in piece.values()):
-            parts.append(content.of_fragility(dict(piece), words))
+            parts.append(subject.of_fragility(dict(piece), words))
         elif callable(made := getattr(piece, "table", None)):
             parts += tables(made())
         else:
@@ -290,7 +289,7 @@ def tables(text: str) -> list[Markup]:
 
 
 def appendix(
-    given: Sequence[tuple[str, Sequence[content.Input]]], rests: Mapping[str, str], words: Words
+    given: Sequence[tuple[str, Sequence[subject.Input]]], rests: Mapping[str, str], words: Words
 ) -> list[Markup]:
     """The inputs and what they rest on."""
     parts = [element("h2", words("inputs"), kind="page")]
@@ -307,7 +306,7 @@ def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup
     """The records, every run, and the versions of the programs."""
     responses = [run.response for run in runs]
     parts = []
-    if motions := content.of_motions(responses, words):
+    if motions := subject.of_motions(responses, words):
         heads = [words(f"motion_{key}") for key in ("name", "direction", "peak", "peak_g", "duration", "step")]
         parts += [element("h2", words("motions")), table(heads, motions, right=(2, 3, 4, 5))]
     variants, ties = any(run.variant for run in runs), any(run.response.ties for run in runs)
@@ -323,4 +322,4 @@ def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup
     if forces := subject.forces_kept(runs, words):
         heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
         parts.append(table(heads, forces, right=(1, 2)))
-    return [*parts, element("h2", words("versions")), table((), content.versions(words), kind="block")]
+    return [*parts, element("h2", words("versions")), table((), subject.versions(words), kind="block")]

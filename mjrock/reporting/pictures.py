@@ -13,13 +13,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..plotting.bodies import Bodies
-from ..plotting.sketch import elevation, section
 from ..plotting.style import OWN, Look, legend_below, several
+from ..plotting.wall import elevation, section
 from ..problem.wall.case import Case
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array
+from ..result.bodies import Moving
 from ..result.response import Response
-from ..study.loading.mechanism import MechanismCheck
+from ..study.loading.code_check import MechanismCheck
 from .texts import Words
 from .verdicts import Mechanism, told_name
 
@@ -34,7 +35,7 @@ PANELS = 12
 FAR = 2.0
 """A limit that is farther than the motion by this factor would flatten it."""
 NAMED = 5
-"""Most runs of one record that are told apart by their lines."""
+"""Most runs of one record whose lines differ."""
 NEAR_THE_AXIS = 0.2
 """Height over that of a diagram below which a label would lie on its axis [-]."""
 OPENED = 0.06
@@ -66,8 +67,13 @@ class Run(NamedTuple):
 
     @property
     def line(self) -> str:
-        """What tells it apart from other runs of its record."""
+        """The name of its line among the runs of its record."""
         return self.variant or self.label
+
+
+def by_variant(runs: Sequence[Run]) -> dict[str, list[Run]]:
+    """The runs of each variant, in their order."""
+    return {name: [run for run in runs if run.variant == name] for name in dict.fromkeys(run.variant for run in runs)}
 
 
 def wall_drawn(case: Case, words: Words) -> Figure:
@@ -78,7 +84,7 @@ def wall_drawn(case: Case, words: Words) -> Figure:
     loaded = any(force[0] == 0 for _, force in constant_forces_of(case.effects).values())
     left.set_ylim(-0.13 * 2 * case.block.h, left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h)
     elevation(right, case, left.get_ylim())
-    opened = Bodies.at_poses(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None])
+    opened = Bodies.of_moving(Moving(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None]))
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
     look: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
     left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **look)
@@ -149,7 +155,7 @@ def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str,
     Args:
         runs: the runs.
         limits: what may be reached, in words and in numbers [m].
-        beyond: what those runs are called that know no largest displacement.
+        beyond: what is written over runs without a largest displacement.
         words: of the report.
     """
     rows = list(dict.fromkeys(run.label for run in runs))

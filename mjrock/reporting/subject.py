@@ -1,31 +1,62 @@
-"""What a report says and shows of a wall or of masonry: inputs with their units, results, what to be careful of."""
+"""What a report contains of a wall or of masonry: inputs with their units, results, limits of the results, drawings.
+
+Effects, contacts, motions, solvers and versions are written alike for both.
+"""
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
+import matplotlib
+import mujoco
 import numpy as np
+import scipy
 from matplotlib.figure import Figure
 
+from .._version import __version__
 from ..plotting.masonry import blocks
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, NAMED, Array
+from ..problem.wall.effect import Told
+from ..quantities import GRAVITY, NAMED, Array, declared
 from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
-from ..study.loading.dynamic import displacements_of
-from .content import Input
-from .pictures import SMALL, WIDE, Run, wall_drawn
-from .texts import DASH, FOUND, Words
-from .verdicts import effect_name
+from ..study.intensity.fragility import Fragility
+from ..study.loading.code_check import d_0_of, displaced
+from .markup import Markup, element, table
+from .pictures import SMALL, WIDE, Run, by_variant, wall_drawn
+from .texts import DASH, FOUND, GIVEN, Words, texts
+from .verdicts import REVERSED, effect_name, told_name
 
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
+ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
+"""Statistics of runs that a report names, with their units and their digits."""
+
+
+class Input(NamedTuple):
+    """An input of the report.
+
+    Args:
+        key: its name in the program, by which `basis` names it.
+        name: in words.
+        value: with its unit.
+        computed: whether it follows from others, and rests on nothing of its own.
+    """
+
+    key: str
+    name: str
+    value: str
+    computed: bool = False
 
 
 class Reported(Protocol):
@@ -55,7 +86,7 @@ class Reported(Protocol):
         """Its cells in the table of runs."""
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
-        """What these results do not say."""
+        """What these results do not cover."""
 
     def by_hand(self, words: Words) -> list[tuple[str, ...]]:
         """Steps of a check by hand, where there is one."""
@@ -110,7 +141,8 @@ class ReportedWall(Reported):
 
     def largest(self, response: Response) -> float:
         """Of the centroid as the wall turns about its toe, as the dynamic check has it."""
-        return displacements_of(response.of_wall[0], [response.peak_over_alpha])[1][0]
+        wall = response.of_wall[0].wall
+        return displaced(wall, response.peak_over_alpha * wall.alpha)
 
     def moved(self, response: Response) -> Array:
         """Of the centroid."""
@@ -118,7 +150,7 @@ class ReportedWall(Reported):
 
     def limit(self) -> float | None:
         """Of the wall without its ties; None of one that they alone hold."""
-        return displacements_of(self.case, ())[0] or None
+        return d_0_of(self.case) or None
 
     def result(self, response: Response, words: Words) -> list[str]:
         """How it ended, its largest displacement, that over the limit, impacts."""
@@ -131,18 +163,17 @@ class ReportedWall(Reported):
         return [words(f"outcome_{response.outcome.name.lower()}"), *said]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
-        """What these results do not say."""
-        said = [words("limit_rigid")]
+        """What these results do not cover."""
         shaken = [run for run in runs if run.response.case.motion is not None]
-        both = {run.record for run in shaken if run.turned}
-        if self.case.one_sided and {run.record for run in shaken} - both:
-            said.append(words("limit_polarity"))
-        if len({run.record for run in shaken}) == 1:
-            said.append(words("limit_one_record"))
-        if not shaken:
-            said.append(words("limit_release"))
-        if {run.response.solver for run in runs} == {"analytical"}:
-            said.append(words("limit_theory"))
+        records, both = {run.record for run in shaken}, {run.record for run in shaken if run.turned}
+        applies = {
+            "limit_rigid": True,
+            "limit_polarity": self.case.one_sided and records > both,
+            "limit_one_record": len(records) == 1,
+            "limit_release": not shaken,
+            "limit_theory": {run.response.solver for run in runs} == {"analytical"},
+        }
+        said = [words(key) for key, holds in applies.items() if holds]
         still = [run for run in runs if run.response.outcome is Outcome.TIME_ENDED]
         if still:
             said.append(words("limit_still_moves", count=len(still), of=len(runs)))
@@ -235,7 +266,7 @@ class ReportedMasonry(Reported):
         return [words(ended), *sizes, words("and_more", names=said, count=len(fell) - NAMED) if fell[NAMED:] else said]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
-        """What these results do not say."""
+        """What these results do not cover."""
         said = [words("limit_rigid_blocks"), words("limit_margin")]
         if len({run.record for run in runs if run.response.case.motion is not None}) == 1:
             said.append(words("limit_one_record"))
@@ -285,13 +316,12 @@ def tied(response: Response, words: Words) -> list[str]:
 def broken_ties(runs: Sequence[Run], words: Words) -> list[str]:
     """In how many runs ties broke, by variant."""
     said = []
-    for variant in dict.fromkeys(run.variant for run in runs):
-        own = [run for run in runs if run.variant == variant and run.response.ties]
-        broke = [min(tie.broken for tie in run.response.ties.values()) for run in own]
+    for variant, own in by_variant(runs).items():
+        broke = [min(tie.broken for tie in run.response.ties.values()) for run in own if run.response.ties]
         count = sum(math.isfinite(t) for t in broke)
         if count:
             name, first = variant or words("all_runs"), words.quantity(min(broke), "s", FOUND)
-            said.append(words("ties_broke", name=name, count=count, of=len(own), t=first))
+            said.append(words("ties_broke", name=name, count=count, of=len(broke), t=first))
     return said
 
 
@@ -310,3 +340,114 @@ def forces_kept(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
 def reported(case: AnyCase) -> Reported:
     """A case as a report sees it."""
     return ReportedMasonry(case) if isinstance(case, MasonryCase) else ReportedWall(case)
+
+
+def of_effects(case: AnyCase, words: Words) -> list[Input]:
+    """The effects."""
+    told = [(name, effect.told, told_name(name, effect, words)) for name, effect in case.named.items()]
+    return [Input(name, said, described(effect, words)) for name, effect, said in told if effect is not None]
+
+
+def described(effect: Told, words: Words) -> str:
+    """An effect in words: each of its numbers with its name; its own text where the report has no words for it."""
+    if not words.or_else(f"effect_{effect.label}", ""):
+        return effect.said.replace("\n", " ")
+    kind: Any = type(effect)  # mypy takes a class for a thing without a hash
+    units = {name: "" if within.whole else within.unit for name, (within, _) in declared(kind).items()}
+    units["strength"] = "N"
+    said = []
+    for field in dataclasses.fields(kind):
+        value, own = getattr(effect, field.name), f"field_{effect.label}_{field.name}"
+        key = own if own in texts() else f"field_{field.name}"
+        if value is None or value == math.inf or key not in texts():
+            continue
+        if isinstance(value, str):
+            said.append(words(key, value=words(f"governed_{value}")))
+        elif isinstance(value, tuple):
+            said.append(words(key, value="; ".join(words.number(x) for x in value)))
+        else:
+            unit = "m" if field.name in ("height", "anchor_height") else units.get(field.name, "")
+            said.append(words(key, value=words.quantity(value, unit)))
+    return ", ".join(said)
+
+
+def of_contacts(e: Restitution | None, contacts: Contacts | None, words: Words) -> list[Input]:
+    """Restitution, stiffness and damping."""
+    rows = []
+    if e is not None:
+        for name in ("base", "side", "lumped"):
+            rows.append(Input(f"e_{name}", words(f"in_e_{name}"), words.number(getattr(e, name), FOUND)))
+    if contacts is not None:
+        law = words.or_else(f"law_{contacts.law.lower()}", contacts.law)
+        rows.append(Input("law", words("in_law"), law))
+        for name, face in (("base", contacts.base), ("side", contacts.side)):
+            if face is not None:
+                friction = words("sticks") if face.friction is None else words.number(face.friction)
+                values = {"k": words.quantity(face.k_n, "N/m3"), "xi": words.share(face.xi), "points": face.points}
+                rows.append(Input(f"k_{name}", words(f"in_k_{name}"), words("face", friction=friction, **values)))
+    return rows
+
+
+def of_motions(responses: Sequence[Response], words: Words) -> list[tuple[str, ...]]:
+    """The ground motions of the responses, each once, in one polarity."""
+    rows: dict[tuple[str, str], tuple[str, ...]] = {}
+    for response in responses:
+        for direction, motion in response.case.grounds.items():
+            peak = float(abs(motion.accel).max())
+            sizes = words.quantity(peak, "m/s2", FOUND), words.quantity(peak / GRAVITY, "g", FOUND)
+            name = motion.name.removesuffix(REVERSED)
+            times = words.quantity(motion.duration, "s"), words.quantity(motion.dt, "s")
+            rows.setdefault((direction, name), (name, words(f"ground_{direction}"), *sizes, *times))
+    return list(rows.values())
+
+
+def solved_with(responses: Sequence[Response], words: Words) -> list[str]:
+    """How the responses were solved, a sentence for each solver."""
+    said = []
+    for solver in dict.fromkeys(response.solver for response in responses):
+        own = [response.stats for response in responses if response.solver == solver]
+        asked = []
+        for name, shown in ASKED.items():
+            if values := [stats[name] for stats in own if stats.get(name)]:
+                low, high = (words.quantity(value, *shown) for value in (min(values), max(values)))
+                asked.append(words(f"solved_{name}", value=low if low == high else words("range", low=low, high=high)))
+        solved = words.or_else(f"solver_{solver}", solver)
+        said.append(words("solved", solver=solved, count=len(own), how=", ".join(asked)))
+    return said
+
+
+def of_fragility(fits: dict[str, Fragility], words: Words) -> Markup:
+    """Fragility curves as a table."""
+    rows = []
+    for name, fit in fits.items():
+        spans = (fit.median, *fit.median_interval(0.9)), (fit.dispersion, *fit.dispersion_interval(0.9))
+        numbers = [[words.number(value, FOUND) for value in span] for span in spans]
+        cells = [words("interval", value=value, low=low, high=high) for value, low, high in numbers]
+        groups = words("independent") if fit.groups is None else str(fit.groups)
+        rows.append((name, *cells, str(fit.count), groups))
+    heads = [words(f"fragility_{key}") for key in ("name", "median", "dispersion", "runs", "groups")]
+    return element("div", table(heads, rows, right=(3, 4)), element("p", words("fragility_note")))
+
+
+def versions(words: Words) -> list[tuple[str, ...]]:
+    """Versions of what has computed this, and what was drawn by chance."""
+    made = {
+        "mjrock": __version__,
+        "MuJoCo": mujoco.__version__,
+        "NumPy": np.__version__,
+        "SciPy": scipy.__version__,
+        "matplotlib": matplotlib.__version__,
+        "Python": platform.python_version(),
+    }
+    return [
+        (words("versions"), ", ".join(f"{name} {version}" for name, version in made.items())),
+        (words("seed"), words("seed_said")),
+    ]
+
+
+def code_chapter(solvers: Sequence[str], kinematic: bool, words: Words) -> list[tuple[str, ...]]:
+    """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer."""
+    used = [words("kinematic_analysis")] * kinematic + [words.or_else(f"solver_{solver}", solver) for solver in solvers]
+    keys = "origin", "basis", "field", "validation", "results"
+    said = [(words(f"ntc_{key}"), words(f"ntc_{key}_said", version=__version__)) for key in keys]
+    return [(words("ntc_kind"), "; ".join(used)), *said]

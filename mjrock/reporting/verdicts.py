@@ -10,8 +10,7 @@ import numpy as np
 
 from ..problem.wall.effect import Effect
 from ..quantities import require_kind, require_text, shown
-from ..study.loading.dynamic import LEAST, DynamicCheck
-from ..study.loading.mechanism import DAMPING, PERIOD, SHARE, MechanismCheck, Step, Verdict
+from ..study.loading.code_check import DAMPING, MIN_RECORDS, PERIOD, SHARE, DynamicCheck, MechanismCheck, Step, Verdict
 from .markup import Markup, element, formula, table
 from .texts import DASH, FOUND, Words
 
@@ -88,7 +87,7 @@ def required_checks(checks: object, alone: str) -> list[Mechanism]:
 
 
 def answers(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """What holds, mechanism by mechanism, and every condition that says so."""
+    """What holds, mechanism by mechanism, with every condition."""
     rows, columns = [], ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
     names: dict[str, list[str]] = {"holds": [], "part": [], "fails": []}
     for mechanism in mechanisms:
@@ -136,7 +135,7 @@ def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
 
 
 def limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
-    """What the kinematic checks do not say."""
+    """What the kinematic checks do not cover."""
     said = [words("limit_seat")] if any(mechanism.kinematic for mechanism in mechanisms) else []
     for name, check, _ in mechanisms:
         if check and (gone := [words(state) for state in check.states if check.broken_before(state)]):
@@ -183,7 +182,7 @@ def _step(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[st
 
 
 def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
-    """The cell of a value; a ratio says by its colour whether it holds, if none below takes its place."""
+    """The cell of a value; the colour of a ratio shows whether it holds, if none below takes its place."""
     if not step.key.endswith("ratio"):
         return element("td", words.quantity(step.value, step.unit, FOUND), kind="right")
     counts = step.key != "ratio" or step.of != "SLV" or step.value >= check.ground_ratio
@@ -199,7 +198,7 @@ def effect_name(name: str, words: Words) -> str:
 
 
 def told_name(name: str, effect: Effect, words: Words) -> str:
-    """What is told of an effect: its own name, or that of what several effects stand for."""
+    """The name of an effect in a report: its own, or that of what several effects stand for."""
     told = effect.told
     return effect_name(name, words) if told is None or told is effect else words(f"effect_{told.label}")
 
@@ -226,7 +225,9 @@ def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
     if check.restitution:
         low, middle, high = (words.number(one, FOUND) for one in np.percentile(check.restitution, [5, 50, 95]))
         e = words("restitution_found", middle=middle, low=low, high=high, count=len(check.restitution))
-    lacks = [words("lacks_records", count=check.records, least=LEAST)] if check.records < LEAST else []
+    lacks = []
+    if check.records < MIN_RECORDS:
+        lacks.append(words("lacks_records", count=check.records, least=MIN_RECORDS))
     if check.in_one_polarity:
         lacks.append(words("lacks_polarity", count=check.in_one_polarity))
     if not check.natural:

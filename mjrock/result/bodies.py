@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.frames import PLANE, SPACE
-from ..geometry.hull import Faces
+from ..geometry.hull import Faces, triangles_of
 from ..geometry.poses import displaced, rotated, rotations
 from ..problem.masonry.case import AnyCase
 from ..problem.masonry.masonry import Masonry
@@ -49,9 +48,9 @@ class Body(NamedTuple):
     moves: bool
 
     @property
-    def triangles(self) -> list[tuple[int, ...]]:
+    def triangles(self) -> list[tuple[int, int, int]]:
         """Triangles of the faces, each by the numbers of its corners."""
-        return [(face[0], *pair) for face in self.faces for pair in pairwise(face[1:])]
+        return triangles_of(self.faces)
 
     def turned(self, vectors: Array) -> Array:
         """Vectors that are given at rest, shape (m, 3), turned with the body, shape (n, m, 3)."""

@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +24,25 @@ COMPARED_FROM = 0.01
 [-]."""
 SAME_IMPACT = 0.25
 """How far apart in time two impacts may be that belong to each other, times p of the wall [-]."""
+
+
+class Measure(NamedTuple):
+    """What is compared of an impact: its name and unit, its property of `Comparison`, and how a table shows it."""
+
+    name: str
+    unit: str
+    of: str
+    heading: str
+    form: str
+
+
+OF_AN_IMPACT = (
+    Measure("impact time", "s", "impact_times", "time [s]", "10.4f"),
+    Measure("restitution", "-", "restitution", "restitution [-]", "10.4f"),
+    Measure("rebound peak", "theta/alpha", "rebound_peaks", "peak [theta/alpha]", "10.5f"),
+    Measure("energy loss", "J", "energy_loss", "energy loss [J]", "10.2f"),
+    Measure("energy loss share", "of release", "energy_share", "loss / release", "10.2%"),
+)
 
 
 @dataclass(frozen=True)
@@ -76,7 +96,8 @@ class Comparison(Drawn):
         return paired(self.reference.impacts, self.candidate.impacts, SAME_IMPACT / case.wall.p, least)
 
     def _values(self, left: Array | list[float], right: Array | list[float]) -> Array:
-        return _columns(left, right) if self.pairs is None else taken_by(self.pairs, left, right)
+        every = np.repeat(np.arange(max(len(left), len(right)))[:, None], 2, axis=1)
+        return taken_by(every if self.pairs is None else self.pairs, left, right)
 
     @property
     def restitution(self) -> Array:
@@ -109,7 +130,7 @@ class Comparison(Drawn):
         if self.pairs is not None:
             return self._values(*(_largest_after(r) / alpha for r in self._both))
         skip = 0 if self.case.released_outwards else 1
-        return _columns(*(r.peaks[skip:] / alpha for r in self._both))
+        return self._values(*(r.peaks[skip:] / alpha for r in self._both))
 
     @property
     def first_rebound_peak(self) -> tuple[float, float]:
@@ -122,26 +143,20 @@ class Comparison(Drawn):
         """How the reference and the candidate ended."""
         return self.reference.outcome, self.candidate.outcome
 
+    @property
+    def _measured(self) -> Array:
+        """What is in OF_AN_IMPACT, of reference and candidate, shape (impacts, measures, 2), NaN where one has none."""
+        columns = [getattr(self, measure.of) for measure in OF_AN_IMPACT]
+        measured = np.full((max(map(len, columns)), len(columns), 2), np.nan)
+        for i, values in enumerate(columns):
+            measured[: len(values), i] = values
+        return measured
+
     def rows(self) -> list[dict[str, float]]:
         """One row an impact, for a table or a CSV file; names carry their units."""
-        columns = {
-            "impact time": ("s", self.impact_times),
-            "restitution": ("-", self.restitution),
-            "rebound peak": ("theta/alpha", self.rebound_peaks),
-            "energy loss": ("J", self.energy_loss),
-            "energy loss share": ("of release", self.energy_share),
-        }
-        solvers = self._labels
-        count = max(len(values) for _, values in columns.values())
-        return [
-            {"impact": i + 1}
-            | {
-                f"{name}, {solver} [{unit}]": float(values[i, j]) if i < len(values) else math.nan
-                for name, (unit, values) in columns.items()
-                for j, solver in enumerate(solvers)
-            }
-            for i in range(count)
-        ]
+        names = [f"{one.name}, {solver} [{one.unit}]" for one in OF_AN_IMPACT for solver in self._labels]
+        values = self._measured.reshape(-1, len(names)).tolist()
+        return [{"impact": i + 1} | dict(zip(names, row, strict=True)) for i, row in enumerate(values)]
 
     def csv(self) -> str:
         """The rows as CSV text; its columns have the names of the rows without commas, see `mjrock.files`."""
@@ -153,21 +168,16 @@ class Comparison(Drawn):
     def table(self, most: int = 6) -> str:
         """The first `most` impacts and the totals as text, for a terminal."""
         labels = self._labels
-        columns = (
-            ("time [s]", self.impact_times, "10.4f"),
-            ("restitution [-]", self.restitution, "10.4f"),
-            ("peak [theta/alpha]", self.rebound_peaks, "10.5f"),
-            ("energy loss [J]", self.energy_loss, "10.2f"),
-            ("loss / release", self.energy_share, "10.2%"),
-        )
         pair = " ".join(f"{label[:10]:>10}" for label in labels)
         lines = [
-            f"{'':>6} |" + "|".join(f"{name:^21}" for name, _, _ in columns),
-            f"{'impact':>6} |" + "|".join([pair] * len(columns)),
+            f"{'':>6} |" + "|".join(f"{one.heading:^21}" for one in OF_AN_IMPACT),
+            f"{'impact':>6} |" + "|".join([pair] * len(OF_AN_IMPACT)),
         ]
-        for i in range(min(most, max(len(values) for _, values, _ in columns))):
-            row = [(values[i] if i < len(values) else (math.nan,) * 2, form) for _, values, form in columns]
-            cells = (" ".join(f"{'-':>10}" if math.isnan(v) else f"{v:{form}}" for v in pair) for pair, form in row)
+        for i, row in enumerate(self._measured[:most].tolist()):
+            cells = (
+                " ".join(f"{'-':>10}" if math.isnan(value) else f"{value:{one.form}}" for value in both)
+                for one, both in zip(OF_AN_IMPACT, row, strict=True)
+            )
             lines.append(f"{i + 1:>6} |" + "|".join(cells))
         if self.pairs is not None:
             lines.append(
@@ -211,12 +221,6 @@ def _largest_after(response: Response) -> Array:
     ends = np.searchsorted(response.t, [*(impact.t for impact in response.impacts), np.inf])
     theta = np.abs(response.theta)
     return np.array([theta[first : last + 1].max(initial=0.0) for first, last in itertools.pairwise(ends)])
-
-
-def _columns(left: Array | list[float], right: Array | list[float]) -> Array:
-    table = np.full((max(len(left), len(right)), 2), np.nan)
-    table[: len(left), 0], table[: len(right), 1] = left, right
-    return table
 
 
 def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least: float) -> Integers:

@@ -1,4 +1,4 @@
-"""How runs end, with a sentence that says it, and the time that a solver took."""
+"""How runs end, with a sentence for the user, and the time that a solver took."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Outcome(enum.Enum):
 def ending(
     case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float, velocity: Array
 ) -> tuple[Outcome, str]:
-    """Outcome of a run of a wall on compliant contacts, and a sentence that says it.
+    """Outcome of a run of a wall on compliant contacts, and a sentence about it.
 
     The wall is at rest when its energy above the settled wall no longer lifts an edge off the base, nor does its
     kinetic energy alone: a wall that a thrust pushes along has less than at rest. `velocity` is that at the end, shape
@@ -55,7 +55,7 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
 
 
 def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, everywhere: bool) -> tuple[Outcome, str]:
-    """Outcome of a run of masonry, and a sentence that says it; `everywhere` says whether all contacts are found."""
+    """Outcome of a run of masonry, and a sentence about it; `everywhere` is whether all contacts are found."""
     if fallen:
         left_out = "" if everywhere else "; contacts other than those of the joints at rest are not in the model"
         (name, first), *others = fallen.items()

@@ -170,7 +170,7 @@ def add_links(case: AnyCase, gathered: Gathered, reactions: dict[str, Array]) ->
     moving, blocks = Moving(case, gathered.t, gathered.pose), case.blocks
     for name, pulled in gathered.pulled.items():
         if name not in case.links:
-            continue  # of a device that only explicit steps know
+            continue  # of a device that only explicit steps have
         link = case.links[name]
         if case.body_of(link.anchor_block) is not None:
             continue

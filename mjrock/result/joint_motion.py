@@ -171,24 +171,6 @@ class JointRecord(NamedTuple):
     parted: Flags
 
 
-def in_parts(pose: Array, shift: Array, joints: int, look: Callable[[Array, Array], JointRecord]) -> JointRecord:
-    """What joints did at poses. The steps are taken in parts, so that they fit into memory.
-
-    `look` takes the poses of some steps and where supports are then, and gives what the joints do at each: all but
-    `deepest` has the shape (steps, joints).
-    """
-    opening, sliding, deepest = np.zeros(joints), np.zeros(joints), 0.0
-    off, parted = np.zeros((2, len(pose), joints), dtype=bool)
-    size = max(1, AT_ONCE // max(1, joints))
-    for first in range(0, len(pose), size):
-        some = slice(first, first + size)
-        seen = look(np.ascontiguousarray(pose[some]), np.ascontiguousarray(shift[some]))
-        opening, sliding = np.maximum(opening, seen.opening.max(axis=0)), np.maximum(sliding, seen.sliding.max(axis=0))
-        off[some], parted[some] = seen.off, seen.parted
-        deepest = max(deepest, seen.deepest)
-    return JointRecord(opening, sliding, deepest, off, parted)
-
-
 def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> JointRecord:
     """The motion of the joints of masonry, relative to the supports that move.
 
@@ -201,23 +183,29 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
         t: times of the steps or samples [s], shape (steps,).
         pose: at these times, shape (steps, n nq).
     """
-    masonry, points = case.masonry, JointPoints.of(case, scene)
+    masonry, points, count = case.masonry, JointPoints.of(case, scene), len(case.masonry.joints)
     slid_off = _slid_off_in_space(case.standing) if masonry.in_space else _slid_off_in_plane(masonry)
-    widths = np.array([each.width for each in masonry.joints])
-
-    def look(some: Array, shift: Array) -> JointRecord:
-        seen = _looked(scene, points, some, shift)
-        (far, off), nearest = slid_off(seen.slid), seen.nearest
-        parted = (far > widths) | (nearest > PARTED * widths)
-        return JointRecord(seen.opened, far, max(0.0, -float(nearest.min())), off, parted)
-
-    return in_parts(pose, displacements(case.supports, t, scene.freedom.translations), len(masonry.joints), look)
+    widths, shift = (
+        np.array([each.width for each in masonry.joints]),
+        displacements(case.supports, t, scene.freedom.translations),
+    )
+    opening, sliding, deepest = np.zeros(count), np.zeros(count), 0.0
+    off, parted = np.zeros((2, len(pose), count), dtype=bool)
+    size = max(1, AT_ONCE // max(1, count))
+    for first in range(0, len(pose), size):
+        some = slice(first, first + size)
+        seen = _looked(scene, points, pose[some], shift[some])
+        far, off[some] = slid_off(seen.slid)
+        parted[some] = (far > widths) | (seen.nearest > PARTED * widths)
+        opening, sliding = np.maximum(opening, seen.opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
+        deepest = max(deepest, -float(seen.nearest.min()))
+    return JointRecord(opening, sliding, deepest, off, parted)
 
 
 def slips(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Array:
     """How far the block above each joint has slid on the one below [m], shape (steps, joints, d)."""
     shift = displacements(case.supports, t, scene.freedom.translations)
-    return _looked(scene, JointPoints.of(case, scene), np.ascontiguousarray(pose), shift).slid
+    return _looked(scene, JointPoints.of(case, scene), pose, shift).slid
 
 
 def displacements(supports: Sequence[Support], t: Array, d: int) -> Array:
@@ -295,6 +283,7 @@ def _looked(scene: Scene, points: JointPoints, pose: Array, shift: Array) -> Loo
     """What joints do at poses, shape (steps, n nq), with supports that are displaced [m], (steps, supports, d)."""
     size = len(pose), len(scene.contacts.joints)
     seen = Looked(np.empty(size), np.empty(size), np.empty((*size, scene.freedom.translations)))
+    pose, shift = np.ascontiguousarray(pose), np.ascontiguousarray(shift)
     _look(scene.places, points, pose, shift, scene.freedom.frames(len(scene.bodies.names)), seen)
     return seen
 

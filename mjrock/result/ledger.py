@@ -149,7 +149,7 @@ class Ledger:
         if not np.isfinite(times).all():
             raise ValueError(f"t = {shown(t)} holds a value that is not finite; it takes times in s")
 
-        def then(part: Any) -> Any:
+        def then(part: Array | Mapping[str, Array]) -> Any:
             if isinstance(part, Mapping):
                 return {name: then(account) for name, account in part.items()}
             return np.interp(times, self.t, part)

@@ -31,10 +31,6 @@ class Motion(Protocol):
     def theta(self) -> Array:
         """Rotations of the bodies of the plane [rad], shape (n, bodies)."""
 
-    @property
-    def omega(self) -> Array:
-        """Angular velocities of the bodies of the plane [rad/s], shape (n, bodies)."""
-
 
 @dataclass(frozen=True, eq=False)
 class SampledMotion:
@@ -48,11 +44,6 @@ class SampledMotion:
     def theta(self) -> Array:
         """Rotations of the bodies of the plane [rad], shape (n, bodies)."""
         return self.pose[:, :, 2]
-
-    @property
-    def omega(self) -> Array:
-        """Angular velocities of the bodies of the plane [rad/s], shape (n, bodies)."""
-        return self.velocity[:, :, 2]
 
 
 TIME_ROUNDING = 1e-12

@@ -1,17 +1,19 @@
-"""What a solver asks of a problem: a wall on its contacts, or masonry, which has joints of its own."""
+"""What a solver takes: a wall on its contacts, or masonry, which has joints of its own; and the start of a run."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.frames import PLANE, SPACE
 from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Array, require_kind, shown
+from ..problem.wall.effect import beyond_text
+from ..quantities import Array, require_array, require_kind, require_within, shown
 from ..scene.course import Course
 from ..scene.masonry import masonry_course, masonry_scene
 from ..scene.scene import Scene
@@ -19,6 +21,7 @@ from ..scene.wall import wall_course, wall_scene
 from .ledger import Ledger
 from .motion import Motion, SampledMotion
 from .reading import BesidePoses, Reading, masonry_reading, wall_reading
+from .response import End, State
 
 RESIDUAL_OF_WALL = 0.05
 """Error of the balance of a wall above which there is a warning, over the energy of the release and of the
@@ -26,9 +29,13 @@ ground motion [-]."""
 UNPAID = 0.01
 """Error of the balance of masonry above which there is a warning, over the largest part of the ledger [-]."""
 
+PARTS = ("pose", "velocity")
+UNIT_ROUNDING = 1e-6
+"""Largest difference of the length of a quaternion from one [-]."""
+
 
 class Unpaid(NamedTuple):
-    """Energy without an account [J], what it is compared with [J], in words, and the share from which it is said."""
+    """Energy without an account [J], what it is compared with [J] and in words, and the share that is warned of."""
 
     energy: float
     whole: float
@@ -36,37 +43,15 @@ class Unpaid(NamedTuple):
     share: float
 
 
-class Problem(Protocol):
-    """A case with what stands in it, what happens to it, and what is read from its motion."""
-
-    @property
-    def case(self) -> AnyCase:
-        """What was asked."""
-
-    def scene(self, method: Method = METHOD) -> Scene:
-        """What stands; ValueError if the contacts do not fit the case, or what stands in it falls under its weight."""
-
-    def course(self, scene: Scene) -> Course:
-        """What happens to the scene."""
-
-    def read(
-        self, scene: Scene, t: Array, motion: SampledMotion, *, released: bool, beside: BesidePoses | None = None
-    ) -> Reading:
-        """What a motion says; `released` and `beside` are as in `wall_reading` and `masonry_reading`."""
-
-    def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
-        """Error of the balance of a ledger [J]."""
-
-
 @dataclass(frozen=True)
 class WallProblem:
-    """A wall on its contacts, see `Problem`."""
+    """A wall on its contacts, what happens to it, and what is read from its motion."""
 
     case: Case
     contacts: Contacts
 
     def scene(self, method: Method = METHOD) -> Scene:
-        """The wall against its base and its side stop."""
+        """The wall against its base and its side stop; ValueError for contacts that do not fit the case."""
         return wall_scene(self.case, self.contacts, method)
 
     def course(self, scene: Scene) -> Course:
@@ -76,23 +61,23 @@ class WallProblem:
     def read(
         self, scene: Scene, t: Array, motion: SampledMotion, *, released: bool, beside: BesidePoses | None = None
     ) -> Reading:
-        """Impacts and peaks."""
+        """Impacts and peaks, see `wall_reading`."""
         return wall_reading(self.case, self.contacts, t, motion, released=released)
 
     def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
-        """Energy that has appeared while the wall could still come back."""
+        """Energy [J] that has appeared while the wall could still come back."""
         unpaid = ledger.residual[self.case.returns_from(motion.theta[:, 0])].max(initial=0.0)
         return Unpaid(float(unpaid), scale, "the energy there was", RESIDUAL_OF_WALL)
 
 
 @dataclass(frozen=True)
 class MasonryProblem:
-    """Masonry, see `Problem`."""
+    """Masonry, as a `WallProblem` is of a wall."""
 
     case: MasonryCase
 
     def scene(self, method: Method = METHOD) -> Scene:
-        """The blocks on their joints."""
+        """The blocks on their joints; ValueError if they fall under their weight."""
         return masonry_scene(self.case)
 
     def course(self, scene: Scene) -> Course:
@@ -102,12 +87,16 @@ class MasonryProblem:
     def read(
         self, scene: Scene, t: Array, motion: SampledMotion, *, released: bool, beside: BesidePoses | None = None
     ) -> Reading:
-        """Openings, slidings and falls."""
+        """Openings, slidings and falls, see `masonry_reading`."""
         return masonry_reading(self.case, scene, t, motion, beside)
 
     def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
-        """Energy that has appeared or vanished."""
+        """Energy [J] that has appeared or vanished."""
         return Unpaid(float(np.abs(ledger.residual).max()), ledger.largest, "its largest part", UNPAID)
+
+
+Problem = WallProblem | MasonryProblem
+"""A case with what stands in it, what happens to it, and what is read from its motion."""
 
 
 def problem_of(case: AnyCase, contacts: Contacts | None = None) -> Problem:
@@ -136,3 +125,42 @@ def scene_of(case: AnyCase, contacts: Contacts | None = None, method: Method = M
         ValueError: if the contacts do not fit the case, or what stands in it falls under its weight.
     """
     return problem_of(case, contacts).scene(method)
+
+
+def required_start(start: object, case: AnyCase) -> State:
+    """A start as pose and velocity of all bodies, of shape (bodies, 3), in space (bodies, 7) and (bodies, 6), finite.
+
+    Raises:
+        TypeError: if it is no pose and velocity.
+        ValueError: for another shape, a value out of range, ties that yield among the effects, or a block that moves as
+            its guide does not allow. A guide takes less than a thousandth of sqrt(g size) from it.
+    """
+    if any(link.law.yields for link in case.links.values()):
+        raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
+    if isinstance(start, End):
+        start = tuple(start)
+    if not isinstance(start, tuple | list) or len(start) != 2:
+        raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
+    bodies, freedom = len(case.bodies), SPACE if case.in_space else PLANE
+    pose, velocity = (
+        require_array(f"start, {name}", part, (bodies, numbers))
+        for name, part, numbers in zip(PARTS, start, (freedom.nq, freedom.nv), strict=True)
+    )
+    velocity = case.require_start(pose, velocity)
+    for name, values in zip(PARTS, (pose, velocity), strict=True):
+        require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, 1e3)
+    if freedom is SPACE:
+        size = np.linalg.norm(pose[:, 3:], axis=1)
+        for length in size[np.abs(size - 1) > UNIT_ROUNDING].tolist():
+            require_within("start, length of a quaternion", length, 1 - UNIT_ROUNDING, 1 + UNIT_ROUNDING)
+    return pose, velocity
+
+
+def require_in_text(case: AnyCase) -> None:
+    """Raise ValueError for a link whose law the text of a model, and so a fixed step, cannot describe."""
+    for name, link in case.links.items():
+        if number := beyond_text(link.law):
+            raise ValueError(
+                f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "
+                f"{number}; leave timestep out, so that steps fit the motion"
+            )

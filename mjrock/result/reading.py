@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -56,7 +56,7 @@ class Reading:
     count: int = 0
     peak_times: Array | None = None
     slip: Array = field(default_factory=lambda: np.zeros(1))
-    stats: dict[str, Any] = field(default_factory=dict)
+    stats: dict[str, float] = field(default_factory=dict)
 
 
 class BesidePoses(NamedTuple):
@@ -74,8 +74,8 @@ class BesidePoses(NamedTuple):
 
 
 def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion, *, released: bool = True) -> Reading:
-    """Impacts, peaks and the ending of a wall. `released` says whether the motion starts with the release."""
-    uplift, theta, omega = Uplift.of(case, contacts), motion.theta[:, 0], motion.omega[:, 0]
+    """Impacts, peaks and the ending of a wall. `released` is whether the motion starts with the release."""
+    uplift, theta, omega = Uplift.of(case, contacts), motion.theta[:, 0], motion.velocity[:, 0, 2]
     times, peaks, impacts = rocking_history(case, t, theta, omega, motion.energy, uplift, released=released)
     slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return Reading(
@@ -102,7 +102,8 @@ def masonry_reading(
     quiet, opening = is_quiet(scene, float(motion.energy[-1]), motion.velocity[-1]), joints.opening.copy()
     if beside is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
-        told = told_of_overhang(_past_edges(case, scene, t, pose, joints, fallen))
+        past = past_support(case.standing, joints, lambda some: slips(case, scene, t[some], pose[some]))
+        told = told_of_overhang({name: far for name, far in past.items() if name not in fallen})
     else:
         elsewhere = beside.left or bool(case.supports) or bool(case.actuators)  # energy at rest is another one there
         quiet = quiet or (elsewhere and _lies_still(scene, t, motion))
@@ -137,15 +138,7 @@ def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
     return {name: end for name, distance in zip(scene.bodies.names, far, strict=True) if distance >= 0.5 * far.max()}
 
 
-def _past_edges(
-    case: MasonryCase, scene: Scene, t: Array, pose: Array, joints: JointRecord, fallen: dict[str, float]
-) -> dict[str, float]:
-    """How far the weight of each block that has not fallen has passed the edge of what it stands on [m]."""
-    past = past_support(case.standing, joints, lambda some: slips(case, scene, t[some], pose[some]))
-    return {name: far for name, far in past.items() if name not in fallen}
-
-
 def _lies_still(scene: Scene, t: Array, motion: SampledMotion) -> bool:
-    """Whether all blocks lie still: for the last 0.2 s the masonry was at rest as `is_quiet` says."""
+    """Whether all blocks lie still: for the last 0.2 s the masonry was at rest, see `is_quiet`."""
     last = motion.velocity[t >= t[-1] - TIME_AT_REST]
     return t[-1] > TIME_AT_REST and all(is_quiet(scene, 0.0, velocity) for velocity in last)

@@ -19,16 +19,14 @@ from ..problem.wall.case import Case
 from ..problem.wall.standing import in_space
 from ..quantities import Array, require_path, require_within
 from .bodies import Moving, bodies_of, frames_at, openings
-from .compas import results_text
 from .ending import Outcome
+from .files import results_text, texts_of_bodies, texts_of_joints, write_gltf, write_series
 from .forces import Forces
-from .gltf import write_gltf
 from .joint_motion import JointMotion
 from .ledger import Ledger
 from .motion import Motion, sample_at
 from .rocking import Impact, Rocking, largest_rotations, restitution_of
 from .ties import Plastic, TieMotion, motion_of_ties
-from .vtk import texts_of_bodies, texts_of_joints, write_series
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
@@ -157,7 +155,7 @@ class Response(Drawn):
             AttributeError: in space, where it has three components.
         """
         self._require_plane("omega")
-        return self.motion.omega if self.rocking is None else self.motion.omega[:, 0]
+        return self.velocity[:, :, 2] if self.rocking is None else self.velocity[:, 0, 2]
 
     @property
     def peak(self) -> Array:
@@ -195,7 +193,7 @@ class Response(Drawn):
     def reactions(self) -> Mapping[str, Array]:
         """Force on the masonry, or on the wall, by each fixed block, by its name [N], shape (n, 2), in space (n, 3).
 
-        Along x and z, in space x, y and z. They sum to the weight at rest. `Forces` says what counts.
+        Along x and z, in space x, y and z. They sum to the weight at rest. What counts is described at `Forces`.
 
         Raises:
             AttributeError: where the run was not asked to keep them.
@@ -223,7 +221,11 @@ class Response(Drawn):
 
     @property
     def of_masonry(self) -> MasonryCase:
-        """The case of masonry; an AttributeError says that a wall has no joints."""
+        """The case of masonry.
+
+        Raises:
+            AttributeError: for a wall.
+        """
         _ = self.of_joints
         return cast(MasonryCase, self.case)
 
@@ -268,13 +270,9 @@ class Response(Drawn):
             ValueError: for a time outside the run.
             AttributeError: for a wall.
         """
-        case, k = self.of_masonry, sample_at(self.t, t)
-        moving = Moving(case, self.t, self.pose).at([k])
-        places = [moving.displaced(i, centroid[None])[0, 0] for i, centroid in enumerate(case.masonry.centroids)]
-        turns = np.eye(1, self.pose.shape[2] - len(places[0])) if self.in_space else np.zeros((1, 1))
-        turns = np.repeat(turns, len(places), axis=0)
-        turns[list(case.masonry.free)] = self.pose[k, :, len(places[0]) :]
-        return np.hstack([places, turns])
+        centroids, moving = self.of_masonry.masonry.centroids, self.moving.at([sample_at(self.t, t)])
+        places = [moving.displaced(i, centroid[None])[0, 0] for i, centroid in enumerate(centroids)]
+        return np.hstack([places, moving.poses[0, :, centroids.shape[1] :]])
 
     @property
     def opening(self) -> Array:

@@ -44,7 +44,7 @@ def plastic_of(scene: Scene, *columns: Array) -> dict[str, Plastic]:
     each.
     """
     links = scene.links.sprung
-    rows = zip(links.names, *columns, scene.ties.reach - links.reach, strict=True)
+    rows = zip(links.names, *columns, scene.ties.reach - links.law["reach"], strict=True)
     return {name: Plastic(*map(float, values)) for name, *values in rows}
 
 
@@ -102,17 +102,28 @@ def elongation_of(moving: Moving, tie: Anchored) -> Array:
     return np.asarray(np.linalg.norm(across(moving, tie), axis=1) - tie.law.reach)
 
 
+class LinkEnd(NamedTuple):
+    """An end of a link: the number of its block, None of the ground, and the point at rest [m], shape (d,)."""
+
+    block: int | None
+    point: Array
+
+
+def link_ends(case: AnyCase, link: Anchored) -> tuple[LinkEnd, LinkEnd]:
+    """The point that a link holds, and its anchor."""
+    held = case.held_by(link)
+    return LinkEnd(link.block, held), LinkEnd(link.anchor_block, link.anchor_of(held))
+
+
 def across(moving: Moving, tie: Anchored) -> Array:
     """From the anchor of a link to the point that it holds where bodies are [m], shape (n, d)."""
-    held = moving.case.held_by(tie)
-    anchor = tie.anchor_of(held)
-    ends = ((tie.block, held), (tie.anchor_block, anchor))
-    at_held, at_anchor = (moving.displaced(block, point[None])[:, 0] for block, point in ends)
-    return np.asarray(held - anchor + at_held - at_anchor)
+    held, anchor = link_ends(moving.case, tie)
+    at_held, at_anchor = (moving.displaced(end.block, end.point[None])[:, 0] for end in (held, anchor))
+    return np.asarray(held.point - anchor.point + at_held - at_anchor)
 
 
 def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
-    """Which ties broke, and when, as sentences after a message; nothing where none did."""
+    """Which ties broke, and when, as sentences after a message; an empty text where none did."""
     broken = sorted((tie.broken, name, tie) for name, tie in plastic.items() if tie.broken < math.inf)
     return "".join(
         f" {name} broke at {when:.4g} s, drawn out by {1e3 * tie.elongation:.3g} mm." for when, name, tie in broken

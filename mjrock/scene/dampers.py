@@ -12,20 +12,22 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import Freedom, frames_of, push_body, take_frames
 from ..geometry.kinematics import LinkEnds, ends, parting
 from ..geometry.vectors import dot, scaled
+from ..problem.wall.effect import resistance, steepest
 from ..quantities import Array
 
 
 class Dampers(NamedTuple):
-    """Links with a dashpot, as columns for compiled functions: their ends and coefficients [N s/m], shape (d,)."""
+    """Links with a dashpot for compiled functions: their ends, and rows with the numbers of their laws, shape (d,)."""
 
     links: LinkEnds
-    c: Array
+    law: NDArray[np.void]
 
 
 @inlined
@@ -39,7 +41,7 @@ def stretching(dampers: Dampers, i: int, frames: Array, v: Array) -> float:
 def damping_forces(dampers: Dampers, frames: Array, v: Array, force: Array) -> None:
     """Write the force of every damper along its direction [N], shape (d,)."""
     for i in range(len(force)):
-        force[i] = -dampers.c[i] * stretching(dampers, i, frames, v)
+        force[i] = -resistance(dampers.law[i], stretching(dampers, i, frames, v))
 
 
 @inlined
@@ -68,7 +70,7 @@ def damping_rate(dampers: Dampers, pose: Array, principal: tuple[csr_array, Arra
         principal: velocities along principal axes and their masses, see `masses.principal`.
     """
     frames, rates, (columns, masses) = frames_of(pose, Freedom(dampers.links.axes)), [0.0], principal
-    for i, c in enumerate(dampers.c):
+    for i, c in enumerate(steepest(dampers.law)):
         push = np.zeros_like(masses)
         push_ends(dampers.links, i, 1.0, frames, push)
         rates.append(float(c * ((columns.T @ push) ** 2 / masses).sum()))
@@ -85,7 +87,7 @@ def taken_by_dampers(dampers: Dampers, pose: Array, mean: Array, width: Array, f
         force: of each damper in each step [N], shape (steps, d).
     """
     rates, freedom = np.zeros_like(force), Freedom(dampers.links.axes)
-    if len(dampers.c):
+    if len(dampers.law):
         _rates(dampers, pose, mean, freedom.frames(pose.shape[1] // freedom.nq), rates)
     work: Array = -rates * force * width[:, None]
     return work
@@ -96,5 +98,5 @@ def _rates(dampers: Dampers, pose: Array, mean: Array, frames: Array, rates: Arr
     """Write the rate of the length of each damper in the window of each step [m/s], shape (steps, d)."""
     for n in range(len(pose)):
         take_frames(pose[n], frames, dampers.links.axes)
-        for i in range(len(dampers.c)):
+        for i in range(len(dampers.law)):
             rates[n, i] = stretching(dampers, i, frames, mean[n])

@@ -19,9 +19,8 @@ from ..problem.masonry.standing import MasonryStanding
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import link_effects
 from ..quantities import GRAVITY, Array, Integers, named, require_kind
-from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints, JointSprings, Limits, attachments
+from .parts import GROUND, Bodies, ContactPoints, JointSprings, Limits, attachments
 from .rest import UnsettledError
 from .scene import Scene
 
@@ -136,7 +135,7 @@ def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> Val
 
 def gone_in(masonry: Masonry, pose: Array) -> tuple[str, ...]:
     """Names of the blocks that have fallen at the end of a search for the pose of rest, of shape (free, nq)."""
-    moved = np.linalg.norm(pose[:, : 3 if masonry.in_space else 2], axis=1)
+    moved = np.linalg.norm(pose[:, : masonry.freedom.translations], axis=1)
     return tuple(
         masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= SHARE_OF_FARTHEST * moved.max()
     )

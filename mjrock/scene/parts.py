@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -18,12 +18,102 @@ from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
-from ..problem.masonry.laws.pairs import Meets
+from ..problem.masonry.laws.dry import Meets
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import constant_forces_of, link_effects
-from ..quantities import Array, Flags, Integers, frozen
-from .checks import GROUND, keep_array, require_inertia, require_others
+from ..quantities import Array, Flags, Integers, frozen, shown
 from .masses import mass_diagonals, principal, products_of
+
+GROUND = -1
+"""The body of a face or an anchor that belongs to the ground."""
+LAW = np.dtype([(name, float) for name in LinkLaw._fields])
+"""A row with the numbers of the law of a link."""
+
+
+def said_of(part: object) -> str:
+    """The name of a part in a message."""
+    names = {"Bodies": "bodies", "ContactPoints": "contacts", "Links": "links", "ConstantForces": "forces"}
+    return names[type(part).__name__]
+
+
+def keep_array(
+    part: object,
+    name: str,
+    shape: tuple[int, ...],
+    *,
+    kind: type = float,
+    above: float | None = None,
+    least: float | None = None,
+    infinite: bool = False,
+) -> None:
+    """Keep a field of a part as an array of the kind that compiled functions take.
+
+    Raises:
+        TypeError, ValueError: for what is not an array of numbers, another shape or a value out of range. The message
+            names it.
+    """
+    given, said = getattr(part, name), f"{name} of the {said_of(part)}"
+    try:
+        values: NDArray[Any] = np.ascontiguousarray(given, dtype=kind)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{said} = {shown(given)} is not an array of numbers") from None
+    values = values if values.size else values.reshape(shape)
+    if values.shape != shape:
+        raise ValueError(f"{said} has the shape {values.shape}; {shape} is needed")
+    require_values(said, values, above, least, infinite)
+    object.__setattr__(part, name, frozen(values))
+
+
+def require_values(
+    said: str, values: NDArray[Any], above: float | None = None, least: float | None = None, infinite: bool = False
+) -> None:
+    """Raise a ValueError for a value that is no number, infinite where none may be, or not above or from `least` on."""
+    if np.isnan(values).any() or not (infinite or np.isfinite(values).all()):
+        raise ValueError(f"{said} holds a value that is not finite")
+    if above is not None and not (values > above).all():
+        raise ValueError(f"{said} = {values.min():g} is outside the valid range, which is above {above:g}")
+    if least is not None and not (values >= least).all():
+        raise ValueError(f"{said} = {values.min():g} is outside the valid range, which starts at {least:g}")
+
+
+def require_others(part: ContactPoints | Links, name: str) -> None:
+    """Raise a ValueError where a face or an anchor is on the body that carries the point."""
+    if (getattr(part, name) == part.body).any() or (getattr(part, name) < GROUND).any():
+        raise ValueError(f"{name} of the {said_of(part)} is another body, or {GROUND} for the ground")
+
+
+def require_on(bodies: Bodies, parts: Iterable[ContactPoints | Links | ConstantForces]) -> None:
+    """Raise a ValueError unless parts are of the plane or of space as the bodies are, and on them."""
+    n, directions = len(bodies.names), bodies.rest.shape[1]
+    for part in parts:
+        if len(part.body) and part.at.shape[1] != directions:
+            said = f"at of the {said_of(part)}"
+            raise ValueError(f"{said} has the shape {part.at.shape}; {(len(part.body), directions)} is needed")
+        for name in ("body", "face_body", "anchor_body"):
+            least = 0 if name == "body" else GROUND
+            on = getattr(part, name, np.empty(0))
+            if not ((on >= least) & (on < n)).all():
+                raise ValueError(f"{name} of the {said_of(part)} is outside the valid range {least} to {n - 1}")
+
+
+def require_inertia(inertia: Array) -> None:
+    """Raise ValueError for moments of inertia, or tensors of space, that no body has.
+
+    Tensors are symmetric, and no principal moment is larger than the sum of the other two.
+    """
+    if inertia.ndim == 1:
+        if not (inertia > 0).all():
+            raise ValueError(f"inertia = {inertia.min():g} is outside the valid range inertia > 0")
+        return
+    for tensor in inertia:
+        moments = np.linalg.eigvalsh(tensor)
+        if not (np.allclose(tensor, tensor.T, rtol=0, atol=1e-9 * np.abs(tensor).max()) and moments[0] > 0):
+            raise ValueError(f"inertia = {tensor.tolist()} is not a symmetric tensor with three positive moments")
+        if moments[2] > (1 + 1e-9) * (moments[0] + moments[1]):
+            raise ValueError(
+                f"inertia with the principal moments {', '.join(f'{moment:g}' for moment in moments)}: no body has one "
+                "that is larger than the sum of the other two"
+            )
 
 
 def _none() -> NDArray[Any]:
@@ -201,7 +291,7 @@ class Links:
         body, at: the body that each link holds, and where, from its centroid [m], shapes (t,) and (t, d).
         anchor_body, anchor_at: the body of the other end, or -1 for the ground, and the end, as of a face, shapes (t,)
             and (t, d).
-        k, reach, strength, push, ultimate, c: the law of each, shape (t,); what is left out is as in `LinkLaw`.
+        law: a `LinkLaw` for each, kept as rows with its numbers, shape (t,).
         anchor_block: number of the block of masonry that the other end moves with, or -1 for the ground, shape (t,).
     """
 
@@ -210,12 +300,7 @@ class Links:
     at: Array = field(default_factory=_none)
     anchor_body: Integers = field(default_factory=_none)
     anchor_at: Array = field(default_factory=_none)
-    k: Array = field(default_factory=_none)
-    reach: Array = field(default_factory=_none)
-    strength: Array = field(default_factory=_none)
-    push: Array = field(default_factory=_none)
-    ultimate: Array = field(default_factory=_none)
-    c: Array = field(default_factory=_none)
+    law: NDArray[np.void] = field(default_factory=_none)
     anchor_block: Integers = field(default_factory=_none)
 
     def __post_init__(self) -> None:
@@ -226,19 +311,22 @@ class Links:
             keep_array(self, name, (t,), kind=np.int64)
         for name in ("at", "anchor_at"):
             keep_array(self, name, (t, directions))
-        for name, usual in LinkLaw._field_defaults.items():
-            if not np.size(getattr(self, name)):
-                object.__setattr__(self, name, np.full(t, usual))
-        for name in ("k", "push", "c"):
-            keep_array(self, name, (t,), least=0.0)
-        for name in ("reach", "strength"):
-            keep_array(self, name, (t,), above=0.0, infinite=True)
-        keep_array(self, "ultimate", (t,), least=0.0, infinite=True)
         require_others(self, "anchor_body")
-        if not ((self.push == 0) | (self.push == self.strength)).all():
+        self._keep_law()
+        if not ((self.law["push"] == 0) | (self.law["push"] == self.law["strength"])).all():
             raise ValueError("push of the links is neither zero nor the strength")
-        if not np.isfinite(self.reach[self.k > 0]).all():
+        if not np.isfinite(self.law["reach"][self.law["k"] > 0]).all():
             raise ValueError("reach of the links is infinite for a link with a spring; give it a length")
+
+    def _keep_law(self) -> None:
+        """Check and keep the laws as rows. Those numbers may be infinite that are so when they are left out."""
+        given = self.law if np.size(self.law) else [LinkLaw()] * len(self.names)
+        object.__setattr__(self, "law", frozen(np.array(given, dtype=LAW)).view(np.recarray))
+        if self.law.shape != (len(self.names),):
+            raise ValueError(f"law of the links has the shape {self.law.shape}; {(len(self.names),)} is needed")
+        for name, usual in LinkLaw._field_defaults.items():
+            above, infinite = (0.0 if name in ("reach", "strength") else None), usual == math.inf
+            require_values(f"{name} of the links", self.law[name], above, 0.0, infinite)
 
     def of(self, some: Flags) -> Links:
         """Some of the links."""
@@ -249,17 +337,17 @@ class Links:
     @cached_property
     def sprung(self) -> Links:
         """The links with a spring."""
-        return self.of(self.k > 0)
+        return self.of(self.law["k"] > 0)
 
     @cached_property
     def bearing(self) -> Links:
         """The links with a spring that may have a force at rest: those that only pull."""
-        return self.of((self.k > 0) & (self.push == 0))
+        return self.of((self.law["k"] > 0) & (self.law["push"] == 0))
 
     @cached_property
     def damped(self) -> Links:
         """The links with a dashpot, and those without a spring."""
-        return self.of((self.c > 0) | (self.k == 0))
+        return self.of((self.law["c"] > 0) | (self.law["k"] == 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -347,8 +435,8 @@ def attachments(
         others = np.where(blocks == GROUND, GROUND, number[blocks])
         ends = np.array([link.anchor_of(point) for link, point in zip(links.values(), points, strict=True)])
         ends = ends - np.where(others[:, None] == GROUND, 0.0, centroids[others])
-        laws = LinkLaw(*np.array([link.law for link in links.values()]).T)
-        pulled = Links(tuple(links), bodies, at, others, ends, **laws._asdict(), anchor_block=blocks)
+        laws = np.array([link.law for link in links.values()], dtype=LAW)
+        pulled = Links(tuple(links), bodies, at, others, ends, laws, blocks)
     if forces:
         bodies, _, at = on([effect for effect, _ in forces.values()])
         vectors = np.array([force for _, force in forces.values()])

@@ -22,10 +22,9 @@ from ..geometry.frames import Freedom, frames_of
 from ..geometry.kinematics import AppliedForces, LinkEnds, Places, Ties, ends, gaps
 from ..problem.wall.standing import Standing
 from ..quantities import Array, Integers, frozen
-from .checks import require_on
 from .dampers import Dampers
 from .masses import kinetic_energies
-from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links
+from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links, require_on
 from .potential import Potential, Structure, energies, highest_frequency, rocking_frequency, tie_frequency
 from .rest import lowered, settled
 
@@ -132,9 +131,9 @@ class Scene:
 
     def _ties(self, links: Links) -> Ties:
         """Links with a spring, as they are drawn."""
-        stretch, squeeze = frozen(links.strength / links.k), frozen(links.push / links.k)
-        limit = frozen(links.reach + stretch + links.ultimate)
-        return Ties(self._ends_of(links), links.k, links.reach, stretch, limit, squeeze)
+        k, reach = (frozen(links.law[name]) for name in ("k", "reach"))
+        stretch, squeeze = frozen(links.law["strength"] / k), frozen(links.law["push"] / k)
+        return Ties(self._ends_of(links), k, reach, stretch, frozen(reach + stretch + links.law["ultimate"]), squeeze)
 
     def _ends_of(self, links: Links) -> LinkEnds:
         """The ends of links."""
@@ -144,7 +143,7 @@ class Scene:
     @cached_property
     def dampers(self) -> Dampers:
         """The links with a dashpot, for the compiled functions."""
-        return Dampers(self._ends_of(self.links.damped), self.links.damped.c)
+        return Dampers(self._ends_of(self.links.damped), self.links.damped.law)
 
     @cached_property
     def structure(self) -> Structure:
@@ -220,7 +219,7 @@ class Scene:
                     values = tuple(part for of_body in values.values() for part in of_body)
                 for value in values if entry.name in ("outlines", "parts") else (values,):
                     digest.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
-        if (self.links.push > 0).any():
+        if (self.links.law["push"] > 0).any():
             digest.update(self.ties.reach.tobytes())
         return digest.hexdigest()
 

@@ -14,9 +14,8 @@ from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
 from ..problem.wall.standing import WallStanding
 from ..quantities import Array, require_kind
-from .checks import GROUND
 from .course import Course
-from .parts import Bodies, ContactPoints, attachments
+from .parts import GROUND, Bodies, ContactPoints, attachments
 from .rest import held
 from .scene import Scene
 

@@ -19,7 +19,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Implausible, keep, require_kind, shown, spelt
+from ..quantities import Implausible, keep, require_kind, shown, spelt, warn_of
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
 from ..result.ties import Plastic
@@ -71,7 +71,7 @@ class OfWall(Subject):
         if (e if by_theory else contacts) is None:
             raise ValueError(f"the solver {solver} needs {'e' if by_theory else 'contacts'}")
         if by_theory and e is not None and (doubt := e.doubt(case.wall, case.stop_top)):
-            warnings.warn(doubt, Implausible, stacklevel=4)
+            warn_of(doubt, Implausible)
         if contacts is not None and not by_theory:
             contacts.require_fit(case.block, side_stop=case.one_sided)
 
@@ -145,7 +145,7 @@ class Analysis:
     """One case for one solver.
 
     The properties of the joints of masonry have to be numbers. A function of the joint has no content by which a
-    campaign could tell tasks apart, and its task becomes a failed row.
+    campaign could distinguish tasks, and its task becomes a failed row.
 
     Args:
         case: the case, of a wall or of masonry.
@@ -153,7 +153,7 @@ class Analysis:
         e: coefficients of restitution, for the analytical solver.
         contacts: interfaces of a wall, for the other three.
         options: keyword arguments of the solver, such as `accuracy`, `timestep` or `rtol`.
-        labels: columns that tell the user which case it is: text, numbers.
+        labels: columns by which the user recognizes the case: text, numbers.
 
     Options and labels are copied.
 
@@ -220,7 +220,7 @@ class Analysis:
         """The response."""
         if self.solver != "analytical":
             return SOLVERS[self.solver](self.case, self.contacts, **self.options)
-        with warnings.catch_warnings():  # it was said when the analysis was made
+        with warnings.catch_warnings():  # the warning came when the analysis was made
             warnings.filterwarnings("ignore", message="the restitution is that of ", category=Implausible)
             return SOLVERS[self.solver](self.case, self.e, **self.options)
 

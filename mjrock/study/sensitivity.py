@@ -1,4 +1,4 @@
-"""How much an answer changes with what is not known: one setting at a time, and all of them together."""
+"""How much an answer changes with settings that are not known: one at a time, and all of them together."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 
@@ -17,8 +17,7 @@ from ..files import aligned, csv_text
 from ..notebook import Drawn
 from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
 from .campaign.campaign import CampaignOptions, completed
-from .campaign.grid import axis_label, labelled
-from .campaign.task import Row, Task
+from .campaign.task import Row, Task, axis_label, labelled
 
 MEASURE_UNITS = {"peak_over_alpha": "alpha", "g": "g", "m": "m", "s": "s", "rad": "rad", "N": "N", "J": "J"}
 """Units of a measure, by the name of its column or by the end of that name."""
@@ -133,7 +132,7 @@ class Sensitivity(Drawn):
 
 
 def sensitivity(
-    build: Callable[..., Any],
+    build: Callable[..., Task],
     base: Mapping[str, object],
     vary: Mapping[str, Sequence[object]],
     store: str | Path | None = None,
@@ -192,19 +191,17 @@ def sensitivity(
 
 
 def _points(
-    build: object, base: object, vary: object, together: bool
+    build: Callable[..., Task], base: Mapping[str, object], vary: Mapping[str, Sequence[object]], together: bool
 ) -> tuple[list[dict[str, object]], tuple[tuple[str, ...], ...]]:
     """The settings of each run, those of the base first, and the names of those that differ from the base."""
     if not callable(build):
         raise TypeError(f"build = {shown(build)} is not a function of settings")
-    for name, value in (("base", base), ("vary", vary)):
-        if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-            raise TypeError(f"{name} = {shown(value)} is not a mapping of the names of settings")
-    assert isinstance(base, Mapping)
-    assert isinstance(vary, Mapping)
+    for name, settings in (("base", base), ("vary", vary)):
+        if not isinstance(settings, Mapping) or not all(isinstance(key, str) for key in settings):
+            raise TypeError(f"{name} = {shown(settings)} is not a mapping of the names of settings")
     if not vary:
         raise ValueError("vary is empty; at least one setting is needed")
-    base = defaults_of(build, vary) | dict(base)
+    base = {**defaults_of(build, vary), **base}
     choices: dict[str, list[object]] = {}
     for name, values in vary.items():
         if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
@@ -231,11 +228,11 @@ def _points(
     return points, tuple(changed)
 
 
-def defaults_of(build: Callable[..., Any], names: Iterable[str]) -> dict[str, object]:
+def defaults_of(build: Callable[..., object], names: Iterable[str]) -> dict[str, object]:
     """The defaults of these arguments of a function, of those that have one."""
     try:
         arguments = inspect.signature(build).parameters
-    except (TypeError, ValueError):  # some built-in functions tell nothing
+    except (TypeError, ValueError):  # some built-in functions have no signature
         return {}
     found = {name: arguments[name].default for name in names if name in arguments}
     return {name: value for name, value in found.items() if value is not inspect.Parameter.empty}

@@ -1,1 +1,1 @@
-"""Classical rocking theory. This package knows no stiffness and no MuJoCo."""
+"""Classical rocking theory. This package uses neither stiffness nor MuJoCo."""

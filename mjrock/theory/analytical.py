@@ -1,12 +1,14 @@
 """Classical rocking theory: Eq. 1 between impacts, and a coefficient of restitution at each impact.
 
-This solver knows no stiffness and no MuJoCo.
+This solver uses neither stiffness nor MuJoCo.
 """
 
 from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,15 +17,14 @@ from ..problem.damping.restitution import AnyRestitution, Restitution, Scattered
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still
-from ..problem.wall.ties_on_wall import broken_energy, tie_energy
+from ..problem.wall.restoring_moment import broken_energy, tie_energy
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, Stopwatch, describe
 from ..result.motion import intervals, required_spacing
 from ..result.response import Response
 from ..result.rocking import Impact, Rocking
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
-from .arcs import rock
-from .motion import RigidMotion, RockingMotion
+from .arcs import RockingMotion, rock
 
 
 def solve_analytical(
@@ -36,8 +37,8 @@ def solve_analytical(
 ) -> Response:
     """Rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak, free or over a shaken base.
 
-    Loads, thrusts, ties, added masses, openings, insets and vertical ground motion enter Eq. 1 as
-    `mjrock.theory.law` says. Ties carry no impulse. A side stop that reaches only so high changes the restitution
+    Loads, thrusts, ties, added masses, openings, insets and vertical ground motion enter Eq. 1 as in
+    `mjrock.theory.law`. Ties carry no impulse. A side stop that reaches only so high changes the restitution
     alone: give `Restitution.from_geometry(wall, stop_top)` or a measured one.
 
     A rebound with less than `rest` of the energy of release leaves the wall at rest. Under ground motion that share is
@@ -81,7 +82,7 @@ def solve_analytical(
     with first_answer(solve_analytical, case=case, e=e, rtol=rtol, output_step=output_step, rest=rest):
         motion = _rocking(case, e, rtol, rest)
         outcome = _outcome(case, motion)
-        t_end = motion.t if outcome is Outcome.OVERTURNED else case.duration
+        t_end = motion.end.t if outcome is Outcome.OVERTURNED else case.duration
         samples = np.linspace(0.0, t_end, intervals(t_end, spacing) + 1)
         theta, omega = motion.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
@@ -97,23 +98,56 @@ def solve_analytical(
         outcome=outcome,
         plastic=plastic,
         message=describe(outcome, case, t_end, float(theta[-1])) + told_of_ties(plastic),
-        stats={
-            **watch.took(),
-            "evaluations": motion.evaluations,
-            "rtol": rtol,
-        },
+        stats={**watch.took(), "evaluations": motion.evaluations, "rtol": rtol},
     )
+
+
+@dataclass(frozen=True, eq=False)
+class RigidMotion:
+    """A `mjrock.result.motion.Motion` of a rigid wall. Pose, velocity and energy are computed when they are first read:
+    campaigns read peaks and impacts alone, and computing them takes longer than the rocking.
+
+    Args:
+        case: the wall.
+        rotation, rate: rotation [rad] and angular velocity [rad/s] at the samples, shape (n,).
+        of_ties: energy of the ties at the samples [J].
+    """
+
+    case: Case
+    rotation: Array
+    rate: Array
+    of_ties: Array | float
+
+    @property
+    def theta(self) -> Array:
+        """Rotation of the one body [rad], shape (n, 1)."""
+        return self.rotation[:, None]
+
+    @cached_property
+    def pose(self) -> Array:
+        """Displacement of the centroid [m] and rotation [rad], shape (n, 1, 3)."""
+        return self.case.wall.pose(self.rotation)[:, None]
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Its rate [m/s, rad/s], shape (n, 1, 3)."""
+        return self.case.wall.velocity(self.rotation, self.rate)[:, None]
+
+    @cached_property
+    def energy(self) -> Array:
+        """Energy of the wall and its ties above rest [J], shape (n,)."""
+        return self.case.energy(self.rotation, self.rate) + self.of_ties
 
 
 def _outcome(case: Case, motion: RockingMotion) -> Outcome:
     """How a motion ended."""
-    if motion.fell or not case.returns_from(np.array([motion.theta]))[0]:
+    if motion.end.fell or not case.returns_from(np.array([motion.end.theta]))[0]:
         return Outcome.OVERTURNED
-    return Outcome.AT_REST if motion.at_rest else Outcome.TIME_ENDED
+    return Outcome.AT_REST if motion.end.at_rest else Outcome.TIME_ENDED
 
 
 def _require_solvable(case: Case, e: AnyRestitution) -> None:
-    """Raise ValueError for a case that rocking theory has no answer to."""
+    """Raise ValueError for a case that rocking theory does not cover."""
     if case.side_stop and not -1 <= e.lumped < 0:
         low = "" if case.stop_top == 2 * case.block.h else f": a stop of {case.stop_top:g} m may be too low"
         raise ValueError(
@@ -148,11 +182,11 @@ def _rocking(case: Case, e: AnyRestitution, rtol: float, rest: float) -> Rocking
 
 def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
     """Energy of the ties at the samples [J], and what they have yielded."""
-    if not case.pulls or motion.plastic is None:
+    if not case.pulls:
         return 0.0, {}
-    times, yielded = motion.plastic
+    times = motion.knots[:, 0]
     plastic, ends = np.empty((len(t), len(case.pulls))), {}
-    for i, (pull, elongation) in enumerate(zip(case.pulls, yielded.T, strict=True)):
+    for i, (pull, elongation) in enumerate(zip(case.pulls, motion.yielded.T, strict=True)):
         broken = np.isinf(elongation)
         drawn, when = np.where(broken, pull.ultimate, elongation), float(times[broken].min(initial=math.inf))
         plastic[:, i], gone = np.where(t >= when, np.inf, np.interp(t, times, drawn)), float(drawn[-1])

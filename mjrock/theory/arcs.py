@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..compiled import compiled, inlined
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import pulled, yielded
+from ..problem.wall.restoring_moment import pulled, yielded
 from ..quantities import ON_ITS_FACE, Array, Integers
 from ..result.motion import interpolated
 from .law import (
@@ -34,7 +35,6 @@ from .law import (
     pull_of,
     pushed,
 )
-from .motion import RockingMotion
 
 HALVINGS = 50
 """Halvings of a step in the search of the time at which a tie changes."""
@@ -246,7 +246,9 @@ def met(room: ArcRoom, law: RockingLaw, t: float, side: float, omega: float) -> 
 
 
 @compiled
-def rocking_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) -> tuple[Any, ...]:
+def rocking_loop(
+    law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom
+) -> tuple[float, float, float, float, bool, bool, bool]:
     """Follow the wall until the room is nearly full, or until it lies on its face or the time is over.
 
     Returns the values of the clock, see `compiled`.
@@ -297,6 +299,33 @@ def rocking_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) 
     return t, theta, omega, side, at_rest, fell, ended
 
 
+@dataclass(frozen=True, eq=False)
+class RockingMotion:
+    """A motion of a rigid wall from impact to impact.
+
+    Args:
+        knots, impacts, peaks: as in `ArcRoom`, of the whole motion.
+        end: where it was at the end.
+        yielded: elongation that each tie has yielded by each knot [m], infinite once it has broken, shape (n, ties).
+    """
+
+    knots: Array
+    impacts: Array
+    peaks: Array
+    end: ArcClock
+    yielded: Array
+
+    def sample(self, times: Array) -> Array:
+        """Rotation [rad] and angular velocity [rad/s] at n increasing times [s], shape (2, n)."""
+        t, values, rates = self.knots[:, 0], self.knots[:, 1:3], self.knots[:, 2:]
+        return interpolated(t.copy(), values.copy(), rates.copy(), times)[0].T
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of Eq. 1."""
+        return 3 * (len(self.knots) // 2)
+
+
 def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: float) -> RockingMotion:
     """Rocking of the wall of a case.
 
@@ -322,12 +351,4 @@ def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: f
         e[:] = np.append(e[past:], restitutions(past))
         counts[:] = 0
     knots, impacts, peaks = map(np.concatenate, zip(*parts, strict=True))
-    t, theta = knots[:, 0].copy(), knots[:, 1]
-
-    def sample(times: Array) -> Array:
-        return interpolated(t, knots[:, 1:3].copy(), knots[:, 2:].copy(), times)[0].T
-
-    plastic = yielded(case.pulls, theta) if case.pulls else np.empty((len(t), 0))
-    return RockingMotion(
-        impacts, peaks, clock.t, clock.theta, clock.fell, clock.at_rest, sample, 3 * (len(t) // 2), (t, plastic)
-    )
+    return RockingMotion(knots, impacts, peaks, clock, yielded(case.pulls, knots[:, 1]))

@@ -1,4 +1,4 @@
-"""Rigid impact of masonry: what rocking theory says of many blocks, as Housner says it of one.
+"""Rigid impact of masonry: the plastic impact of rocking theory for many blocks, as Housner's is for one.
 
 Rigid blocks meet at their joints, which are all closed at the undeformed pose. In the impact no joint penetrates, no
 joint slips unless it opens at both ends, and nothing bounces. Of all velocities that the joints allow, the blocks take
@@ -24,7 +24,7 @@ from ..problem.damping.restitution import Restitution
 from ..problem.masonry.lines import lines_of, rates
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.pile import Pile
-from ..quantities import Array, Flags, require_array, require_kind
+from ..quantities import Array, Flags, frozen, require_array, require_kind
 
 NOTHING = 1e-9
 """Share of the momentum, and of the speed, that counts as none [-]."""
@@ -36,7 +36,7 @@ MOST_CHANGES = 10
 
 @dataclass(frozen=True, eq=False)
 class RigidImpact:
-    """What a rigid impact leaves.
+    """The motion after a rigid impact, and its impulses.
 
     Args:
         velocity: velocity of each block that is not fixed after the impact: x, z and rotation [m/s, m/s, rad/s], shape
@@ -60,11 +60,11 @@ class RigidImpact:
 
 
 def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
-    """What rocking theory leaves of a velocity with which masonry arrives at its undeformed pose.
+    """The velocity of masonry after a rigid impact at its undeformed pose, by rocking theory.
 
     It takes the geometry, the masses and whether a joint has friction, and no stiffness or damping. Friction is rigid:
-    a joint that is closed at one end does not slip, whatever its coefficient, as in Housner's theory; the impulses say
-    which coefficient that takes. A joint with a friction of 0 is smooth. Fixed blocks do not move.
+    a joint that is closed at one end does not slip, whatever its coefficient, as in Housner's theory; the impulses give
+    the coefficient that this takes. A joint with a friction of 0 is smooth. Fixed blocks do not move.
 
     A stack takes milliseconds, an arch of 50 voussoirs 0.2 s, a wall of 200 units in bond up to half a minute.
 
@@ -92,17 +92,13 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     slips = rates(blocks, ends, ends.along).toarray()[::2] / root  # both ends of a joint slip alike
     after, pressed, rubbed = _projected(root * before, opens, slips, masonry.joint_friction > 0)
     momentum = float(np.linalg.norm(root * before))
-    after[np.abs(after) <= NOTHING * momentum] = 0.0  # what stops dead does so to the last digit
+    after[np.abs(after) <= NOTHING * momentum] = 0.0  # a block that stops has a velocity of exactly zero
     widens = (opens @ after).reshape(-1, 2).max(axis=1) > NOTHING * momentum / root.max()
-    left = (after / root).reshape(-1, 3)
-    impulses = np.column_stack([pressed, rubbed])
-    for array in (left, impulses):
-        array.setflags(write=False)
     return RigidImpact(
-        velocity=left,
+        velocity=frozen((after / root).reshape(-1, 3)),
         kept=float(after @ after) / momentum**2,
         opening=tuple(joint.name for joint, wide in zip(joints, widens, strict=True) if wide),
-        impulses=impulses,
+        impulses=frozen(np.column_stack([pressed, rubbed])),
     )
 
 
@@ -132,8 +128,8 @@ def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple
 
     Velocities are those of the blocks times the root of their mass, shape (n,). Rates of opening are at the two ends of
     the joints, shape (2 joints, n), those of slip have the shape (joints, n). A joint that is rough, with friction, is
-    held unless both of its ends open. Which do is known after the impact only. A held joint that opens is let go, once,
-    and one that closes is held.
+    held unless both of its ends open. This is known after the impact only. A held joint that opens is
+    released, once, and one that closes is held.
     """
     sizes = np.linalg.norm(slips, axis=1)
     rate = NOTHING * float(np.linalg.norm(before)) * sizes  # of a joint that stays closed

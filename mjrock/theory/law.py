@@ -19,7 +19,7 @@ import numpy as np
 from ..compiled import inlined
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import TiePull, pulled
+from ..problem.wall.restoring_moment import TiePull, pulled
 from ..quantities import GRAVITY, Array, Integers
 
 SMALL = 0.05
@@ -114,7 +114,8 @@ class RockingLaw(NamedTuple):
         """The largest of p and the frequencies of the ties [rad/s]."""
         p2 = max(math.hypot(toe.P, toe.Q) for toe in (self.outer, self.inner))
         least = min(self.outer.inertia, self.inner.inertia)
-        stiff = sum(pulled(TiePull(*tie), 0.0, 1.0)[1] ** 2 * tie[6] / least for tie in self.ties.pulls)
+        pulls = [TiePull(*tie) for tie in self.ties.pulls]
+        stiff = sum(pulled(tie, 0.0, 1.0)[1] ** 2 * tie.stiffness / least for tie in pulls)
         return math.sqrt(max(p2, float(stiff)))
 
 

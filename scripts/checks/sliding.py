@@ -22,7 +22,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.method import METHOD
-from mjrock.plotting.figures import GREEN, ORANGE
+from mjrock.plotting.style import GREEN, ORANGE
 from mjrock.quantities import Array
 from scripts.shared import cli
 from scripts.shared.labels import beside

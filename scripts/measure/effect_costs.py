@@ -26,7 +26,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLUE, ORANGE
+from mjrock.plotting.style import BLUE, ORANGE
 from scripts.shared import cli, suite
 
 SIZE: Mapping[str, Any] = {"thickness": 0.65, "height": 9.0, "length": 6.0, "density": 1600.0}

@@ -22,7 +22,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.masonry.pile import Pile
-from mjrock.study.matching.masonry import SAMPLE_STEP, excess, restitutions
+from mjrock.study.matching.matched import SAMPLE_STEP, excess, restitutions
 from mjrock.theory.impact import as_one
 from scripts.shared import cli
 from scripts.shared.labels import beside

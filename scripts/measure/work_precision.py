@@ -36,7 +36,7 @@ from mjrock.result.ledger import StepError
 from mjrock.result.response import Response
 from mjrock.result.rocking import Rocking, peak_energies, restitution_of, rocking_history
 from mjrock.scene.wall import wall_course
-from mjrock.theory.motion import RigidMotion
+from mjrock.theory.analytical import RigidMotion
 from scripts.shared import accuracy, cli
 from scripts.shared.paper import FIGURE_3, K_N
 

@@ -10,17 +10,33 @@ from __future__ import annotations
 import functools
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from mjrock import Restitution, Store, plotting
-from mjrock.problem.damping.forms import PowerLaw
-from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI
+from mjrock.problem.damping.law import HIGHEST_XI, LEAST_XI, PowerLaw
 from mjrock.study.campaign.campaign import completed
-from mjrock.study.matching.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
-from mjrock.study.matching.match import K_N_RANGE, REFERENCE, Combination, Match
-from mjrock.study.matching.regression import Regression, coefficients, r_squared, regress
+from mjrock.study.matching.calibration import (
+    Calibration,
+    Plan,
+    Regression,
+    calibrate,
+    coefficients,
+    presumed_damping,
+    r_squared,
+    regress,
+)
+from mjrock.study.matching.match import (
+    AMPLITUDE_RANGE,
+    K_N_RANGE,
+    R_RANGE,
+    REFERENCE,
+    SLENDERNESS_RANGE,
+    Combination,
+    Match,
+)
 from scripts.shared import cli, law_pictures
 
 LAYOUTS = {"CALIBRATED": 2, "CALIBRATED_BED": 16}
@@ -117,7 +133,7 @@ def curves(found: Calibration, part: str) -> plotting.Drawing:
     """Matched pairs of eight combinations, from a stiff base to a soft one, and the curve of the law."""
     tasks, rows = (found.base_tasks, found.base_rows) if part == "base" else (found.side_tasks, found.side_rows)
     form = found.law.base if part == "base" else found.law.side
-    pairs: dict[Combination, list[tuple[Match, float]]] = {}
+    pairs: dict[object, list[tuple[Match, float]]] = {}
     for task, row in zip(tasks, rows, strict=True):
         if row["reached"]:
             pairs.setdefault(task.combination, []).append((task, row["xi"]))
@@ -145,6 +161,15 @@ def save_residuals(title: str, fit: Regression, picture: Path) -> None:
     variables = {label: (values[name], "log") for name, label in SYMBOLS.items()}
     variables |= {"softness": (np.asarray(fit.groups.softness), "log"), "|e| asked for": (np.exp(-fit.loss), "linear")}
     plotting.save(law_pictures.residuals(title, fit.predicted / fit.xi, variables), picture)
+
+
+def sweep(start: Combination) -> list[tuple[str, Combination]]:
+    """Combinations that differ from `start` in one parameter, at five values through its range of Table 1."""
+    swept: list[tuple[str, Combination]] = []
+    ranges = {"R": R_RANGE, "slenderness": SLENDERNESS_RANGE, "k_base": K_N_RANGE, "k_side": K_N_RANGE}
+    for name, (low, high) in (ranges | {"amplitude": AMPLITUDE_RANGE}).items():
+        swept += [(name, replace(start, **{name: float(value)})) for value in np.geomspace(low, high, 5)]
+    return swept
 
 
 def sensitivities(found: Calibration, store: Path, workers: int | None, picture: Path) -> str:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.sketch import section
+from mjrock.plotting.wall import section
 from scripts.shared import cli
 from scripts.shared.labels import beside
 

@@ -18,12 +18,10 @@ import numpy as np
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.damping.forms import Groups
-from mjrock.problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+from mjrock.problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, Groups
 from mjrock.study.campaign.campaign import completed
-from mjrock.study.matching.calibration import Plan
+from mjrock.study.matching.calibration import Plan, regress, well_matched
 from mjrock.study.matching.match import Combination, Match, combinations
-from mjrock.study.matching.regression import regress, well_matched
 from scripts.shared import cli, law_pictures
 from scripts.shared.paper import K_N, TABLE_2
 

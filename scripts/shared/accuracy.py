@@ -12,8 +12,19 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 from numpy.typing import ArrayLike
 
-from mjrock.plotting.figures import BLACK, BLUE, GREEN, ORANGE, PALETTE, PURPLE, Picture
-from mjrock.plotting.style import WIDEST, Look, legend_below, several
+from mjrock.plotting.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PALETTE,
+    PURPLE,
+    WIDEST,
+    Look,
+    Picture,
+    legend_below,
+    several,
+)
 from scripts.shared.labels import SMALL, beside
 
 CODES = (BLACK, ORANGE, GREEN, BLUE, PURPLE)

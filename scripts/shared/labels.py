@@ -7,7 +7,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from mjrock.plotting.section import FORCE
+from mjrock.plotting.bodies import FORCE
 
 SMALL = 8
 """Size of words in a picture [pt]."""

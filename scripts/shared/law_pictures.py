@@ -14,8 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 from numpy.typing import ArrayLike
 
-from mjrock.plotting.figures import BLUE, GREEN, ORANGE
-from mjrock.plotting.style import OWN, figure_of, several, titled
+from mjrock.plotting.style import BLUE, GREEN, ORANGE, OWN, figure_of, several, titled
 from scripts.shared.labels import SMALL
 
 SOFTNESS = 1e-4, 0.2

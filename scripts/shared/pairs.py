@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from mjrock.plotting.figures import BLUE
+from mjrock.plotting.style import BLUE
 from scripts.shared.labels import SMALL
 
 GUTTER = 2.2

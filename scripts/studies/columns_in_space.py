@@ -38,8 +38,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE
-from mjrock.plotting.style import Look, below_figure
+from mjrock.plotting.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, Look, below_figure
 from mjrock.quantities import Array
 from scripts.shared import cli
 from scripts.shared.paths import OVERTURNED, PARTED, SAMPLE, Path, apart, draw_square, pairs_of, parting, path_of

@@ -26,7 +26,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLACK
+from mjrock.plotting.style import BLACK
 from mjrock.quantities import Array
 from mjrock.result.response import End
 from scripts.shared import cli

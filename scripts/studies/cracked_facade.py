@@ -26,8 +26,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLACK, BLUE, ORANGE
-from mjrock.plotting.style import below_figure
+from mjrock.plotting.style import BLACK, BLUE, ORANGE, below_figure
 from scripts.measure.effect_costs import BARE, K_N, MOST, SHARE, shown
 from scripts.shared import cli, suite
 from scripts.shared.labels import SMALL

@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLACK, BLUE, GREEN, ORANGE
-from mjrock.plotting.style import Look
+from mjrock.plotting.style import BLACK, BLUE, GREEN, ORANGE, Look
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
 from scripts.shared.labels import beside

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.wall.ties_on_wall import pulled, yielded
+from mjrock.problem.wall.restoring_moment import pulled, yielded
 from scripts.shared import cli, suite
 
 WALL = mr.Block.from_size(

@@ -21,7 +21,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLUE, ORANGE
+from mjrock.plotting.style import BLUE, ORANGE
 from mjrock.problem.masonry.limit.statics import falling
 from scripts.shared import cli
 

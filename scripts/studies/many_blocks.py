@@ -26,8 +26,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLUE, GREEN, ORANGE
-from mjrock.plotting.style import Look, below_figure
+from mjrock.plotting.style import BLUE, GREEN, ORANGE, Look, below_figure
 from mjrock.scene.explicit_step import STEP_TAKEN
 from scripts.shared import cli
 

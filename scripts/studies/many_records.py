@@ -28,8 +28,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLACK, BLUE, ORANGE
-from mjrock.plotting.style import Look, below_figure
+from mjrock.plotting.style import BLACK, BLUE, ORANGE, Look, below_figure
 from mjrock.quantities import Array
 from scripts.shared import cli
 from scripts.shared.labels import SMALL

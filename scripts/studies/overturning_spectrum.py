@@ -21,8 +21,7 @@ from numpy.typing import ArrayLike
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLUE, ORANGE
-from mjrock.plotting.style import legend_below
+from mjrock.plotting.style import BLUE, ORANGE, legend_below
 from mjrock.quantities import Array
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite

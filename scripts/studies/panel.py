@@ -23,7 +23,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import BLACK
+from mjrock.plotting.style import BLACK
 from mjrock.problem.masonry.limit.statics import falling
 from scripts.shared import cli
 from scripts.shared.labels import SMALL

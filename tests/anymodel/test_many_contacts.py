@@ -32,7 +32,7 @@ def test_a_specification_is_compiled_once(monkeypatch):
     spec = mujoco.MjSpec.from_string(ROBOT)
     asked = {("foot*", "floor"): {"k": 1e6, "restitution": 0.5}}
     times = []
-    for module in ("many", "contact"):
+    for module in ("make", "contact"):
         monkeypatch.setattr(
             f"mjrock.anymodel.{module}.compiled_model",
             lambda model: times.append(1) or geoms.compiled_model(model),

@@ -12,6 +12,7 @@ import mjrock as mr
 from mjrock.distinct.contacts import contact, friction
 from mjrock.distinct.kinds import mortar as bonds
 from mjrock.distinct.rows import rows
+from mjrock.distinct.search.validity import JointState, mark_left
 from mjrock.distinct.setup import setup_of
 from mjrock.problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
 
@@ -288,7 +289,7 @@ def test_a_bond_goes_at_nine_times_the_opening_that_softens_it(softened, goes):
     whole.laws[0].act(whole, books(whole), 0.0, H)
     assert bool(whole.laws[0].rows["k"][0] == 0) is goes
     assert (whole.laws[0].rows["age"][0], whole.lines["k"][0]) == (0.0, K if goes else 0.0)
-    assert whole.laws[0].holding()[0] == (not goes)
+    assert whole.laws[0].holds(whole.laws[0].rows[0]) == (not goes)
 
 
 @pytest.mark.parametrize(
@@ -304,7 +305,19 @@ def test_a_bond_goes_at_nine_times_the_opening_that_softens_it(softened, goes):
 )
 def test_a_bond_holds_while_something_of_it_is_left(changed, holds):
     whole, _ = bonded_line(2, -1, -0.002, **changed)
-    assert whole.laws[0].holding()[0] == holds
+    assert whole.laws[0].holds(whole.laws[0].rows[0]) == holds
+
+
+def test_a_pair_does_not_leave_a_joint_whose_bond_holds():
+    whole, _ = bonded_line(2, -1, 0.003)
+    joints = JointState.intact(np.array([0]), np.array([[0, 1]]), np.array([1e-3]), np.array([2.0]))
+    joints.gap[0], left, handed_over = 3e-3, np.zeros(3, dtype=bool), np.array([False])
+    mark_left(whole.laws, joints, handed_over, left)
+    assert not joints.left.any()
+    assert not left.any()
+    whole.laws[0].rows["tension"] = 0.0
+    mark_left(whole.laws, joints, handed_over, left)
+    assert (joints.left.tolist(), left.tolist()) == ([True], [True, True, False])
 
 
 @pytest.mark.parametrize(("left", "ages"), [(0.51, True), (0.49, False), (0.5, False)])
@@ -372,7 +385,7 @@ def test_a_bond_of_a_newton_tears_too():
     whole, _ = bonded_line(2, -1, 0.003, tension=0.5)
     whole.laws[0].act(whole, books(whole), 0.0, H)
     assert 0 < whole.laws[0].rows["secant"][0] < K
-    assert whole.laws[0].holding()[0] == (whole.laws[0].rows["integrity"][0] > bonds.INTEGRITY_OF_LOST)
+    assert whole.laws[0].holds(whole.laws[0].rows[0]) == (whole.laws[0].rows["integrity"][0] > bonds.INTEGRITY_OF_LOST)
 
 
 def test_a_bond_without_strength_in_tension_leaves_the_normal_to_its_line():

@@ -15,7 +15,7 @@ from mjrock.distinct.loop import Clock
 from mjrock.distinct.rows import TAKEN_BY_LAWS
 from mjrock.distinct.supports import Supports
 from mjrock.distinct.system import Books, Samples
-from mjrock.scene.ground import Ground, ground_velocity
+from mjrock.scene.course import Ground, ground_velocity
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 G, H = mr.GRAVITY, 0.01

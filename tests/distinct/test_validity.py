@@ -46,8 +46,21 @@ def slipped(d, lines, left, faces=(0,)):
         put_line(whole.lines[i], d, whole, faces[i % len(faces)], gap, slip)
     whole.bodies["turn"] = 9.0
     pairs, count = np.array([pair for pair, _, _ in lines]), len(left)
-    written = np.full(count, 7.0), np.full(count, -7.0), np.full(count, 7.0)
-    return whole, JointState(pairs, *written, np.array(left), np.full(count, 2.0))
+    blocks = np.arange(count)[:, None] + [0, 1]
+    written = np.full(count, 7.0), np.full(count, -7.0), np.full(count, 7.0), np.full(count, True)
+    return whole, JointState(pairs, blocks, np.array(left), np.full(count, 2.0), *written)
+
+
+def left_by(whole, joints, handed_over=None):
+    """Which blocks have left a joint since the last update."""
+    count = len(joints.left)
+    left, handed_over = np.full(count + 1, True), np.zeros(count, dtype=bool) if handed_over is None else handed_over
+    for body in whole.bodies:
+        validity.take_turn(body)
+    validity.update_joints(whole, joints)
+    validity.mark_left(whole.laws, joints, handed_over, left)
+    np.testing.assert_array_equal(left, np.append(joints.left, False) | np.append(False, joints.left))
+    return left
 
 
 @BOTH
@@ -57,7 +70,7 @@ def test_slip_and_gap_of_a_pair_are_those_of_its_lines(d, face):
     lines = [(1, 0.003, 0.02), (0, -0.001, -0.004), (1, -0.002, -0.05), (1, 0.001, 0.01)]
     whole, joints = slipped(d, lines, [1.0, 1.0], (face,))
     whole.lines["widest"] = [0.0, 0.002, 0.0, 0.005]
-    assert not validity.update_joints.py_func(whole, joints)
+    assert not left_by(whole, joints).any()
     np.testing.assert_allclose(joints.slip, [0.004, 0.05], rtol=1e-9)
     np.testing.assert_allclose(joints.gap, [-0.001, -0.002], rtol=1e-9)
     np.testing.assert_allclose(whole.lines["widest"], [0.003, 0.002, 0.0, 0.005], rtol=1e-9)
@@ -77,7 +90,8 @@ def test_slip_and_gap_of_a_pair_are_those_of_its_lines(d, face):
 )
 def test_a_pair_has_left_its_joints_where_it_has_slipped_or_opened_too_far(d, lines, left, expected):
     whole, joints = slipped(d, lines, left)
-    assert bool(validity.update_joints.py_func(whole, joints)) is expected
+    assert bool(left_by(whole, joints).any()) is expected
+    assert not left_by(whole, joints, np.full(len(left), True)).any()  # had left before
 
 
 @BOTH
@@ -88,16 +102,15 @@ def test_a_pair_has_left_its_joints_where_their_faces_have_tilted_too_far(d, fac
     own, other = matrix(d, 1) @ NORMAL[d], (matrix(d, 0) if face == 0 else np.eye(d)) @ NORMAL[d]
     for rolled, left in ((1.01, False), (0.99, True)):
         joints.tilt_limit[:] = 2.0, rolled * (1 - own @ other)
-        assert bool(validity.update_joints.py_func(whole, joints)) is left
+        assert left_by(whole, joints).tolist() == [False, left, left]
         np.testing.assert_allclose(joints.tilt, 1 - own @ other, rtol=1e-9)
-        np.testing.assert_array_equal(joints.leave(), [False, left])
 
 
 def test_at_the_limit_a_pair_has_not_left():
     whole, joints = slipped(2, [(0, 0.0, 0.0)], [0.0])
     whole.bodies["place"], whole.lines["between"], whole.lines["face"] = 0.0, 0.0, -1
     whole.bodies["angle"] = 0.0
-    assert not validity.update_joints.py_func(whole, joints)
+    assert not left_by(whole, joints).any()
     assert (joints.slip[0], joints.gap[0], joints.tilt[0]) == (0.0, 0.0, 0.0)
     np.testing.assert_array_equal(whole.lines["widest"], 0.0)
 
@@ -105,7 +118,7 @@ def test_at_the_limit_a_pair_has_not_left():
 def still(d, count):
     """Blocks that are where they are drawn and do not move."""
     poses = Poses(np.arange(float(count * d)).reshape(count, d), np.zeros((count, d)), np.zeros((count, d, d)))
-    return Motion(poses, np.zeros((count, d)), np.zeros(count))
+    return Motion(poses, np.zeros((count, d)), np.zeros(count), np.zeros(count))
 
 
 @BOTH
@@ -118,14 +131,15 @@ def test_blocks_are_where_their_bodies_and_supports_are(d):
     motion, sizes = still(d, 4), np.array([9.0, 0.5, 7.0, 0.8])
     body, fixed, support = np.array([-1, 1, -1, 0]), np.array([0, -1, 1, -1]), np.array([-1, -1, 0, -1])
     blocks = Blocks(motion.poses, sizes, np.array([3, 1]), body, fixed, support)
-    validity.take_motion.py_func(whole, blocks, motion)
+    motion.surge[:] = [0.0, 0.25, 0.75, 0.0]
+    validity.take_motion(whole, blocks, motion)
     poses, none = motion.poses, np.zeros(d)
     np.testing.assert_array_equal(poses.moved, [none, PLACE[1, which], whole.supports.moved[0], PLACE[0, which]])
     np.testing.assert_array_equal(
         motion.velocity, [none, VELOCITY[1, which], whole.supports.moving[0], VELOCITY[0, which]]
     )
     spin = np.abs(SPIN[:, 1]) if d == 2 else np.linalg.norm(SPIN, axis=1)
-    np.testing.assert_allclose(motion.about, [0.0, 0.5 * spin[1], 0.0, 0.8 * spin[0]], rtol=1e-12)
+    np.testing.assert_allclose(motion.about, [0.0, 0.5 * spin[1] + 0.25, 0.75, 0.8 * spin[0]], rtol=1e-12)
     turned = [np.zeros((d, d)), matrix(d, 1) - np.eye(d), np.zeros((d, d)), matrix(d, 0) - np.eye(d)]
     np.testing.assert_allclose(poses.change, turned, rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(whole.bodies["turn"], system(d).bodies["turn"], rtol=1e-13)
@@ -160,10 +174,10 @@ def updated(
     Returns which ones are outdated, and the validity."""
     start, known = still(d, 2).poses, still(d, 2)
     known.about[:] = speed
-    flags, each = np.isin(np.arange(2), searched), np.full((2, 2), valid_for)
-    sight = Validity(flags, known, np.array([3, 5]), each[0], each[1], np.array([False, True]))
-    known_limits, gone = Limits(start, np.array(limits), np.array(displacement), INTERVAL), np.isin(np.arange(2), left)
-    some = validity.mark_outdated(motion, np.array([0.5, 0.8]), known_limits, sight, gone, since)
+    (flags, gone), each = (np.isin(np.arange(2), those) for those in (searched, left)), np.full((2, 2), valid_for)
+    sight = Validity(flags, known, np.array([3, 5]), each[0], each[1], np.array([False, True]), gone)
+    known_limits = Limits(start, np.array(limits), np.array(displacement), INTERVAL)
+    some = validity.mark_outdated(motion, np.array([0.5, 0.8]), known_limits, sight, since)
     assert bool(some) is bool(sight.outdated.any())
     np.testing.assert_array_equal(sight.searches, np.array([3, 5]) + sight.outdated)
     return sight.outdated.tolist(), sight
@@ -319,11 +333,11 @@ def test_springs_hold_what_they_store(d):
         validity.take_turn(body)
     whole.lines["k"] = [1e5, 2e5, 4e5]
     depth = np.full(2, 9.0)
-    energy, _ = validity.energy_and_power.py_func(whole, np.array([2, 1]), depth)
-    assert energy == pytest.approx(0.5 * 4e5 * 1e-6, rel=1e-9)
+    assert validity.account(whole, np.array([2, 1]), depth).energy == pytest.approx(0.5 * 4e5 * 1e-6, rel=1e-9)
     np.testing.assert_allclose(depth, [0.001, 0.0], rtol=1e-9)
-    energy, _ = validity.energy_and_power.py_func(whole, np.array([0, 2]), depth)
-    assert energy == pytest.approx(0.5 * 1e5 * 9e-6 + 0.5 * 4e5 * 1e-6, rel=1e-9)
+    assert validity.account(whole, np.array([0, 2]), depth).energy == pytest.approx(
+        0.5 * 1e5 * 9e-6 + 0.5 * 4e5 * 1e-6, rel=1e-9
+    )
     np.testing.assert_allclose(depth, [0.003, 0.001], rtol=1e-9)
 
 
@@ -339,8 +353,8 @@ def test_springs_give_what_they_hold_less_a_moment_later(face):
         whole.bodies["angle"] = angle + time * np.array(whole.bodies["spin"])[:, 0]
         for body in whole.bodies:
             validity.take_turn(body)
-        return validity.energy_and_power.py_func(whole, np.arange(3), np.empty(3))
+        return validity.account(whole, np.arange(3), np.empty(3))
 
-    gives = (at(-moment)[0] - at(moment)[0]) / (2 * moment)
+    gives = (at(-moment).energy - at(moment).energy) / (2 * moment)
     assert abs(gives) > 10.0
-    assert at(0.0)[1] == pytest.approx(gives, rel=1e-6)
+    assert at(0.0).power == pytest.approx(gives, rel=1e-6)

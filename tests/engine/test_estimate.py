@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.estimate import explicit_seconds, fitted_seconds, plain_seconds, warn_if_plain_is_slow, warn_if_slow
+from mjrock.engine.run_warnings import (
+    explicit_seconds,
+    fitted_seconds,
+    plain_seconds,
+    warn_if_plain_is_slow,
+    warn_if_slow,
+)
 from mjrock.scene.explicit_step import RIGID_IN_SPACE, RIGID_LINE, SPRUNG_IN_SPACE, SPRUNG_LINE, STEP_TAKEN
 from scripts.measure.masonry_precision import PULSE, column
 

@@ -8,7 +8,7 @@ from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace, approached
 from mjrock.engine.stepping import fitted_steps
 from mjrock.method import METHOD
-from mjrock.scene.ground import Shaking, ground_velocity
+from mjrock.scene.course import Shaking, ground_velocity
 from mjrock.scene.wall import wall_course
 from scripts.measure import records_accuracy
 

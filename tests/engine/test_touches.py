@@ -17,6 +17,7 @@ from mjrock.engine.sticking import Joints
 from mjrock.engine.touches import Openings, Touches, hardest, predict
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
+from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.wall import wall_scene
 
@@ -124,7 +125,7 @@ def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
     """A block on ice is pulled against a tie, stretches it for good, springs back, and is pulled against it again."""
     contacts = mr.Contacts.from_damping(BLOCK, k_base=5e8, xi_base=0.05, friction=0.0)
     standing = wall_scene(mr.Case(BLOCK, 0.0, 1.0, side_stop=False), contacts)
-    tie = Links(("tie",), [0], [(0.0, 0.0)], [-1], [(-5.0, BLOCK.h)], k=[2e6], reach=[5.02], strength=[2e4])
+    tie = Links(("tie",), [0], [(0.0, 0.0)], [-1], [(-5.0, BLOCK.h)], [LinkLaw(2e6, 5.02, 2e4)])
     scene = changed(standing, links=tie, forces=ConstantForces(("pull",), [0], [(0.0, 0.0)], [(4e3, 0.0)]))
     pulled = course(scene, [[SPEED, 0.0, 0.0]], 1.0)
     with engine_of(scene) as engine:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.geometry.creases import creases_of
+from mjrock.geometry.parts import creases_of
 
 
 def length_of(creases):

@@ -38,8 +38,9 @@ from mjrock.geometry.kinematics import (
     where_friction_acts,
 )
 from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
+from mjrock.problem.wall.effect import LinkLaw
 from mjrock.quantities import frozen
-from mjrock.scene.ground import Ground, push_ground
+from mjrock.scene.course import Ground, push_ground
 from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.potential import Potential, Structure, energies
 
@@ -83,7 +84,7 @@ def held_blocks():
     """Two blocks with a tie between them, one to the ground, and a force, none of them along an axis."""
     scene = two_blocks()
     ends = ("between", "down"), [1, 1], [(0.3, 1.0), (-0.2, 0.7)], [0, -1], [(-0.2, -0.6), (-2.0, 0.1)]
-    ties = Links(*ends, k=[2e6, 3e6], reach=[2.0, 3.0], strength=[1e5, math.inf])
+    ties = Links(*ends, [LinkLaw(2e6, 2.0, 1e5), LinkLaw(3e6, 3.0)])
     return changed(scene, links=ties, forces=ConstantForces(("pull",), [1], [(0.1, 0.9)], [(3e3, -1e4)]))
 
 

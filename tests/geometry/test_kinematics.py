@@ -11,8 +11,8 @@ import mjrock as mr
 from mjrock.geometry.frames import frames_of, rotation_change
 from mjrock.geometry.kinematics import depth, gap, gaps, meeting, over_face, slack, stretch, where_friction_acts
 from mjrock.geometry.vectors import dot, tangent
-from mjrock.problem.wall.restoring_moment import pose_of
-from mjrock.problem.wall.ties_on_wall import pulled
+from mjrock.problem.wall.effect import LinkLaw
+from mjrock.problem.wall.restoring_moment import pose_of, pulled
 from mjrock.scene.parts import Links
 from mjrock.scene.rest import settled
 from mjrock.scene.wall import wall_course
@@ -87,7 +87,7 @@ def tied_blocks():
     """The two blocks with one tie between them and one to the ground, neither along an axis."""
     scene = two_blocks()
     ends = ("between", "down"), [1, 1], [(0.3, 1.0), (-0.2, 0.7)], [0, -1], [(-0.2, -0.6), (-2.0, 0.1)]
-    return changed(scene, links=Links(*ends, k=[2e6, 3e6], reach=[2.0, 3.0], strength=[1e5, math.inf]))
+    return changed(scene, links=Links(*ends, [LinkLaw(2e6, 2.0, 1e5), LinkLaw(3e6, 3.0)]))
 
 
 def test_ties_between_bodies_that_turn():
@@ -108,7 +108,7 @@ def test_ties_between_bodies_that_turn():
                 world(q, scene.links.sprung.anchor_body[i], scene.links.sprung.anchor_at[i]),
             )
             now = slack(scene.ties, i, frames_of(q), v, a)
-            assert now.value == pytest.approx(scene.links.sprung.reach[i] - math.dist(*ends), abs=1e-12)
+            assert now.value == pytest.approx(scene.links.sprung.law["reach"][i] - math.dist(*ends), abs=1e-12)
             before, after = (
                 slack(scene.ties, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t)
             )

@@ -233,3 +233,27 @@ def test_the_folder_of_the_environment_comes_first(tmp_path):
 def PROBE(values):
     for i in range(len(values)):
         values[i] = 2 * values[i]
+
+
+def total(values, factors):
+    """The sum of values times the first of some factors."""
+    added = 0.0
+    for i in range(len(values)):
+        added += factors[0] * values[i]
+    return added
+
+
+def test_a_loop_is_taken_once_for_arguments_of_the_same_types():
+    """It is the loop itself where it is not compiled for them."""
+    loop, ones = compiled.compiled(total), np.ones(3)
+    assert compiled.for_types_of(loop, ones, (2.0, 1)) is loop
+    assert loop(ones, (2.0, 1)) == loop(np.ones(3, dtype=np.int64), (2.0, 1)) == 6.0
+    found = {kind: compiled.for_types_of(loop, np.ones(3, dtype=kind), (2.0, 1)) for kind in (np.float64, np.int64)}
+    for kind, function in found.items():
+        assert function is not loop
+        assert function(np.arange(4, dtype=kind), (0.5, 7)) == 3.0
+        assert function is compiled.for_types_of(loop, np.zeros(9, dtype=kind), (1.5, 0))
+    others = np.ones(3, dtype=np.float32), np.ones(6)[::2], np.ones((3, 1))
+    assert all(compiled.for_types_of(loop, other, (2.0, 1)) is loop for other in others)
+    assert compiled.for_types_of(loop, ones, (2.0, 1.0)) is loop
+    assert compiled.for_types_of(total, ones, (2.0, 1)) is total

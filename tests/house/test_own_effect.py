@@ -9,7 +9,7 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 PAGE = (ROOT.parent / "docs" / "own_effect.md").read_text(encoding="utf-8")
-DEVICE, _, _, LAW = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
+DEVICE, _, _, _, LAW = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
 OF_DEVICE = r"FrictionDamper|friction_damper"
 OF_LAW = (
     r"squeeze(:|\[|\b.*frozen)|\b(law|links|self|ties?|tied|sprung)\.push\b|\bresisting\b|links\.bearing\b"

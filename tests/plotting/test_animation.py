@@ -7,8 +7,8 @@ from PIL import Image
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting import animation, histories, section
-from mjrock.plotting.bodies import Bodies
+from mjrock.plotting import animation, histories
+from mjrock.plotting.bodies import Bodies, pulling
 from mjrock.result.bodies import Moving
 from mjrock.result.motion import SampledMotion
 
@@ -128,7 +128,7 @@ def test_what_the_wall_meets_and_carries_is_drawn():
         0, 0, np.array([[-0.3, 0.8], [0.3, 0.8]]) - (case.wall.centroid_offset, case.wall.centroid_height)
     )
     np.testing.assert_allclose(dashed[0].get_xydata(), sill)
-    ties = [line for line in ax.get_lines() if line.get_color() == section.STEEL and len(line.get_xdata()) == 2]
+    ties = [line for line in ax.get_lines() if line.get_color() == mr.Tie.colour and len(line.get_xdata()) == 2]
     assert [line.get_linestyle() for line in ties] == ["-", ":"]
     np.testing.assert_allclose(ties[0].get_xydata()[0], [-1.8, 4.0])
 
@@ -138,7 +138,7 @@ def test_a_tie_that_has_yielded_is_slack_before_it_is_back():
     case = mr.Case(WALL, 0.0, 1.0, effects=(tie,))
     theta = np.array([0.0, 2e-4, 5e-3, 4e-3, 4.9e-3, 6e-3])
     moving = Moving(case, np.arange(6.0), WALL.pose(theta)[:, None])
-    assert section.pulling(moving, tie)[0].tolist() == [False, True, True, False, True, True]
+    assert pulling(moving, tie)[0].tolist() == [False, True, True, False, True, True]
 
 
 def test_any_bodies_can_be_drawn(tmp_path):

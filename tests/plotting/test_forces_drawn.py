@@ -14,8 +14,7 @@ from PIL import Image
 import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
-from mjrock.plotting.bodies import Bodies
-from mjrock.plotting.section import FORCE
+from mjrock.plotting.bodies import FORCE, Bodies
 from mjrock.plotting.solids import Solids
 
 OFF = np.array([0.0, 0.1, 0.25])

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.perspective import Rendered
+from mjrock.plotting.solids import Rendered
 
 BLOCK = mr.Masonry.stack([mr.Block.from_size(0.4, 1.6)], k_n=1e9, friction=0.9)
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.figures import Picture
+from mjrock.plotting.style import Picture
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,7 @@ from PIL import Image
 import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
-from mjrock.plotting.bodies import Bodies
-from mjrock.plotting.section import GROUND_COLOUR, STONE
+from mjrock.plotting.bodies import GROUND_COLOUR, STONE, Bodies
 from mjrock.plotting.solids import Solids
 
 

@@ -12,8 +12,7 @@ from mjrock import plotting
 from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation
 from mjrock.plotting.depths import FLOOR, INK, SHADED, View
-from mjrock.plotting.perspective import Rendered
-from mjrock.plotting.solids import Solids
+from mjrock.plotting.solids import Rendered, Solids
 from mjrock.result.bodies import Moving
 
 GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")

@@ -9,8 +9,8 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
-from mjrock.plotting.perspective import Rendered
-from mjrock.plotting.section import tie_texts
+from mjrock.plotting.solids import Rendered
+from mjrock.plotting.wall import tie_texts
 from mjrock.result.bodies import bodies_of
 from mjrock.result.compare import paired, taken_by
 from mjrock.result.rocking import Impact

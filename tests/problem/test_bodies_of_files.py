@@ -185,7 +185,7 @@ def test_ply_files_that_are_none(tmp_path):
         text.replace(b"4 0 4 6 2", b"4 0 4 6 999"), text.replace(b"4 0 4 6 2", b"2 0 4 6 2"),
     ):  # fmt: skip
         (tmp_path / "b.ply").write_bytes(broken)
-        with pytest.raises(ValueError, match=r"b.ply: .*|b.ply is not a PLY file"):
+        with pytest.raises(ValueError, match=r"b.ply: .*"):
             mr.Masonry.from_ply(tmp_path / "b.ply", ground=True)
 
 
@@ -253,13 +253,13 @@ def test_what_is_said_of_a_file_is_checked(tmp_path):
     meshes, path = bricks(), tmp_path / "a.obj"
     path.write_text(obj_text(meshes))
     for read, first in ((mr.Masonry.from_obj, path), (mr.Masonry.from_meshes, meshes)):
-        with pytest.raises(ValueError, match="unit = 'km' of type str is none of m, cm, mm, in, ft"):
+        with pytest.raises(ValueError, match="unit = 'km' is not one of m, cm, mm, in, ft"):
             read(first, ground=True, unit="km")
         with pytest.raises(ValueError, match=r"unit = 'cm' of type str and scale = 0.01 are both given; give one"):
             read(first, ground=True, unit="cm", scale=0.01)
-        with pytest.raises(ValueError, match="up = -1 of type int is none of x, y, z"):
+        with pytest.raises(ValueError, match="up = -1 is not one of x, y, z"):
             read(first, ground=True, up=-1)
-        with pytest.raises(ValueError, match="convex = 'cut' of type str is none of hull, parts"):
+        with pytest.raises(ValueError, match="convex = 'cut' is not one of hull, parts"):
             read(first, ground=True, convex="cut")
 
 

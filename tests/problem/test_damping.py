@@ -4,8 +4,7 @@ import warnings
 import pytest
 
 import mjrock as mr
-from mjrock.problem.damping.forms import Groups
-from mjrock.problem.damping.law import CALIBRATED, CALIBRATED_BED, DampingLaw
+from mjrock.problem.damping.law import CALIBRATED, CALIBRATED_BED, DampingLaw, Groups
 
 
 def test_no_warning_inside_table_1(wall, e):

@@ -164,7 +164,7 @@ def test_a_damaged_drawing_ends_in_an_error_with_its_path(tmp_path, damage):
     text = path.read_text()
     assert DAMAGE[damage][0] in text
     path.write_text(text.replace(*DAMAGE[damage]))
-    with pytest.raises(ValueError, match=r"a.dxf is not a drawing in DXF, or is damaged: "):
+    with pytest.raises(ValueError, match=r"a.dxf: it is not a drawing in DXF, or is damaged: "):
         mr.Masonry.from_dxf(path, ground=True)
 
 
@@ -183,7 +183,7 @@ def test_a_drawing_that_was_repaired_is_warned_of(tmp_path):
 )
 def test_other_files_are_named(tmp_path, start, what):
     (tmp_path / "a.dxf").write_bytes(start + bytes(range(256)))
-    with pytest.raises(ValueError, match=rf"a.dxf is {what}.*, and no drawing in DXF; save it as text in DXF"):
+    with pytest.raises(ValueError, match=rf"a.dxf: it is {what}.*, and no drawing in DXF; save it as text in DXF"):
         mr.Masonry.from_dxf(tmp_path / "a.dxf")
 
 
@@ -196,7 +196,7 @@ def test_arguments_are_checked(tmp_path):
     with pytest.raises(ValueError, match="scale = 0"):
         mr.Masonry.from_dxf(path, ["stone"], scale=0.0)
     (tmp_path / "no.dxf").write_text("nothing")
-    with pytest.raises(ValueError, match=r"no.dxf is not a drawing in DXF"):
+    with pytest.raises(ValueError, match=r"no.dxf: it is not a drawing in DXF"):
         mr.Masonry.from_dxf(tmp_path / "no.dxf")
     masonry = mr.Masonry.from_dxf(
         path, ["stone_0"], scale=0.5, friction=lambda joint: 0.5 if "brick" in joint.name else 1.0
@@ -215,7 +215,7 @@ def test_layers_are_chosen_and_what_is_left_out_is_said(tmp_path):
     with pytest.raises(ValueError, match=r"layer frame: .* is open: close it; or give the layers that hold blocks by"):
         mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True)
     assert mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, layers=["stone"]).blocks[1].area == pytest.approx(0.2)
-    with pytest.raises(ValueError, match=r"layers = 'brick' holds nothing in .*a.dxf; the layers are stone, frame"):
+    with pytest.raises(ValueError, match=r"layers = 'brick' holds nothing; the layers are stone, frame"):
         mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, layers=["brick"])
     with pytest.raises(TypeError, match="layers = 'stone' of type str is not a list of names"):
         mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True, layers="stone")

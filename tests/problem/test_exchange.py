@@ -220,7 +220,7 @@ def test_arguments_are_checked(tmp_path):
         mr.Masonry.from_obj(path, fixed="ground")
     with pytest.raises(ValueError, match="scale = 0 m is outside the valid range"):
         mr.Masonry.from_obj(path, scale=0)
-    with pytest.raises(ValueError, match=r"none.obj is not a file"):
+    with pytest.raises(ValueError, match=r"none.obj: it is not a file"):
         mr.Masonry.from_obj(tmp_path / "none.obj")
     with pytest.raises(ValueError, match="blocks in the plane have no such file"):
         mr.Masonry.stack([mr.Block(0.3, 1.0)], 1e8).to_obj(tmp_path / "a.obj")

@@ -5,8 +5,7 @@ import math
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjrock.problem.damping.falling import falling_damping, falling_rebound
-from mjrock.problem.damping.rebound import rebound_damping, rebound_restitution
+from mjrock.problem.damping.rebound import falling_damping, falling_rebound, rebound_damping, rebound_restitution
 
 
 def integrated(xi, pull, share=1.0):

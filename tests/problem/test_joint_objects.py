@@ -12,7 +12,7 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.problem.masonry.laws.options import JointOptions
+from mjrock.problem.masonry.laws.joint_table import JointOptions
 from mjrock.study.campaign.task import fingerprint
 
 ROOT = Path(__file__).parents[2]

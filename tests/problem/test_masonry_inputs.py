@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import mjrock as mr
-from mjrock.problem.damping.inputs import lines_over_bed
+from mjrock.problem.damping.stiffness import lines_over_bed
 
 WALL = mr.Block.from_size(0.9, 12.0, 10.0, 1900.0)
 

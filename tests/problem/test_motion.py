@@ -37,7 +37,7 @@ def test_scaled_and_reversed():
     assert motion.scaled(1.5).peak == pytest.approx(3.0)
     assert motion.scaled(peak=0.5) == motion.scaled(0.5 / motion.peak)
     assert motion.scaled(peak=0.5).name.endswith(" to 0.5 m/s2")
-    with pytest.raises(ValueError, match=r"either a factor or a peak \[m/s2\]; factor = 2, peak = 3"):
+    with pytest.raises(ValueError, match=r"factor = 2, peak = 3: give either a factor or a peak \[m/s2\]"):
         motion.scaled(2, peak=3)
     with pytest.raises(ValueError, match="either a factor or a peak"):
         motion.scaled()

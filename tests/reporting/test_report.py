@@ -19,8 +19,7 @@ import mjrock as mr
 from mjrock.quantities import ratio_said, share_said
 from mjrock.reporting.markup import formula
 from mjrock.reporting.texts import FOUND, Words, languages, texts
-from mjrock.study.loading.dynamic import RunMaximum
-from mjrock.study.loading.mechanism import LimitState, Verdict, verdict_rows
+from mjrock.study.loading.code_check import LimitState, RunMaximum, Verdict, verdict_rows
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)])
 E = mr.Restitution.from_geometry(WALL)

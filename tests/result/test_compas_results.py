@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result.compas import at_corners
+from mjrock.result.files import at_corners
 from mjrock.result.motion import sample_at
 
 

@@ -11,7 +11,7 @@ import pytest
 import mjrock as mr
 from mjrock.plotting.bodies import Bodies
 from mjrock.plotting.solids import Solids
-from mjrock.result.gltf import turns
+from mjrock.result.files import turns
 
 
 @pytest.fixture(scope="module")

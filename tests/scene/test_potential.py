@@ -9,6 +9,7 @@ from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import meeting
 from mjrock.geometry.poses import rotations
 from mjrock.geometry.vectors import tangent
+from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene.parts import ConstantForces, Links
 
 
@@ -16,7 +17,7 @@ from mjrock.scene.parts import ConstantForces, Links
 def held():
     """Two blocks with a tie between them and a force on the upper one, away from its centroid."""
     scene = two_blocks()
-    tie = Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], k=[3e6], reach=[0.5])
+    tie = Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], [LinkLaw(3e6, 0.5)])
     return changed(scene, links=tie, forces=ConstantForces(("pull",), [1], [(0.1, 0.9)], [(3e4, -1e4)]))
 
 
@@ -25,7 +26,7 @@ def test_derivatives_of_the_energy(held):
     potential, pose = held.potential, np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05])
     assert (potential.openings(pose) < 0).sum() >= 3  # springs of both kinds are pressed, and one contact is open
     assert (potential.openings(pose) > 0).any()
-    k = np.append(held.contacts.k, held.links.k)
+    k = np.append(held.contacts.k, held.links.law["k"])
     np.testing.assert_array_equal(potential.springs, k)
     np.testing.assert_array_equal(potential.pressed(pose), np.maximum(-potential.openings(pose), 0))
     pressed = np.maximum(-potential.openings(pose), 0) * k
@@ -95,7 +96,7 @@ def test_rates_are_derivatives_of_openings_and_of_what_slips(held):
 def test_at_rest_only_friction_holds_what_springs_do_not(held):
     """The tie and the force would make the blocks slide: along all other ways the springs balance them."""
     for length, taut in ((0.75, True), (3.0, False)):
-        scene = changed(held, links={"reach": [length]}, forces={"force": [(3e3, -1e4)]})
+        scene = changed(held, links={"law": [LinkLaw(3e6, length)]}, forces={"force": [(3e3, -1e4)]})
         pose = scene.at_rest.ravel()
         assert (scene.potential.pressed(pose)[4] > 0) == taut
         missing, beyond = unbalanced(scene)

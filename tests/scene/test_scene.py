@@ -12,7 +12,8 @@ from mjrock.engine.mjcf import scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.rows import inverse_weights
 from mjrock.engine.stepping import fitted_steps
-from mjrock.scene.ground import Shaking, ground_velocity, mean_acceleration
+from mjrock.problem.wall.effect import LinkLaw
+from mjrock.scene.course import Shaking, ground_velocity, mean_acceleration
 from mjrock.scene.parts import Links
 from mjrock.scene.wall import wall_scene
 
@@ -165,13 +166,13 @@ def test_links_by_what_they_have():
     """A spring, a spring and a dashpot, a dashpot, a spring that also pushes, and neither."""
     names = ("spring", "both", "dashpot", "pushes", "neither")
     at, ends = np.zeros((5, 2)), np.array([(-1.0, 0.0)] * 5)
-    law = {"k": [1e3, 1e3, 0, 1e3, 0], "c": [0, 50.0, 50.0, 0, 0], "push": [0, 0, 0, 1e3, 0]}
-    limits = {"reach": [1.0, 1.0, math.inf, 1.0, math.inf], "strength": [1e3] * 5}
-    links = Links(names, [0] * 5, at, [-1] * 5, ends, **law, **limits)
+    spring = LinkLaw(1e3, 1.0, 1e3)
+    laws = [spring, spring._replace(c=50.0), LinkLaw(c=50.0), spring._replace(push=1e3), LinkLaw()]
+    links = Links(names, [0] * 5, at, [-1] * 5, ends, laws)
     assert links.sprung.names == ("spring", "both", "pushes")
     assert links.bearing.names == ("spring", "both")
     assert links.damped.names == ("both", "dashpot", "neither")
-    np.testing.assert_array_equal(links.damped.c, [50.0, 50.0, 0.0])
+    np.testing.assert_array_equal(links.damped.law["c"], [50.0, 50.0, 0.0])
 
 
 def test_a_wall_beside_a_stop_with_friction_rests_on_its_base(wall):

@@ -13,6 +13,7 @@ from space_scenes import box
 import mjrock as mr
 from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.geometry.poses import angles, at_rest, coordinate_rates, from_rates, moved, turned
+from mjrock.problem.wall.effect import LinkLaw
 from mjrock.quantities import GRAVITY
 from mjrock.scene.masses import coupling, products_of
 from mjrock.scene.parts import ConstantForces, Links
@@ -23,7 +24,7 @@ SKEW = Rotation.from_euler("xyz", (0.4, -0.3, 0.7)).as_matrix()
 
 def pulled(**parts):
     """A box with a tie and a force, none of them along an axis."""
-    stay = Links(("stay",), [0], [(0.3, 0.1, 0.9)], [-1], [(-1.5, -0.8, 0.2)], k=[2e6], reach=[2.633])
+    stay = Links(("stay",), [0], [(0.3, 0.1, 0.9)], [-1], [(-1.5, -0.8, 0.2)], [LinkLaw(2e6, 2.633)])
     pull = ConstantForces(("pull",), [0], [(-0.2, 0.15, 0.7)], [(900.0, -700.0, -3e3)])
     return box((0.6, 0.4, 2.0), **{"links": stay, "forces": pull} | parts)
 
@@ -213,7 +214,7 @@ class TestRest:
         np.testing.assert_allclose(scene.bodies.rest[0] + scene.links.sprung.at[0], (0.3, 0.0, 1.8))
         np.testing.assert_allclose(scene.bodies.rest[1] + scene.links.sprung.anchor_at[0], (1.0, 0.0, 1.0))
         assert scene.links.sprung.anchor_body[0] == 1
-        assert scene.links.sprung.reach[0] == pytest.approx(math.hypot(0.7, 0.8) + 0.01)
+        assert scene.links.sprung.law["reach"][0] == pytest.approx(math.hypot(0.7, 0.8) + 0.01)
         np.testing.assert_allclose(scene.forces.force, [(0, 100, 0)])
         apart = np.array((0.1, 0.2, 0.5))
         added = 960 * 240 / 1200 * (apart @ apart * np.eye(3) - np.outer(apart, apart))

@@ -7,6 +7,7 @@ import pytest
 from scenes import changed, two_blocks
 
 import mjrock as mr
+from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene import rest
 from mjrock.scene.parts import ConstantForces, Links
 
@@ -98,13 +99,13 @@ def test_what_may_be_missing_is_a_billionth_of_the_heaviest_body_or_the_rounding
     scene = changed(two_blocks(), bodies={"mass": [3000.0, 1000.0]})
     assert rest.heaviest(scene.potential) == pytest.approx(3000.0 * mr.GRAVITY)
     assert rest.tolerance(scene.potential) == pytest.approx(1e-9 * 3000.0 * mr.GRAVITY)
-    tie = Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], k=[3e12], reach=[0.5])
+    tie = Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], [LinkLaw(3e12, 0.5)])
     rounding = 16 * np.finfo(float).eps * 3e12 * 0.5
     assert rest.tolerance(changed(scene, links=tie).potential) == pytest.approx(rounding)
     closed = rest.touching(changed(scene, links=tie).potential, np.zeros(6))
     length = math.hypot(0.6, 2.6)
     np.testing.assert_array_equal(closed, [True] * 4 + [length > 0.5])
-    slack = changed(scene, links=Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], k=[3e6], reach=[9.0]))
+    slack = changed(scene, links=Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], [LinkLaw(3e6, 9.0)]))
     np.testing.assert_array_equal(rest.touching(slack.potential, np.zeros(6)), [True] * 4 + [False])
 
 

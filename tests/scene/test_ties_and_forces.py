@@ -12,6 +12,7 @@ from mjrock.engine.energy_work import ledger
 from mjrock.engine.mjcf import scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fitted_steps
+from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.wall import wall_scene
 
@@ -25,8 +26,12 @@ def tie(anchor, held, *, k=2e6, slack=0.0, strength=math.inf, name="tie"):
     """The link of a tie from the ground to a point of the first body, at rest at `held` about its centroid."""
     (point, rest), length = held, math.dist(anchor, np.add(*held))
     assert rest is not None
-    law = {"k": [k], "reach": [length + slack], "strength": [strength]}
-    return {"links": Links((name,), [0], [point], [-1], [anchor], **law)}
+    return {"links": Links((name,), [0], [point], [-1], [anchor], [LinkLaw(k, length + slack, strength)])}
+
+
+def with_law(scene, **numbers):
+    """Fields of the one link of a scene, by another law."""
+    return {"law": [LinkLaw(*scene.links.law[0])._replace(**numbers)]}
 
 
 def pull(force, point, name="pull"):
@@ -87,7 +92,7 @@ def test_a_tie_stops_a_mass_as_a_spring_does(sliding, accuracy):
 def test_a_yielding_tie_takes_its_strength_times_its_plastic_elongation(sliding, accuracy):
     """m v^2/2 = T^2/(2 k) + T u at the farthest, and T^2/(2 k) is given back."""
     strength = 2e4
-    scene = changed(sliding, links={"strength": [strength]})
+    scene = changed(sliding, links=with_law(sliding, strength=strength))
     steps = run(scene, away(scene), accuracy)
     books = ledger(scene, away(scene), steps)
     given = 0.5 * scene.bodies.mass[0] * 0.5**2
@@ -101,10 +106,10 @@ def test_a_yielding_tie_takes_its_strength_times_its_plastic_elongation(sliding,
 
 def test_stock_mujoco_yields_as_the_ledger_says(sliding):
     """The text alone has the tie, its slack and its strength: MuJoCo's own plastic state is the ledger's."""
-    scene = changed(sliding, links={"strength": [2e4]})
+    scene = changed(sliding, links=with_law(sliding, strength=2e4))
     steps = run(scene, away(scene), timestep=1e-4)
     data = stock_takes(steps.pose, released_mjcf(scene, away(scene), 1e-4), 1e-12)
-    elongation = float(np.ravel(data.plastic)[1]) - scene.links.sprung.reach[0]
+    elongation = float(np.ravel(data.plastic)[1]) - scene.links.sprung.law["reach"][0]
     assert ledger(scene, away(scene), steps).ties["tie"][-1] == pytest.approx(2e4 * elongation, rel=1e-6)
     assert elongation > 0.02
 
@@ -157,11 +162,11 @@ def test_energy_of_forces_and_ties_adds_up(standing, wall):
 @pytest.mark.parametrize(
     ("parts", "complaint"),
     [
-        ({"k": [-1.0]}, "k of the links = -1 is outside the valid range, which starts at 0"),
-        ({"strength": [-1.0]}, "strength of the links = -1 is outside"),
-        ({"strength": [math.nan]}, "strength of the links holds a value that is not finite"),
-        ({"reach": [math.inf]}, "reach of the links is infinite for a link with a spring"),
-        ({"push": [math.inf]}, "push of the links holds a value that is not finite"),
+        ({"k": -1.0}, "k of the links = -1 is outside the valid range, which starts at 0"),
+        ({"strength": -1.0}, "strength of the links = -1 is outside"),
+        ({"strength": math.nan}, "strength of the links holds a value that is not finite"),
+        ({"reach": math.inf}, "reach of the links is infinite for a link with a spring"),
+        ({"push": math.inf}, "push of the links holds a value that is not finite"),
         ({"anchor_body": [0]}, "anchor_body of the links is another body"),
         ({"body": [1]}, "body of the links is outside the valid range 0 to 0"),
         ({"at": [(0.0,)]}, r"anchor_at of the links has the shape \(1, 2\); \(1, 1\) is needed"),
@@ -170,7 +175,7 @@ def test_energy_of_forces_and_ties_adds_up(standing, wall):
 )
 def test_links_that_cannot_be_are_refused(sliding, parts, complaint):
     with pytest.raises(ValueError, match=complaint):
-        changed(sliding, links=parts)
+        changed(sliding, links=with_law(sliding, **parts) if parts.keys() <= set(LinkLaw._fields) else parts)
 
 
 def test_forces_that_cannot_be_are_refused(sliding):
@@ -184,7 +189,7 @@ def test_names_of_ties_and_forces_in_the_text(standing, wall):
     held = tie((-5.0, 1.0), ((0.0, 0.0), standing.bodies.rest[0]), strength=1e4)
     scene = scene_with(standing, **held, **pull((1.0, 2.0), (0.0, wall.h)))
     model = mujoco.MjModel.from_xml_string(scene_mjcf(scene, 1e-3))
-    assert model.tendon_lengthspring[0].tolist() == [0.0, scene.links.sprung.reach[0]]
+    assert model.tendon_lengthspring[0].tolist() == [0.0, scene.links.sprung.law["reach"][0]]
     assert model.actuator_gear[0, :3].tolist() == [1.0, 0.0, 2.0]
     assert (model.tendon(0).name, model.actuator(0).name) == ("tie", "pull")
     assert (model.ntendon, model.nu, model.nplastic) == (1, 1, 2)

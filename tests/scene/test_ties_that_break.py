@@ -10,7 +10,8 @@ import mjrock as mr
 from mjrock.engine.energy_work import ledger
 from mjrock.engine.model import engine_of
 from mjrock.engine.stepping import fitted_steps
-from mjrock.problem.wall.ties_on_wall import taken, yielded
+from mjrock.problem.wall.effect import LinkLaw
+from mjrock.problem.wall.restoring_moment import taken, yielded
 from mjrock.scene.parts import Links
 from mjrock.scene.potential import breaks
 from mjrock.scene.wall import wall_scene
@@ -24,7 +25,7 @@ def sliding(wall, contacts):
     """The wall on a base without friction, tied to an anchor 5 m behind its centroid, and half a second of it."""
     standing = wall_scene(mr.Case(wall, 0.0, 1.0, side_stop=False), contacts)
     ends = ("tie",), [0], [(0.0, 0.0)], [-1], [(-5.0, standing.bodies.rest[0, 1])]
-    tie = Links(*ends, k=[K], reach=[5.0 + SLACK], strength=[STRENGTH], ultimate=[ULTIMATE])
+    tie = Links(*ends, [LinkLaw(K, 5.0 + SLACK, STRENGTH, ultimate=ULTIMATE)])
     scene = changed(standing, links=tie, contacts={"friction": [0.0, 0.0]}, settled=None)
     return scene, course(scene, [[SPEED, 0.0, 0.0]], 0.5)
 

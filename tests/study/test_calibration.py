@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.damping.forms import BedLaw, CornerLaw, PowerLaw, SideLaw
-from mjrock.problem.damping.law import CALIBRATED, HIGHEST_XI
+from mjrock.problem.damping.law import CALIBRATED, HIGHEST_XI, BedLaw, CornerLaw, PowerLaw, SideLaw
 from mjrock.study.campaign.campaign import completed
 from mjrock.study.matching import match
-from mjrock.study.matching.calibration import Plan
+from mjrock.study.matching.calibration import Plan, regress
 from mjrock.study.matching.match import REFERENCE, Combination, Match, combinations, highest_branch, least_difference
-from mjrock.study.matching.regression import regress
 
 BOUNDS = (1e-3, 0.3)
 

@@ -239,7 +239,7 @@ def test_the_time_left_follows_from_cases_after_the_first(tmp_path, monkeypatch,
         pytest.skip("a terminal has a bar")
     for finished in range(1, 11):
         now[0] = 1000.0 + 31 * finished
-        shown.show(0, finished, 0)
+        shown.add([{"status": "done"}])
     *others, ninth, tenth = capsys.readouterr().err.splitlines()
     assert len(others) == 8
     assert ninth == "campaign: 9 of 100 cases"

@@ -42,6 +42,17 @@ def test_a_median_beyond_the_data_is_said_to_be():
     assert fit.tried == (0.5, 0.8)
 
 
+def test_a_warning_points_to_the_line_of_the_user():
+    """Also where one function of the package has called the one that warns."""
+    fell = np.zeros((6, 4), dtype=int)
+    fell[0, 1] = fell[0, 3] = fell[2, 3] = fell[3, 3] = 1
+    rows = tuple(tuple({"outcome": "time ended", "fallen": int(one)} for one in record) for record in fell)
+    study = IncrementalAnalysis(tuple("abcdef"), np.array([0.5, 0.6, 0.7, 0.8]), np.zeros((6, 4)), rows)
+    with pytest.warns(UserWarning, match="extrapolated|resamples") as warned:
+        study.fragility(resamples=20)
+    assert {warning.filename for warning in warned} == {__file__}
+
+
 def test_six_records_have_a_band_and_a_word():
     x = np.tile([0.6, 0.7, 0.8, 0.9, 1.0], 6)
     capacities = np.repeat([0.75, 0.75, 0.85, 0.85, 0.85, 0.95], 5)

@@ -13,7 +13,7 @@ import mjrock as mr
 from mjrock.problem.masonry.laws.joint_table import ByKind, ByName
 from mjrock.problem.masonry.pile import Pile
 from mjrock.study.campaign.task import fingerprint
-from mjrock.study.matching.masonry import STRONG_ABOVE, excess, peaks, rebound, restitutions, strong
+from mjrock.study.matching.matched import STRONG_ABOVE, excess, peaks, rebound, restitutions, strong
 from mjrock.theory.impact import as_one
 
 HOLDS = 10.0

@@ -73,8 +73,8 @@ def test_a_blow_is_no_strength(turned):
 
 def test_what_blows_bear_is_nothing_to_compare_inertia_with():
     """Five pieces in a row that are blows end a push; their own forces do not hide that they are."""
-    masonry, still = panel(0.9), np.zeros(4)
-    load = Forced(masonry, (), {}, None, mr.Actuator(None, None, 1, None, 1e6), 0.1)
+    case, still = mr.MasonryCase(panel(0.9), 1.0), np.zeros(4)
+    load = Forced(case, None, 0.0, 0.0, mr.Actuator(None, None, 1, None, 1e6), 0.1)
     blow = Piece(still + 0.01, still + 2.0, still + 1.0, still, SimpleNamespace(t=[1.0], end=None), 0.0, 0.0, 0.0)
     load.accept(blow._replace(force=still + 0.3, inertia=still))
     for _ in range(BLOWS):

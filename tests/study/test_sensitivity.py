@@ -9,8 +9,8 @@ import pytest
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.study.campaign.grid import Grid
-from mjrock.study.intensity.capacity import bracket, halved, lowest
+from mjrock.study.campaign.task import Grid
+from mjrock.study.intensity.ida import bracket, halved, lowest
 
 OPTIONS = {"rtol": 1e-6}
 

@@ -12,7 +12,7 @@ from ...geometry.vectors import Vector, dot, increase, plus, read, scaled, spun
 from ...linear import entries
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
-from ...scene.checks import GROUND
+from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from ..contacts.contact import add_force
 from ..rows import Row, Rows

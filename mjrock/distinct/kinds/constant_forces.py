@@ -10,7 +10,7 @@ from ..contacts.contact import add_force
 from ..rows import Row, Rows
 from ..system import Books, System
 from ..turning import rotation_change
-from .link import Kind, Named, Table
+from .link import Columns, Kind, Named, Table
 
 
 class ConstantForces(Kind, Table):
@@ -22,7 +22,7 @@ class ConstantForces(Kind, Table):
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         forces, count = scene.forces, len(scene.forces.body)
-        columns = {"body": forces.body, "at": forces.at, "between": forces.force} if count else {}
+        columns: Columns = {"body": forces.body, "at": forces.at, "between": forces.force} if count else {}
         return forces.names, cls(cls.table(scene.bodies.rest.shape[1], count, **columns))
 
     @inlined

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ...compiled import inlined
 from ...problem.masonry.case import AnyCase
+from ...problem.wall.effect import DASHPOT, resistance, steepest
+from ...quantities import Array
 from ...scene.scene import Scene
 from ..rows import Rows
 from ..system import Books, System
@@ -11,15 +15,19 @@ from .link import Kind, Named, Table, book_support, lengthening, pull, push_apar
 
 
 class Dampers(Kind, Table):
-    """Dashpots: `c` [N s/m]. They resist the rate of their length both ways."""
+    """Dashpots, see `resistance`. They resist the rate of their length both ways."""
 
-    own = ("c",)
+    own = DASHPOT
     booked = ("dashpots",)
 
     @classmethod
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         return cls.linking(scene.links.damped, scene.dampers.links.between)
+
+    def springs(self) -> tuple[Array, Array]:
+        """Their steepest slopes."""
+        return np.zeros(len(self.rows)), steepest(self.rows)
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
@@ -28,7 +36,7 @@ class Dampers(Kind, Table):
             damper = self.rows[i]
             now = pull(damper, system)
             rate = lengthening(damper, system, now)
-            force = -damper.c * rate
+            force = -resistance(damper, rate)
             books.links[damper.account] -= 0.5 * h * (force + damper.pulled) * rate
             book_support(damper, system, books, now, force, h)
             push_apart(damper, system, now, force)

@@ -25,7 +25,7 @@ OF_A_LINE = ("k", "c", "k_s", "c_s", "friction", "margin", "grip")
 class JointLaw:
     """A law of joints. It is a NamedTuple too, `link.Table` or one of its own, so that compiled loops know it.
 
-    `act`, `stored` and `lost` are compiled. The others have here what most laws need.
+    `act`, `stored`, `lost` and `holds` are compiled. The others have here what most laws need.
 
     Attributes:
         rows: a row for each line of the joints, with the numbers of `table` and `own` ones; none where no joint has
@@ -93,13 +93,16 @@ class JointLaw:
         """Share of what the law holds that a line has lost [-]."""
         return 0.0
 
-    def holding(self) -> Flags:
-        """Whether each line still holds something beside friction. Its joint is then not handed over."""
-        return np.asarray(self.rows["k"] > 0)
+    @inlined
+    def holds(self, row: Row) -> bool:
+        """Whether a line still holds something beside friction. Its joint is then not handed over."""
+        return bool(row.k > 0)
 
     def release(self, lines: Rows, which: Flags) -> None:
         """Give dry lines back what the law has taken over, where they are handed over."""
         which = which & (self.rows["k"] > 0)
+        if not which.any():
+            return
         for name in ("k", "c", "friction", "margin", "grip", "dragged"):
             lines[name][which] = self.rows[name][which]
         for name in ("k", "grip", "dragged", "push"):

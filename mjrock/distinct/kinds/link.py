@@ -8,7 +8,7 @@ remembers of it. `KINDS` of `links` lists the kinds, and nothing else knows whic
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -27,6 +27,8 @@ from ..turning import rotation_change
 
 Named = tuple[tuple[str, ...], "Kind"]
 """The names of links, and the links."""
+Columns = dict[str, Array | Integers | float]
+"""Numbers and vectors of links by name."""
 
 
 class Table(NamedTuple):
@@ -55,7 +57,7 @@ class Kind:
     booked: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
-    def table(cls, d: int, count: int, **columns: Any) -> Rows:
+    def table(cls, d: int, count: int, **columns: Array | Integers | float) -> Rows:
         """Rows of links in d directions with these columns, on the ground unless they say otherwise."""
         fields = [
             *integers("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
@@ -69,12 +71,13 @@ class Kind:
         return rows(np.dtype(fields), count, **{"anchor": -1, "anchor_block": -1, "support": -1} | columns)
 
     @classmethod
-    def linking(cls, links: Links, between: Array, **columns: Any) -> Named:
+    def linking(cls, links: Links, between: Array, **columns: Array | Integers | float) -> Named:
         """Links of a scene with these columns. Their other `own` numbers are those of the law of the links."""
         count = len(links.body)
-        taken = {name: getattr(links, name) for name in ("body", "anchor_block", *cls.own) if name not in columns}
-        ends = {"anchor": links.anchor_body, "at": links.at, "origin": links.anchor_at, "between": between}
-        table = cls.table(between.shape[1], count, **columns | taken | ends if count else {})
+        taken: Columns = {name: links.law[name] for name in cls.own if name not in columns}
+        taken |= {"body": links.body, "anchor": links.anchor_body, "anchor_block": links.anchor_block}
+        taken |= {"at": links.at, "origin": links.anchor_at, "between": between}
+        table = cls.table(between.shape[1], count, **columns | taken if count else {})
         return links.names, cls(table)  # type: ignore[call-arg]
 
     @classmethod

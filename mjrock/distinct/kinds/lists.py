@@ -24,7 +24,7 @@ KINDS: tuple[type[Kind], ...] = (Ties, Dampers, Actuators, ConstantForces)
 LAWS: tuple[type[JointLaw], ...] = (Bonds,)
 """The laws of joints beside the dry one, which all lines have."""
 
-act, hold, stored, lost = method("act"), method("hold"), method("stored"), method("lost")
+act, hold, stored, lost, holds = (method(name) for name in ("act", "hold", "stored", "lost", "holds"))
 
 
 def links_of(scene: Scene, case: AnyCase, bodies: Rows) -> tuple[tuple[tuple[str, ...], ...], Tables]:
@@ -102,3 +102,11 @@ def with_laws(laws: Tables, p: int, push: float, drag: Vector, holds: bool) -> t
             push, drag, holds = push + row.push, plus(drag, read(row.dragged)), True
         return with_laws(laws[1:], p, push, drag, holds)
     return push, drag, holds
+
+
+@inlined
+def is_held(laws: Tables, p: int) -> bool:
+    """Whether a law holds more of line p than friction."""
+    if len(laws) > 0:
+        return (p < len(laws[0].rows) and holds(laws[0], laws[0].rows[p])) or is_held(laws[1:], p)
+    return False

@@ -103,10 +103,10 @@ class Bonds(JointLaw, Table):
         damage: float = 1 - row.integrity
         return damage
 
-    def holding(self) -> Flags:
-        """Those of bonds that have not gone."""
-        bonds = self.rows
-        return np.asarray((bonds["k"] > 0) & (bonds["tension"] > 0) & (bonds["integrity"] > INTEGRITY_OF_LOST))
+    @inlined
+    def holds(self, row: Row) -> bool:
+        """Whether its bond has not gone."""
+        return bool(row.k > 0 and row.tension > 0 and row.integrity > INTEGRITY_OF_LOST)
 
     def release(self, lines: Rows, which: Flags) -> None:
         """The secants go too."""

@@ -20,13 +20,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem.masonry.laws.joint_law import Law, stored_along
+from ...compiled import for_types_of
 from ...problem.wall.standing import Standing
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
 from ..rows import chosen, joined, rows, unsound
 from ..supports import surges
 from ..system import Books, System
+from ..turning import rotations
 from .constants import (
     LEFT_JOINT,
     NEAR,
@@ -48,14 +49,12 @@ from .validity import (
     Limits,
     Motion,
     Validity,
-    energy_and_power,
+    Watched,
+    account,
     fall_within,
+    is_outdated,
     longest_interval,
-    mark_outdated,
-    power_of_last,
     set_validity,
-    take_motion,
-    update_joints,
 )
 
 
@@ -116,11 +115,12 @@ class ContactSearch:
         self.jointed, points = _jointed(scene, self.finder, of)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
         self.finder.points = np.maximum.reduceat(points, first)
-        self.kind, start = system.lines.dtype, self.motion(system).poses
+        self.kind, start = system.lines.dtype, self.poses(system)
         interval = longest_interval(self.sizes[self.blocks.free])
         self.limits = Limits(start, self._limits(start), VALID_WAY * self.sizes, interval)
-        self.joints = JointState.intact(of[joint], left, rolled)
-        self.state = self._no_contacts()
+        blocks = np.column_stack(np.divmod(self.law.jointed, self.count))
+        self.motion, self.joints = Motion.none(start), JointState.intact(of[joint], blocks, left, rolled)
+        self.state, self.examine = self._no_contacts(), is_outdated
 
     def begun(self, supports: tuple[str, ...]) -> ContactSearch:
         """The same at the start of a run, with room of its own to write into.
@@ -130,8 +130,8 @@ class ContactSearch:
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        joints, fresh.finder, fresh.state = self.joints, self.finder.apart(), self._no_contacts()
-        fresh.joints = JointState.intact(joints.pairs, joints.slip_limit, joints.tilt_limit)
+        fresh.finder, fresh.state = self.finder.apart(), self._no_contacts()
+        fresh.motion, fresh.joints = Motion.none(self.limits.start), JointState.intact(*self.joints[:4])
         return fresh
 
     def _no_contacts(self) -> SearchState:
@@ -154,23 +154,25 @@ class ContactSearch:
     def _numbers(self, found: Found) -> Integers:
         return pair_number(found.face, found.other, self.count)
 
-    def motion(self, system: System) -> Motion:
-        """Where all blocks are, and how fast."""
-        still = self.blocks.poses
+    def poses(self, system: System) -> Poses:
+        """Where all blocks are."""
+        still, free, support = self.blocks.poses, self.blocks.free, self.blocks.support
         poses = Poses(still.drawn, np.zeros_like(still.moved), np.zeros_like(still.change))
-        motion = Motion(poses, np.zeros_like(still.moved), np.zeros(self.count))
-        take_motion(system, self.blocks, motion)
-        return motion
+        poses.moved[free], poses.change[free] = system.bodies["place"], rotations(system.bodies)
+        poses.moved[support >= 0] = system.supports.moved[support[support >= 0]]
+        return poses
 
     def update(self, system: System, books: Books, t: float, h: float) -> tuple[System, Books, int]:
         """The system at a time [s] with the lines of all contacts that may touch until the next update, its books with
         room for them, and the steps until then. With steps of h [s] they are stable."""
-        state, validity = self.state, self.state.validity
-        left_joints, left = self._left_joints(system)
-        motion = self.motion(system)
-        self._add_surges(motion, system, t, t + h + self.limits.interval)
-        if mark_outdated(motion, self.sizes, self.limits, validity, left, state.since):
-            state.handed_over = state.handed_over | left_joints
+        state, validity, motion, joints = self.state, self.state.validity, self.motion, self.joints
+        motion.surge[:] = self._surges(system, t, t + h + self.limits.interval)
+        watched = Watched(self.blocks, motion, self.limits, joints, state.handed_over, validity)
+        outdated = self.examine(system, watched, state.since)
+        if self.examine is is_outdated:
+            self.examine = for_types_of(is_outdated, system, watched, state.since)
+        if outdated:
+            state.handed_over = state.handed_over | joints.left
             kept = self._searches_of(state.pair) == state.found
             intact = self.jointed[1][~state.handed_over[self.jointed[0]]]
             reach = REACH * (validity.ahead + fall_within(self.limits.interval) + NEAR * self.sizes)
@@ -178,7 +180,7 @@ class ContactSearch:
             may_touch = np.empty(len(found.gap), dtype=bool)
             set_validity(found, motion, self.sizes, validity, may_touch, self.limits.interval)
             may_touch &= found.share > 0
-            of_gone = np.append(left_joints[self.joints.pairs], ~kept)
+            of_gone = np.append(joints.left[joints.pairs], ~kept)
             if may_touch.any() or of_gone.any():
                 system = self._with_new_lines(system, books, motion.poses, found.only(may_touch), of_gone, h)
                 books = books.with_room(len(system.lines))
@@ -186,25 +188,17 @@ class ContactSearch:
         state.since = steps * h
         return system, books, steps
 
-    def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
-        """Add to the speeds of what is driven, a fixed block or one at a link, by how much they change until a time."""
-        moves = np.flatnonzero(self.blocks.support >= 0)
-        motion.about[moves] += surges(system.supports, t, until)[self.blocks.support[moves]]
+    def _surges(self, system: System, t: float, until: float) -> Array:
+        """By how much the velocity of what is driven, a fixed block or one at a link, changes until a time [m/s], shape
+        (blocks,)."""
+        found, moves = np.zeros(self.count), np.flatnonzero(self.blocks.support >= 0)
+        if len(moves):
+            found[moves] = surges(system.supports, t, until)[self.blocks.support[moves]]
         for table in system.links:
-            bodies, changes = table.surges(t, until)
-            np.add.at(motion.about, self.blocks.free[bodies], changes)
-
-    def _left_joints(self, system: System) -> tuple[Flags, Flags]:
-        """Which pairs of blocks have left their joints since the last update, shape (p,), and which blocks have left
-        one, shape (blocks,)."""
-        state, joints = self.state, self.joints
-        left_joints, left = np.zeros(len(state.handed_over), dtype=bool), np.zeros(self.count, dtype=bool)
-        if update_joints(system, joints):
-            left_joints = joints.leave() & ~state.handed_over
-            for law in system.laws:
-                left_joints[joints.pairs[: len(law.rows)][law.holding()]] = False
-            left[np.concatenate(np.divmod(self.law.jointed[left_joints], self.count))] = True
-        return left_joints, left
+            if len(table.rows):
+                bodies, changes = table.surges(t, until)
+                np.add.at(found, self.blocks.free[bodies], changes)
+        return found
 
     def _with_new_lines(
         self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float
@@ -218,8 +212,7 @@ class ContactSearch:
             of_gone: lines of joints that are handed over, and found ones whose blocks have moved, shape (lines,).
             h: length of a step [s].
         """
-        state, count = self.state, len(self.joints.pairs)
-        lines, sheared = np.asarray(system.lines), in_shear(system)
+        state, count, lines = self.state, len(self.joints.pairs), np.asarray(system.lines)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         left_joints, kept = of_gone[:count], ~of_gone[count:]
         for law in system.laws:
@@ -229,8 +222,7 @@ class ContactSearch:
         slack, size = np.append(np.zeros(count), state.slack), len(number)
         gone = Lines.unwritten(chosen(lines, which), slack[which])
         new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
-        before, gave = energy_and_power(system, which, gone.depth)
-        last = power_of_last(system, which)
+        before = account(system, which, gone.depth)
         share = np.append(np.ones(count), state.share)[which]
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])
@@ -255,16 +247,14 @@ class ContactSearch:
             np.minimum.at(state.least_share, block, share[pressing])
         lines = joined(joints, chosen(others, kept), np.asarray(new.rows))
         system = system._replace(lines=lines).with_ways()
-        given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
-        books.totals[0].friction -= given
-        of_new, half = np.arange(len(lines) - size, len(lines)), 0.5 * h if state.since > 0 else 0.0
-        after, gives = energy_and_power(system, of_new, new.depth)
-        late = half * (gives - gave)  # forces change half a step before the pose
-        books.totals[0].encounter_ends += before + given - after - late
-        new_last = power_of_last(system, of_new)
-        books.totals[0].ground += half * (last.carried - new_last.carried)
-        books.totals[0].friction += half * (last.rubbed - new_last.rubbed)
-        books.dashpots[self.group] += half * (last.damped - new_last.damped)
+        after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        given = min(before.sheared - after.sheared, 0.0)  # what shear springs lose friction takes, and it gives nothing
+        half = 0.5 * h if state.since > 0 else 0.0  # forces change half a step before the pose
+        late = half * (after.power - before.power)
+        books.totals[0].encounter_ends += before.energy + given - after.energy - late
+        books.totals[0].ground += half * (before.carried - after.carried)
+        books.totals[0].friction += half * (before.rubbed - after.rubbed) - given
+        books.dashpots[self.group] += half * (before.damped - after.damped)
         return system
 
     def _searches_of(self, pair: Integers) -> Integers:
@@ -277,15 +267,6 @@ class ContactSearch:
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         return shares_within(sides, law, system.bodies, h / OF_STABLE_STEP)
-
-
-def in_shear(system: System) -> float:
-    """Energy in the shear springs of all lines and of the laws of their joints [J]."""
-    energy = 0.0
-    for table in (system.lines, *(law.rows for law in system.laws)):
-        sprung = np.asarray(table)[np.isfinite(table["k_s"])]
-        energy += float(np.sum(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0))))
-    return energy
 
 
 def _rolled(standing: Standing) -> Array:

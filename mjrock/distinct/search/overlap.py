@@ -89,7 +89,7 @@ def _posed(search: ContactSearch, system: System, pose: Array, t: float, case: A
     bodies["place"] = pose[:, :d]
     set_rotations(bodies, pose)
     moved = np.concatenate([np.empty((0, d)), *(support.at(np.array([t])) for support in case.supports)])
-    return search.motion(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved))).poses
+    return search.poses(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved)))
 
 
 def common_volume(solids: Solids, a: int, b: int) -> float:

@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...geometry.hull import Side, area_vector
-from ...problem.masonry.laws.pairs import Meets
+from ...problem.masonry.laws.dry import Meets
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
@@ -115,12 +115,14 @@ class PairLaw(NamedTuple):
     def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
         """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
         face that lies over the other [m2], zero for edges, shape (n,) each."""
-        ends = np.array(np.divmod(pair, blocks))
-        shared, loose = self._of_softer(ends)
-        friction, had = self.of_block[1][ends].min(axis=0), are_among(pair, self.jointed)
-        there = np.searchsorted(self.jointed, pair[had])
-        shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
-        self.given.take(pair, shared, friction, ~had)
+        had, loose = are_among(pair, self.jointed), np.zeros(len(pair), dtype=bool)
+        there, alone = np.minimum(np.searchsorted(self.jointed, pair), len(self.jointed) - 1), ~had
+        shared, friction = self.of_pair[0][there], self.of_pair[1][there]
+        if alone.any():
+            ends = np.array(np.divmod(pair[alone], blocks))
+            shared[alone], loose[alone] = self._of_softer(ends)
+            friction[alone] = self.of_block[1][ends].min(axis=0)
+            self.given.take(pair, shared, friction, alone)
         over = area / shared[:, -1]
         part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)

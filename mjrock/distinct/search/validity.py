@@ -10,11 +10,12 @@ import numpy as np
 
 from ...compiled import compiled_at_once, inlined
 from ...geometry.vectors import dot, plus, put, read, scaled, vector
-from ...problem.masonry.laws.joint_law import normal_force, stored
+from ...problem.masonry.laws.joint_law import normal_force, stored, stored_along
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ..contacts.contact import meeting, over_face, relative, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried
-from ..system import System
+from ..kinds.lists import is_held, stored_by_laws
+from ..system import System, Tables
 from ..turning import in_world, rotation_change, take_inverse_inertia, take_turn
 from .constants import LONGEST_INTERVAL, NEAR, REACH, SEARCHED_TOGETHER, SHORTEST_INTERVAL, VALID_APPROACH
 from .finder import Found
@@ -31,13 +32,21 @@ class Motion(NamedTuple):
     Args:
         poses: where they are.
         velocity: of their centroids [m/s], shape (blocks, d).
-        about: the largest velocity of a corner about the centroid of its block, and by how much that of a block that is
-            driven changes until the next update, see `surges` [m/s], shape (blocks,).
+        about: the largest velocity of a corner about the centroid of its block, and its surge [m/s], shape (blocks,).
+        surge: by how much the velocity of a block that is driven changes until the next update, see `supports.surges`
+            [m/s], shape (blocks,).
     """
 
     poses: Poses
     velocity: Array
     about: Array
+    surge: Array
+
+    @classmethod
+    def none(cls, start: Poses) -> Motion:
+        """Of blocks that stand where they start."""
+        about, surge = np.zeros((2, len(start.moved)))
+        return cls(deepcopy(start), np.zeros_like(start.moved), about, surge)
 
 
 class Validity(NamedTuple):
@@ -50,6 +59,7 @@ class Validity(NamedTuple):
         valid_for: time for which its contacts are valid from the last update on [s], shape (blocks,).
         ahead: how far each may go within the longest time between two updates [m], shape (blocks,).
         outdated: whether its contacts were valid no longer at the last update, shape (blocks,).
+        left: whether it had left a joint since the update before, shape (blocks,).
     """
 
     searched: Flags
@@ -58,14 +68,15 @@ class Validity(NamedTuple):
     valid_for: Array
     ahead: Array
     outdated: Flags
+    left: Flags
 
     @classmethod
     def nothing(cls, start: Poses, interval: float) -> Validity:
         """Of blocks that stand where they start, with the longest time between two updates [s]."""
-        count, still = len(start.moved), deepcopy(start)
-        flags, speeds = np.zeros((2, count), dtype=bool), np.zeros((2, count))
-        motion = Motion(still, np.zeros_like(still.moved), speeds[0])
-        return cls(flags[0], motion, np.zeros(count, dtype=np.int64), np.full(count, interval), speeds[1], flags[1])
+        count = len(start.moved)
+        searched, outdated, left = np.zeros((3, count), dtype=bool)
+        searches, valid_for = np.zeros(count, dtype=np.int64), np.full(count, interval)
+        return cls(searched, Motion.none(start), searches, valid_for, np.zeros(count), outdated, left)
 
 
 class Limits(NamedTuple):
@@ -84,15 +95,22 @@ class Limits(NamedTuple):
     interval: float
 
 
-class LastPower(NamedTuple):
-    """Power of the forces that lines had in the last step, which the next step books for its half before the pose [W].
+class Account(NamedTuple):
+    """Energy in the springs of lines [J], and the power of their forces [W].
 
     Args:
-        carried: with which they move supports.
+        energy: in the springs along normals of some of the lines.
+        sheared: in the shear springs of all lines and of the laws of their joints.
+        power: at which the springs along normals give energy away.
+        carried: with which the forces of the last step move supports. The next step books this and the two below for
+            its half before the pose.
         rubbed: that friction takes.
         damped: that the dashpots along normals take.
     """
 
+    energy: float
+    sheared: float
+    power: float
     carried: float
     rubbed: float
     damped: float
@@ -103,31 +121,56 @@ class JointState(NamedTuple):
 
     Args:
         pairs: number of the pair of blocks of each line of a joint, shape (m,).
-        slip, gap: largest way along the joints of each pair, and least opening [m], shape (pairs,).
-        tilt: 1 less the cosine of the angle of its faces [-], shape (pairs,).
+        blocks: the two blocks of each pair, shape (pairs, 2).
         slip_limit: slip or gap from which on a pair has left its joints [m], shape (pairs,).
         tilt_limit: tilt from which on it has left them [-], shape (pairs,).
+        slip, gap: largest way along the joints of each pair, and least opening [m], shape (pairs,).
+        tilt: 1 less the cosine of the angle of its faces [-], shape (pairs,).
+        left: whether it has left its joints since the last update, shape (pairs,).
     """
 
     pairs: Integers
+    blocks: Integers
+    slip_limit: Array
+    tilt_limit: Array
     slip: Array
     gap: Array
     tilt: Array
-    slip_limit: Array
-    tilt_limit: Array
+    left: Flags
 
     @classmethod
-    def intact(cls, pairs: Integers, slip_limit: Array, tilt_limit: Array) -> JointState:
+    def intact(cls, pairs: Integers, blocks: Integers, slip_limit: Array, tilt_limit: Array) -> JointState:
         """Of joints that are as drawn."""
-        slip, gap, tilt = np.zeros((3, len(slip_limit)))
-        return cls(pairs, slip, gap, tilt, slip_limit, tilt_limit)
+        (slip, gap, tilt), left = np.zeros((3, len(blocks))), np.zeros(len(blocks), dtype=bool)
+        return cls(pairs, blocks, slip_limit, tilt_limit, slip, gap, tilt, left)
 
-    def leave(self) -> Flags:
-        """Which pairs have left their joints, shape (pairs,)."""
-        return np.asarray((np.maximum(self.slip, self.gap) > self.slip_limit) | (self.tilt > self.tilt_limit))
+
+class Watched(NamedTuple):
+    """What an update of the search examines: the blocks and their motion, how far they may go without a search, their
+    joints, which pairs have handed these over, and the validity of their contacts."""
+
+    blocks: Blocks
+    motion: Motion
+    limits: Limits
+    joints: JointState
+    handed_over: Flags
+    validity: Validity
 
 
 @compiled_at_once
+def is_outdated(system: System, watched: Watched, since: float) -> bool:
+    """Whether the contacts of a block are outdated, a time after the last update [s].
+
+    Brings the motion, the joints and the validity up to date.
+    """
+    validity = watched.validity
+    take_motion(system, watched.blocks, watched.motion)
+    update_joints(system, watched.joints)
+    mark_left(system.laws, watched.joints, watched.handed_over, validity.left)
+    return mark_outdated(watched.motion, watched.blocks.sizes, watched.limits, validity, since)
+
+
+@inlined
 def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
     """Write where the blocks are that move, and how fast, and take the inertia of the bodies there."""
     poses, supports = motion.poses, system.supports
@@ -140,9 +183,10 @@ def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
             put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, place)))
         put(poses.moved[block], place)
         put(motion.velocity[block], read(body.velocity))
-        motion.about[block] = math.sqrt(dot(spin, spin)) * blocks.sizes[block]
+        motion.about[block] = math.sqrt(dot(spin, spin)) * blocks.sizes[block] + motion.surge[block]
     for block in range(len(blocks.support)):
         if blocks.support[block] >= 0:
+            motion.about[block] = motion.surge[block]
             put(poses.moved[block], vector(supports.moved, blocks.support[block], system.axes))
             put(motion.velocity[block], vector(supports.moving, blocks.support[block], system.axes))
 
@@ -189,8 +233,8 @@ def fall_within(interval: float) -> float:
     return 0.5 * GRAVITY * interval**2
 
 
-@compiled_at_once
-def mark_outdated(motion: Motion, sizes: Array, limits: Limits, validity: Validity, left: Flags, since: float) -> bool:
+@inlined
+def mark_outdated(motion: Motion, sizes: Array, limits: Limits, validity: Validity, since: float) -> bool:
     """Bring up to date which blocks are searched, and mark those whose contacts are valid no longer.
 
     These are blocks that are searched for the first time or have left a joint, those that have moved and whose contacts
@@ -200,13 +244,12 @@ def mark_outdated(motion: Motion, sizes: Array, limits: Limits, validity: Validi
         motion, sizes: of the blocks.
         limits: how far they may go without a search.
         validity: of their contacts.
-        left: blocks that have left a joint, shape (blocks,).
         since: time since the last update [s].
 
     Returns:
         Whether the contacts of a block are outdated.
     """
-    some, interval = False, limits.interval
+    some, left, interval = False, validity.left, limits.interval
     for block in range(len(sizes)):
         speed, size, searched, valid_for = speed_of(motion, block), sizes[block], validity.searched[block], interval
         if searched:
@@ -271,14 +314,12 @@ def set_validity(
                 may_touch[i] = found.gap[i] < REACH * (speed * until + 2 * fall_within(interval) + NEAR * size)
 
 
-@compiled_at_once
-def update_joints(system: System, joints: JointState) -> bool:
-    """Bring slip, gap and tilt of joints up to date. Returns whether a pair has left its joints."""
+@inlined
+def update_joints(system: System, joints: JointState) -> None:
+    """Bring slip, gap and tilt of joints up to date, for bodies whose rotations are."""
     pairs, slip, gap, tilt = joints.pairs, joints.slip, joints.gap, joints.tilt
     for pair in range(len(slip)):
         slip[pair], gap[pair], tilt[pair] = 0.0, math.inf, 0.0
-    for b in range(len(system.bodies)):
-        take_turn(system.bodies[b])
     for p in range(len(pairs)):
         line = system.lines[p]
         across, normal, _, _ = over_face(system, line)
@@ -287,17 +328,36 @@ def update_joints(system: System, joints: JointState) -> bool:
         gap[pairs[p]] = min(gap[pairs[p]], apart)
         tilt[pairs[p]] = max(tilt[pairs[p]], 1 - dot(own, normal))
         line.widest = max(line.widest, apart)
-    left = False
-    for pair in range(len(slip)):
-        left = left or max(slip[pair], gap[pair]) > joints.slip_limit[pair] or tilt[pair] > joints.tilt_limit[pair]
-    return left
+
+
+@inlined
+def mark_left(laws: Tables, joints: JointState, handed_over: Flags, left: Flags) -> None:
+    """Mark which pairs have left their joints since the last update, and which blocks have `left` one, shape (blocks,).
+
+    Of these pairs no line holds more than friction. Those that are handed over had left them before.
+    """
+    for block in range(len(left)):
+        left[block] = False
+    for pair in range(len(handed_over)):
+        slid = max(joints.slip[pair], joints.gap[pair]) > joints.slip_limit[pair]
+        joints.left[pair] = not handed_over[pair] and (slid or joints.tilt[pair] > joints.tilt_limit[pair])
+    for p in range(len(joints.pairs)):
+        if joints.left[joints.pairs[p]] and is_held(laws, p):
+            joints.left[joints.pairs[p]] = False
+    for pair in range(len(handed_over)):
+        if joints.left[pair]:
+            left[joints.blocks[pair, 0]] = left[joints.blocks[pair, 1]] = True
+
+
+def account(system: System, which: Integers, depth: Array) -> Account:
+    """The account of some of the lines, with the normals that they have now, and write how deep each presses [m]."""
+    return Account(*sums(system, which, depth))
 
 
 @compiled_at_once
-def energy_and_power(system: System, which: Integers, depth: Array) -> tuple[float, float]:
-    """Energy in the springs along the normal of some of the lines [J] and the power at which they give it away [W], and
-    write how deep each presses [m]."""
-    energy = power = 0.0
+def sums(system: System, which: Integers, depth: Array) -> tuple[float, ...]:
+    """The numbers of an `account`."""
+    energy = power = moved = rubbed = damped = 0.0
     for i in range(len(which)):
         line = system.lines[which[i]]
         meet = meeting(system, line)
@@ -306,18 +366,15 @@ def energy_and_power(system: System, which: Integers, depth: Array) -> tuple[flo
         if meet.gap < 0:
             rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
             power += normal_force(line, meet.gap, 0.0) * rate
-    return energy, power
-
-
-@compiled_at_once
-def power_of_last(system: System, which: Integers) -> LastPower:
-    """The power of the forces that some of the lines had in the last step, along the normals that they have now."""
-    moved = rubbed = damped = 0.0
-    for i in range(len(which)):
-        line = system.lines[which[i]]
-        meet = where_friction_rubs(meeting(system, line))
+        meet = where_friction_rubs(meet)
         velocity, drag = relative(system.bodies, line, system.supports, meet), read(line.dragged)
         moved += carried(line, system.supports, plus(scaled(line.push, meet.normal), as_vector(meet.normal, drag)))
         rubbed -= dot(drag, along_face(meet.normal, velocity))
         damped -= line.pressed * dot(meet.normal, velocity)
-    return LastPower(moved, rubbed, damped)
+    sheared = stored_by_laws(system.laws)[1]
+    for p in range(len(system.lines)):
+        line = system.lines[p]
+        if line.k_s < math.inf:
+            grip = read(line.grip)
+            sheared += stored_along(line, dot(grip, grip))
+    return energy, sheared, power, moved, rubbed, damped

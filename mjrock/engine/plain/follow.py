@@ -1,4 +1,4 @@
-"""Follow: MuJoCo's steps of a plain model, and what they say of energy and forces at the samples.
+"""Follow: MuJoCo's steps of a plain model, with energy and forces at the samples.
 
 A step takes the velocities from half a step before its pose to half a step after it. So the velocity at the pose is the
 mean of both, and a force does the work that is its product with that mean and the step. At a sample half of the work of
@@ -18,20 +18,16 @@ from ...bars import Bar
 from ...geometry.frames import PLANE
 from ...problem.masonry.histories import Support
 from ...quantities import GRAVITY, Array, Integers
-from ...scene.course import Course
-from ...scene.ground import mean_acceleration
+from ...scene.course import Course, mean_acceleration
 from ...scene.scene import Scene
 from ..model import require_well
-from .overlap import Overlap
 from .pairs import Pairs
-from .pieces import Piece
+from .pieces import Overlap, Piece
 
 LOOK = 1000
 """Steps between two looks at warnings of the engine."""
 NEGLIGIBLE = 1e-4
-"""Depth of a contact, over the smallest thickness of the two pieces, that is no overlap to speak of [-]."""
-WAYS = {2: (0, 2), 3: (0, 1, 2)}
-"""Which axes of MuJoCo's world a vector of the plane or of space has."""
+"""Depth of a contact, over the smallest thickness of the two pieces, up to which an overlap is negligible [-]."""
 
 
 class Met(NamedTuple):
@@ -144,7 +140,7 @@ class PlainEngine:
 
     def drive(self, course: Course, t: float) -> Array:
         """Set gravity and moved supports for the step at a time [s]; the acceleration of the ground, shape (d,)."""
-        h, ground, ways = self.model.opt.timestep, course.ground, WAYS[self.scene.freedom.translations]
+        h, ground, ways = self.model.opt.timestep, course.ground, self.scene.freedom.axes
         shaken = np.array([mean_acceleration(shaking, t, h) for shaking in (ground.x, ground.y, ground.z)])
         self.model.opt.gravity[:] = -shaken - (0.0, 0.0, GRAVITY)
         for i, support in enumerate(self.supports):
@@ -171,12 +167,7 @@ class Work(NamedTuple):
 
     def plus(self, other: Work, share: float = 1.0) -> Work:
         """This and a share of another one."""
-        return Work(
-            self.ground + share * other.ground,
-            self.pressed + share * other.pressed,
-            self.rubbed + share * other.rubbed,
-            self.damped + share * other.damped,
-        )
+        return Work(*(mine + share * more for mine, more in zip(self, other, strict=True)))
 
 
 class Sample(NamedTuple):
@@ -210,7 +201,7 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
         engine: at the release.
         course: what happens.
         steps, stride: numbers of steps.
-        joints: gathers forces, None where they are not asked for.
+        joints: gathers forces; None where they are not kept.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
@@ -234,7 +225,7 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
             if pose is not None:
                 elastic = by_pair(engine, met, 0.5 * met.k * np.minimum(met.gap, 0.0) ** 2)
                 forces = (np.empty(0), np.empty(0)) if joints is None else joints.gathered(engine, met)
-                pulled = engine.scene.links.damped.c * data.ten_velocity[engine.dampers]
+                pulled = engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers]
                 velocity = mean[engine.driven :].reshape(-1, nv).copy()
                 found = [] if deepest is None else [deepest]
                 work = total.plus(done, 0.5)
@@ -262,7 +253,7 @@ def work_of_step(engine: PlainEngine, met: Met, mean: Array, shaken: Array) -> W
     powers = rates * data.efc_force
     pressed = by_pair(engine, met, h * powers[met.row])
     rubbed = h * float(powers.sum()) - float(pressed.sum())
-    damped = h * engine.scene.links.damped.c * data.ten_velocity[engine.dampers] ** 2
+    damped = h * engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers] ** 2
     return Work(np.asarray(ground), pressed, np.asarray(rubbed), damped)
 
 
@@ -283,7 +274,7 @@ class JointForces:
     def gathered(self, engine: PlainEngine, met: Met) -> tuple[Array, Array]:
         """Loads of joints and forces of fixed blocks, see `Gathered`."""
         freedom, model, data = engine.scene.freedom, engine.model, engine.data
-        ways, local = list(WAYS[freedom.translations]), np.zeros(6)
+        ways, local = list(freedom.axes), np.zeros(6)
         loads = np.zeros((len(self.above), freedom.nv))
         held = np.zeros((len(self.fixed), freedom.translations))
         for number, pair, (first, second) in zip(met.number, met.pair, met.pieces, strict=True):

@@ -2,7 +2,7 @@
 
 A joint has k_n times its area, and MuJoCo finds four points where two faces lie on each other, two where one stands on
 an edge: a point has a quarter of the joint. Any two pieces without a joint meet with the frequency and the damping of
-the median joint: MuJoCo then gives each two of them the stiffness that their masses ask for. Those for which the
+the median joint: MuJoCo then gives each two of them a stiffness in proportion to their masses. Those for which the
 masonry gives friction and damping are pairs with that stiffness.
 """
 
@@ -14,9 +14,10 @@ from itertools import combinations, product
 import numpy as np
 
 from ...method import METHOD
-from ...problem.masonry.laws.pairs import Meets
+from ...problem.masonry.laws.dry import Meets
+from ...problem.wall.standing import in_space
 from ...quantities import Array, Integers
-from ...scene.checks import GROUND
+from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from ..solref import body_weight, pair_values, row
 from .pieces import Piece
@@ -136,15 +137,10 @@ def _carriers(scene: Scene, pieces: list[Piece]) -> tuple[Integers, Integers]:
 def _nearest(pieces: list[Piece], body: Integers, points: Array, normals: Array) -> Integers:
     """The piece of its body on which each point lies, shape (m,), from points in the frame of the body [m] and the
     normals of the body there."""
-    chosen, points, normals = np.zeros(len(points), dtype=np.int64), _in_space(points), _in_space(normals)
+    chosen, points, normals = np.zeros(len(points), dtype=np.int64), in_space(points), in_space(normals)
     carrier = np.array([piece.body if piece.meets else NOTHING for piece in pieces])
     for j in np.unique(body):
         own, here = np.flatnonzero(carrier == j), body == j
         far = np.array([pieces[i].beside(points[here], normals[here]) for i in own])
         chosen[here] = own[far.argmin(axis=0)]
     return chosen
-
-
-def _in_space(vectors: Array) -> Array:
-    """Vectors of the plane as those of space with y = 0."""
-    return vectors if vectors.shape[1] == 3 else np.insert(vectors, 1, 0.0, axis=1)

@@ -18,27 +18,25 @@ from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, Gathered, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
 from ...result.motion import SampledMotion
-from ...result.problem import Problem
+from ...result.problem import Problem, require_in_text
 from ...result.reading import BesidePoses
 from ...result.response import End, Response, State
-from ...result.start import require_unbreakable
 from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
 from ...scene.course import Course
 from ...scene.potential import energies
 from ...scene.scene import Scene
-from ..estimate import warn_if_plain_is_slow
 from ..mjcf import Keyframe
 from ..model import SimulationError, released
 from ..options import SPACING, Options
-from ..run_warnings import require_known, warn_if_sheared
+from ..run_warnings import require_known, warn_if_plain_is_slow, warn_if_sheared
 from .follow import JointForces, PlainEngine, Sample, Work, follow
 from .pairs import Pairs
 from .pieces import Piece, pieces_of
 from .text import plain_text
 
 RESOLVED, RESOLVED_OF_MANY = 0.1, 0.5
-"""omega h of the step that is taken where none is asked for, omega the highest frequency of the closed contacts, of one
-body and of several [-] (`scripts/studies/plain_models.py`, `scripts/studies/plain_masonry.py`)."""
+"""omega h of the step that is taken by default, omega the highest frequency of the closed contacts, of one body and of
+several [-] (`scripts/studies/plain_models.py`, `scripts/studies/plain_masonry.py`)."""
 OPEN = 0.01
 """Energy without an account that is warned of, over the largest part of the ledger [-]."""
 DOUBTED = 0.01
@@ -52,7 +50,7 @@ class PlainModel:
     """A case as a plain model.
 
     Args:
-        problem, scene, course: what was asked, what stands, and what happens to it.
+        problem, scene, course: the problem, what stands, and what happens to it.
     """
 
     problem: Problem
@@ -168,7 +166,7 @@ class PlainRun:
         """What each tie has yielded."""
         taken, links = self.stored[1][-1], self.of.scene.links.sprung
         never = np.full(len(taken), np.inf)
-        return plastic_of(self.of.scene, taken / links.strength, taken, never, np.zeros(len(taken)))
+        return plastic_of(self.of.scene, taken / links.law["strength"], taken, never, np.zeros(len(taken)))
 
     def forces(self, plastic: dict[str, Plastic]) -> Forces:
         """The forces of joints, links and fixed blocks."""
@@ -214,7 +212,7 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
 
 
 def plain_timestep(scene: Scene, spacing: float) -> float:
-    """The step that a plain model takes where none is asked for, a whole share of the spacing of the samples [s]."""
+    """The default step of a plain model, a whole share of the spacing of the samples [s]."""
     resolved = RESOLVED if len(scene.bodies.names) == 1 else RESOLVED_OF_MANY
     return spacing / math.ceil(spacing * scene.highest_frequency / resolved)
 
@@ -223,7 +221,7 @@ def require_plain(case: AnyCase) -> None:
     """Raise a ValueError for what no plain model has: bonds, effects of explicit steps, ties that break or that are
     anchored on supports that move."""
     require_known(case)
-    require_unbreakable(case)
+    require_in_text(case)
     moved = {support.block for support in case.supports}
     for name, link in case.links.items():
         if link.anchor_block is not None and case.blocks[link.anchor_block] in moved:

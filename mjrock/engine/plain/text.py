@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..._version import __version__
 from ...geometry.frames import PLANE
 from ...quantities import GRAVITY
-from ...scene.checks import GROUND
+from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from ..mjcf import SPARSE_FROM, Keyframe, camera_of, extent_of, forced, linked
 from ..shapes import BALL, HINGE, in_space, inertia_of_body, section, sites, tag, tints
@@ -155,7 +155,7 @@ def _laws(pairs: Pairs, rows: PairRows) -> list[dict[str, object]]:
     return laws
 
 
-def _class_of(pairs: Pairs, laws: list[dict[str, object]]) -> dict[int, str]:
+def _class_of(laws: list[dict[str, object]]) -> dict[int, str]:
     """The class of each pair that has its law in common with another one, by the number of the pair."""
     texts = [str(law) for law in laws]
     shared = (text for text, count in Counter(texts).items() if count > 1)
@@ -174,12 +174,11 @@ def _defaults(
     if len(scene.bodies.names) > 1 and scene.freedom == PLANE:
         for name, kind, axis in HINGE:
             yield f'<default class="{name}">{element("joint", type=kind, axis=axis)}</default>'
-    said = set()
-    for i, name in _class_of(pairs, laws).items():
-        if name not in said:
-            said.add(name)
-            yield f"<!-- {_said(pairs, i)} -->"
-            yield f'<default class="{name}">{element("pair", **laws[i])}</default>'
+    classes = _class_of(laws)
+    for name in dict.fromkeys(classes.values()):
+        i = next(i for i, each in classes.items() if each == name)
+        yield f"<!-- {_said(pairs, i)} -->"
+        yield f'<default class="{name}">{element("pair", **laws[i])}</default>'
 
 
 def _said(pairs: Pairs, i: int) -> str:
@@ -189,7 +188,7 @@ def _said(pairs: Pairs, i: int) -> str:
 
 def _pairs(pieces: list[Piece], pairs: Pairs, laws: list[dict[str, object]]) -> Iterator[str]:
     """The pairs of neighbours."""
-    classes = _class_of(pairs, laws)
+    classes = _class_of(laws)
     for i, (a, b) in enumerate(pairs.pieces.tolist()):
         names = {"geom1": pieces[a].name, "geom2": pieces[b].name}
         if i in classes:
@@ -239,7 +238,7 @@ def _geom(piece: Piece, **attributes: object) -> str:
 
 
 def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, object]) -> Iterator[str]:
-    """A body with its joints and its geoms. That of a uniform box says its mass, any other body its moments."""
+    """A body with its joints and its geoms. A uniform box is given its mass, any other body its moments of inertia."""
     alone = len(scene.bodies.names) == 1
     opening = element("body", name=name, pos=in_space(scene.bodies.rest[j]))
     yield opening.removesuffix("/>") + ">"
@@ -265,6 +264,6 @@ def _is_uniform_box(scene: Scene, j: int, own: list[Piece]) -> bool:
     if len(own) > 1 or box is None or np.abs(box[0]).max() > 1e-12 * box[1].max():
         return False
     square = box[1] ** 2
-    even = scene.bodies.mass[j] / 3 * np.array([square[1] + square[2], square[0] + square[2], square[0] + square[1]])
+    even = scene.bodies.mass[j] / 3 * (square.sum() - square)
     held = np.array([scene.bodies.inertia[j]]) if scene.freedom == PLANE else np.diagonal(scene.bodies.inertia[j])
     return bool(np.allclose(held, even[1:2] if scene.freedom == PLANE else even, rtol=1e-9))

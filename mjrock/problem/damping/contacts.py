@@ -1,18 +1,24 @@
-"""The interfaces of one wall: its base and, where it has one, its side stop."""
+"""Compliant interfaces of one wall: its base and, where it has one, its side stop.
+
+An interface has a stiffness per area and a damping ratio, in physical units, and is laid out as contact lines.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, NamedTuple
+from functools import cached_property
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from ...quantities import (
+    Array,
     Implausible,
     Within,
     is_iterable,
+    keep_declared,
     require_kind,
     require_real,
     require_text,
@@ -22,26 +28,145 @@ from ...quantities import (
 )
 from ..wall.block import Block
 from ..wall.case import Case
-from .interface import Interface, PointCount, reference_frequency
-from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named, rebound_over_uplift
+from .law import CALIBRATED, CALIBRATED_BED, HIGHEST_XI, Amplitude, DampingLaw, law_named, rebound_over_uplift
 from .restitution import ANOTHER_WALL, Restitution
 
 HOLDS_NEARLY = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
+PointCount = Annotated[int, Within(2, 1000, name="contact points", whole=True)]
+"""Contact lines of a face."""
+OfInterface = Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")]
+"""Stiffness of an interface."""
 OfBase = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
 """Stiffness of the base of a wall."""
 OfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")]
 """Stiffness of the side stop of a wall, None without one."""
 Rubbing = Annotated[float | None, Within(0, 10)]
 """Coefficient of friction of an interface, see `Interface`."""
-AnyLaw = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
+OwnLaw = Callable[[Block, Restitution, float], tuple[float, float]]
+"""A law of the user, called as law(wall, e, k_base) to give the damping ratios of base and side."""
+AnyLaw = DampingLaw | OwnLaw
 
 
-def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
+@within_ranges
+def contact_lines(face: float, points: PointCount) -> tuple[Array, Array]:
+    """Positions along a face of width `face` [m] from its centre [m], and the widths that are tributary to them [m].
+
+    The lines are evenly spaced from edge to edge, so that the outer two have half the tributary width of the others.
+    Two lines are the corners with half the face each. Many lines approach a uniform bed.
+    """
+    positions = np.linspace(-face / 2, face / 2, points)
+    widths = np.full(points, face / (points - 1))
+    widths[[0, -1]] /= 2
+    return positions, widths
+
+
+@within_ranges
+def reference_frequency(wall: Block, k_n: OfInterface, points: int = 2) -> float:
+    """The frequency omega [rad/s] that turns a damping ratio into a dashpot, c_i = (2 xi / omega) k_i.
+
+    omega = sqrt(K_rot / I_base): the wall rocking in full contact about the centre of its base, K_rot = sum k_i x_i^2
+    over the contact points of the base and I_base = m (b^2 + h^2)/3 + m h^2. Base and side dashpots share it.
+
+    The paper prints xi as a fraction of critical damping and does not print the frequency. This reading is inferred
+    from the magnitude of the loss. On the paper's Figure 3 wall (xi_b = 5.3 %, targets e_2s = 0.970 and |e_1s| =
+    0.442), `solve_compliant` returns with this omega 0.970 and 0.558 for two corner lines (30.1 rad/s), and 0.977 and
+    0.485 for a bed of 32 (17.4 rad/s). With the vertical bounce sqrt(k_n A / m) (244 rad/s) hardly anything is lost
+    against the side: 0.983 and 0.920 on corner lines, 0.998 and 0.939 on the bed. `scripts/paper/layouts.py` prints
+    these figures. A frequency of the side itself would damp some 26 times too little.
+
+    Args:
+        wall: the wall.
+        k_n: interface stiffness of the base [N/m3], 1e4 to 1e14.
+        points: contact lines of the base, 2 to 1000.
+    """
+    require_kind("wall", wall, Block)
+    positions, widths = contact_lines(2 * wall.half_base, points)
+    K_rot = float(np.sum(k_n * widths * wall.base_length * positions**2))
+    return math.sqrt(K_rot / base_inertia(wall))
+
+
+def base_inertia(wall: Block) -> float:
+    """Moment of inertia of a wall about the middle of its base [kg m2]."""
+    return wall.inertia + wall.mass * math.hypot(wall.centroid_height, wall.centroid_offset) ** 2
+
+
+@dataclass(frozen=True)
+class Interface:
+    """One compliant face: a bed of unilateral springs and dashpots lumped at contact lines by tributary area.
+
+    Args:
+        k_n: normal interface stiffness [N/m3], 1e4 to 1e14.
+        xi: damping ratio [-] as a fraction, 0 to 100.
+        face: width of the face across the lines: the thickness for the base, the height for the side stop [m],
+            1e-3 to 1000.
+        length: length of the lines along the wall [m], 1e-3 to 1000.
+        frequency: the frequency of the damping ratio, see `reference_frequency` [rad/s], 1e-3 to 1e9.
+        points: number of contact lines, 2 to 1000.
+        friction: coefficient of friction of every line [-], 0 to 10, or None. A base of None holds: it does not slide,
+            as rocking theory has it. A side of None is smooth.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    k_n: OfInterface
+    xi: Annotated[float, Within(0, 100, name="damping ratio xi")]
+    face: Annotated[float, Within(1e-3, 1000, "m")]
+    length: Annotated[float, Within(1e-3, 1000, "m")]
+    frequency: Annotated[float, Within(1e-3, 1e9, "rad/s", "reference frequency")]
+    points: PointCount = 2
+    friction: Rubbing = None
+
+    def __post_init__(self) -> None:
+        keep_declared(self)
+        if self.xi > HIGHEST_XI * (1 + 1e-9):
+            warn_of(
+                f"xi = {self.xi:g} is {self.xi:.0%} of critical, and the laws end at {HIGHEST_XI:.0%}; "
+                "damping ratios are fractions",
+                Implausible,
+            )
+
+    def __repr__(self) -> str:
+        held = "" if self.friction is None else f", friction {self.friction:.3g}"
+        size = f"{self.face:.6g} x {self.length:.6g} m, {self.points} lines"
+        return f"<Interface k_n = {self.k_n:.4g} N/m3, xi = {self.xi:.4g}{held}: {size}, {self.frequency:.4g} rad/s>"
+
+    @cached_property
+    def _lines(self) -> tuple[Array, Array]:
+        return contact_lines(self.face, self.points)
+
+    @property
+    def positions(self) -> Array:
+        """Positions of the contact lines along the face, from its centre [m], shape (points,)."""
+        return self._lines[0]
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """k_i, the interface stiffness times the tributary area [N/m], shape (points,)."""
+        return self.k_n * self.length * self._lines[1]
+
+    @cached_property
+    def damping(self) -> Array:
+        """c_i = (2 xi / omega) k_i [N s/m], shape (points,)."""
+        return self.retardation * self.stiffness
+
+    @property
+    def retardation(self) -> float:
+        """c_i / k_i = 2 xi / omega, the same at every line [s]."""
+        return 2 * self.xi / self.frequency
+
+    @cached_property
+    def K_rot(self) -> float:
+        """Rotational stiffness about the centre of the face in full contact, sum k_i x_i^2 [N m/rad]."""
+        return float(np.sum(self.stiffness * self.positions**2))
+
+
+def _predicted(law: OwnLaw, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """The two damping ratios of a law of the user, or a TypeError that names the law."""
     asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
-        given = law(wall, e, k_base)
+        given: object = law(wall, e, k_base)
     except TypeError as error:
         raise TypeError(f"{asked}: {error}") from None
     if not is_iterable(given) or not isinstance(given, Sequence | np.ndarray) or len(given) != 2:
@@ -64,7 +189,7 @@ def required_law(law: AnyLaw | str | None, points: int = 2) -> AnyLaw:
 def _doubts(
     law: DampingLaw, points: int, k_side: float | None, friction: float | None, side_friction: float | None
 ) -> Iterator[str]:
-    """What speaks against a law for contacts that it was not fitted for, in words."""
+    """Why a law does not hold for contacts that it was not fitted for, in words."""
     if law.points not in (None, points):
         yield f"{law.name} was fitted for {law.points} contact lines a face, not {points}"
     if law.points is None and k_side is not None:
@@ -87,7 +212,7 @@ class Contacts:
         base: the base, over the thickness of the wall.
         side: the side stop over the whole inner face, or None for a wall that never meets one.
         law: name of the damping law, recorded in the generated model.
-        stop_top: height that the side stop reaches for which the damping was chosen [m]; None does not say.
+        stop_top: height that the side stop reaches for which the damping was chosen [m]; None if unknown.
     """
 
     base: Interface
@@ -162,17 +287,17 @@ class Contacts:
         k_side: OfSide = None,
         law: AnyLaw | str | None = None,
         points: PointCount = 2,
-        amplitude: Annotated[float, Within(1e-3, 1, name="amplitude theta_0/alpha")] = 0.5,
+        amplitude: Amplitude = 0.5,
         friction: Rubbing = None,
         side_friction: Rubbing = None,
     ) -> Contacts:
         """Interfaces of `wall` whose damping ratios the law predicts, in the chosen layout.
 
-        By default the base holds and the side is smooth, which is what the laws were fitted for.
+        By default the base holds and the side is smooth. The laws were fitted for such walls.
         `mjrock.matched_contacts` finds the damping for another friction.
 
         Args:
-            wall, e: the wall, and the restitution that is asked for.
+            wall, e: the wall, and the restitution of the interfaces.
             k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
             law: a law or its name; None takes CALIBRATED for two lines and CALIBRATED_BED for more. A law of your own
                 is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` and `amplitude` too.
@@ -186,7 +311,7 @@ class Contacts:
         Warns:
             UserWarning: what the law warns of; where it was fitted for another number of lines or another friction; and
                 one-sided where it was fitted in another code, as PUBLISHED was, or where the base is so soft that the
-                rebound that `e` asks for lifts no edge.
+                rebound of `e` lifts no edge.
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)

@@ -1,4 +1,9 @@
-"""The damping law: the damping ratio that loses in a compliant contact what restitution loses at once."""
+"""The damping law: the damping ratio that loses in a compliant contact what restitution loses at once.
+
+`Groups` are the dimensionless numbers of a wall on its interfaces that a damping ratio can depend on. `PowerLaw` is the
+formula of the paper (Eqs. 5-6). `CornerLaw`, `BedLaw` and `SideLaw` are those of the laws that are calibrated in
+MuJoCo. A `DampingLaw` has one formula for the base and one for the side.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +13,230 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Protocol, Self
+
+import numpy as np
 
 from ...files import require_file, write_text
-from ...quantities import keep, require_array, require_kind, require_path, require_stiffness, require_within, warn_of
+from ...quantities import (
+    Array,
+    Stiffness,
+    Within,
+    keep,
+    require_array,
+    require_kind,
+    require_one_of,
+    require_path,
+    require_real,
+    require_within,
+    short_repr,
+    warn_of,
+    within_ranges,
+)
 from ..wall.block import Block
-from .forms import FORMS, Form, Groups, PowerLaw
 from .restitution import Restitution
+
+Numbers = float | Array
+"""A number, or one for each of many walls."""
+
+
+@dataclass(frozen=True)
+class Groups:
+    """The dimensionless numbers that the damping ratios of a wall on its interfaces can depend on.
+
+    They are floats, or arrays of one shape. Two rigid walls of the same h/b and the same k_n / (density g) differ in
+    their scale alone, because the dashpots of both are proportional to the springs through the reference frequency.
+    Size and density therefore do not appear on their own.
+
+    Args:
+        slenderness: h/b [-].
+        k_n: interface stiffness of the base [N/m3].
+        softness: rotation at which an edge of the wall at rest decompresses, over alpha [-]. It is
+            2 (h/b) density g / (k_n alpha), the share of the way to overturning in which the wall does not rock yet.
+        work: softness * 0.75 / (phi (2 - phi)) with phi = theta_0/alpha of the release [-]: the work of the weight on
+            the springs of the base, over the energy that arrives. For a release at alpha/2 it is the softness itself.
+        side_ratio: interface stiffness of the side over that of the base [-].
+        housner: -ln e_2s of Eq. 2, the loss by conservation of angular momentum [-].
+        base_loss: -ln e_2s, the required loss of an impact on the base [-].
+        side_loss: -ln |e_side|, the required loss of an impact on the side stop [-].
+    """
+
+    slenderness: Numbers
+    k_n: Numbers
+    softness: Numbers
+    work: Numbers
+    side_ratio: Numbers
+    housner: Numbers
+    base_loss: Numbers
+    side_loss: Numbers
+
+    @classmethod
+    def of(cls, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5) -> Groups:
+        """The groups of `wall` on a base of `k_n` [N/m3] against a side of `k_side`, the same where it is None."""
+        softness = wall.weight / (2 * k_n * wall.base_length * wall.half_base**2) / wall.alpha
+        return cls(
+            slenderness=wall.slenderness,
+            k_n=k_n,
+            softness=softness,
+            work=softness * 0.75 / (amplitude * (2 - amplitude)),
+            side_ratio=1.0 if k_side is None else k_side / k_n,
+            housner=-math.log(Restitution.from_geometry(wall).base),
+            base_loss=-math.log(e.base),
+            side_loss=-math.log(abs(e.side)),
+        )
+
+    @classmethod
+    def stack(cls, groups: list[Groups]) -> Groups:
+        """Many as one, whose fields are arrays of shape (n,)."""
+        return cls(*np.array([[getattr(group, name.name) for group in groups] for name in fields(cls)], dtype=float))
+
+
+class Form(Protocol):
+    """A formula for one damping ratio: a frozen dataclass of its coefficients, the last of which is its R2."""
+
+    @property
+    def r_squared(self) -> float:
+        """R2 of the damping ratio over the matched simulations that it was fitted to [-]."""
+
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
+        """The damping ratio [-] that loses `loss` = -ln|e| in the impact of this formula; floats or arrays."""
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """xi = -coefficient (h/b)^slenderness_exponent k_n^stiffness_exponent ln|e|, with k_n of the base in N/m3."""
+
+    coefficient: float
+    slenderness_exponent: float
+    stiffness_exponent: float
+    r_squared: float
+
+    __repr__ = short_repr
+
+    def __post_init__(self) -> None:
+        keep(self, **{part.name: require_real(part.name, getattr(self, part.name)) for part in fields(self)})
+
+    def __call__(self, slenderness: float, k_n: float, e: float) -> float:
+        """The damping ratio [-]; `e` is the restitution of this law's own impact."""
+        slenderness, k_n, e = require_real("slenderness", slenderness), require_real("k_n", k_n), require_real("e", e)
+        factor = slenderness**self.slenderness_exponent * k_n**self.stiffness_exponent
+        return float(-self.coefficient * factor * math.log(abs(e)))
+
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
+        """As `Form.xi`."""
+        factor = groups.slenderness**self.slenderness_exponent * groups.k_n**self.stiffness_exponent
+        return self.coefficient * factor * loss
+
+
+@dataclass(frozen=True)
+class CornerLaw:
+    """The base of a wall on two corner lines.
+
+    With L = -ln e_2s the loss asked for, L_H that of Eq. 2 and w = work, the loss goes from an undamped
+    bounce to a plastic touch-down as the damping grows:
+
+        L = L_f - (L_f - L_u) exp(-xi / xi_0)        xi = xi_0 ln[(L_f - L_u) / (L_f - L)]
+        L_f = L_H + floor w                          plastic: Housner's loss, and the work of the weight on the springs
+        L_u = max(0, L_H - bounce sqrt(w) b/h)       undamped: what the bounce off the springs gives back
+        xi_0 = scale w^work_exponent (h/b)^slenderness_exponent (1 + growth w)
+
+    No damping loses more than L_f or less than L_u: a restitution beyond them is out of reach.
+    """
+
+    floor: float
+    bounce: float
+    scale: float
+    work_exponent: float
+    slenderness_exponent: float
+    growth: float
+    r_squared: float = math.nan
+
+    def _parts(self, groups: Groups) -> tuple[Numbers, Numbers, Numbers]:
+        w = groups.work
+        most = groups.housner + self.floor * w
+        least = np.maximum(0.0, groups.housner - self.bounce * np.sqrt(w) / groups.slenderness)
+        steepness = w**self.work_exponent * groups.slenderness**self.slenderness_exponent
+        return most, least, self.scale * steepness * (1 + self.growth * w)
+
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
+        """As `Form.xi`; infinite where no damping loses as much, zero or less where none loses as little."""
+        most, least, scale = self._parts(groups)
+        left = np.maximum(0.0, most - loss) / (most - least)
+        with np.errstate(divide="ignore"):
+            return -scale * np.log(left)
+
+    def loss(self, groups: Groups, xi: Numbers) -> Numbers:
+        """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
+        most, least, scale = self._parts(groups)
+        return most - (most - least) * np.exp(-xi / scale)
+
+
+@dataclass(frozen=True)
+class BedLaw:
+    """The base of a wall on a bed of many lines.
+
+    The lines close one after the other. An early one is damped while the wall still turns about a late one. The loss
+    therefore grows with the logarithm of the damping, and for small losses in proportion to it, as in the paper. With
+    L = -ln e_2s, L_H that of Eq. 2 and w = work:
+
+        L = A ln(1 + xi / xi_0)        xi = xi_0 (e_2s^(-1/A) - 1)
+        A = inertia L_H + weight w
+        xi_0 = scale w^exponent
+    """
+
+    inertia: float
+    weight: float
+    scale: float
+    exponent: float
+    r_squared: float = math.nan
+
+    def _parts(self, groups: Groups) -> tuple[Numbers, Numbers]:
+        w = groups.work
+        return self.inertia * groups.housner + self.weight * w, self.scale * w**self.exponent
+
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
+        """As `Form.xi`."""
+        amplitude, scale = self._parts(groups)
+        return scale * np.expm1(np.minimum(loss / amplitude, 50.0))
+
+    def loss(self, groups: Groups, xi: Numbers) -> Numbers:
+        """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
+        amplitude, scale = self._parts(groups)
+        return amplitude * np.log1p(xi / scale)
+
+
+@dataclass(frozen=True)
+class SideLaw:
+    """The side stop, once the base has the damping of its own law.
+
+    The top of the wall hits the stop like a mass on a spring and a dashpot. Its damping ratio is
+    zeta = xi sqrt(2 k_side / k_base) (h/b)^1.5, where the factor of xi is the rocking frequency against the stop over
+    that on the base. The base takes little energy in the quick sequence base, side, base, so that the stop has to lose
+    nearly all of L = -ln|e_1s|. With w = work:
+
+        xi = scale (h/b)^slenderness_exponent (k_side / k_base)^ratio_exponent L (1 + curvature L) (1 + softening w L)
+        L = side_loss + base_share base_loss         -ln|e_1s| itself has base_share = 2
+    """
+
+    scale: float
+    slenderness_exponent: float
+    ratio_exponent: float
+    base_share: float
+    curvature: float
+    softening: float
+    r_squared: float = math.nan
+
+    def xi(self, groups: Groups, loss: Numbers) -> Numbers:
+        """As `Form.xi`."""
+        total = loss + self.base_share * groups.base_loss
+        factor = groups.slenderness**self.slenderness_exponent * groups.side_ratio**self.ratio_exponent
+        curve = (1 + self.curvature * total) * (1 + self.softening * groups.work * total)
+        return self.scale * factor * total * curve
+
+
+FORMS: dict[str, type] = {form.__name__: form for form in (PowerLaw, CornerLaw, BedLaw, SideLaw)}
+"""The formulas that a file may name."""
+
 
 LEAST_XI, HIGHEST_XI = 1e-3, 0.3
 """Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
@@ -26,6 +248,10 @@ POSITIVE = ("coefficient", "scale", "floor", "bounce", "inertia", "weight")
 """Coefficients of the formulas that cannot be negative."""
 DENSITY = 2000.0
 """Density of the walls that laws are fitted on [kg/m3]."""
+StiffnessOfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3")]
+"""Stiffness of a side stop, None for that of the base."""
+Amplitude = Annotated[float, Within(1e-3, 1, name="amplitude theta_0/alpha")]
+"""Rotation over alpha from which a wall is released."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +259,10 @@ class DampingLaw:
     """A formula for the base and one for the side, their source, and the ranges they were fitted over.
 
     Calling a law gives `(xi_base, xi_side)` as fractions, and warns (UserWarning) outside the fitted ranges, or where
-    no damping of the base loses as much or as little as is asked for. It then gives the closest damping.
+    no damping of the base loses as much or as little as is required. It then gives the closest damping.
 
     Args:
-        name: what a generated model records.
+        name: its name, which generated models record.
         source: where the coefficients come from.
         base: formula of the base, of e_2s.
         side: formula of the side stop, of e_side.
@@ -44,7 +270,7 @@ class DampingLaw:
         slenderness_range: h/b covered by the fit [-].
         k_n_range: interface stiffnesses covered by the fit [N/m3].
         side_range: |e_side| covered by the fit [-].
-        points: contact lines a face that the law was fitted for, or None where the source does not say.
+        points: contact lines a face that the law was fitted for, or None where the source does not state them.
         scalable: whether size and density enter through dimensionless groups alone. `R_range` is then no limit, and
             `k_n_range` holds for walls of 2000 kg/m3 and goes with the density.
         runs: matched simulations behind base and side.
@@ -86,31 +312,28 @@ class DampingLaw:
         (low, high), (softest, stiffest) = self.slenderness_range, self.k_n_range
         return f"<DampingLaw {self.name}: h/b {low:g} to {high:g}, k_n {softest:g} to {stiffest:g} N/m3{lines}>"
 
+    @within_ranges
     def __call__(
-        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+        self, wall: Block, e: Restitution, k_n: Stiffness, k_side: StiffnessOfSide = None, amplitude: Amplitude = 0.5
     ) -> tuple[float, float]:
         """Damping ratios of base and side [-]; the published law depends on neither `k_side` nor `amplitude`.
 
         Args:
             wall: the wall.
-            e: the restitution asked for.
-            k_n: interface stiffness of the base [N/m3].
-            k_side: interface stiffness of the side [N/m3]; that of the base where it is None.
-            amplitude: rotation over alpha that the wall comes from [-], in (0, 1].
+            e: the required restitution.
+            k_n: interface stiffness of the base [N/m3], 1e4 to 1e14.
+            k_side: interface stiffness of the side [N/m3], 1e4 to 1e14; that of the base where it is None.
+            amplitude: rotation over alpha that the wall comes from [-], 1e-3 to 1.
 
         Raises:
             ValueError: for a value outside its range, or if `e.side` is zero (its logarithm has no value).
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
-        k_n = require_stiffness("k_n", k_n)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
-        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         groups = Groups.of(wall, e, k_n, k_side, amplitude)
-        outside = self._outside(wall, e, k_n, k_side)
-        if outside:
+        if outside := self._outside(wall, e, k_n, k_side):
             warn_of(f"{self.name}: outside the range of the fit: {'; '.join(outside)}")
         xi_base = float(self.base.xi(groups, groups.base_loss))
         if self.scalable:
@@ -123,34 +346,44 @@ class DampingLaw:
             xi_base = min(max(xi_base, LEAST_XI), HIGHEST_XI)
         return xi_base, float(self.side.xi(groups, groups.side_loss))
 
-    def reach(self, wall: Block, k_n: float, amplitude: float = 0.5) -> tuple[float, float]:
-        """The lowest and the highest e_2s that a base of `k_n` [N/m3] can be given, as far as the law knows.
+    @within_ranges
+    def reach(self, wall: Block, k_n: Stiffness, amplitude: Amplitude = 0.5) -> tuple[float, float]:
+        """The lowest and the highest e_2s that a base can have by the law [-].
 
-        They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
+        They belong to damping ratios of 0.3 and 0.001; the published law has no limit.
+
+        Args:
+            wall, k_n, amplitude: as those of `__call__`.
+
+        Raises:
+            ValueError: for a value outside its range.
         """
         require_kind("wall", wall, Block)
-        k_n = require_stiffness("k_n", k_n)
-        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         loss = getattr(self.base, "loss", None)
         if loss is None:
             return 0.0, 1.0
         groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
         return math.exp(-float(loss(groups, HIGHEST_XI))), math.exp(-float(loss(groups, LEAST_XI)))
 
+    @within_ranges
     def covers(
-        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+        self, wall: Block, e: Restitution, k_n: Stiffness, k_side: StiffnessOfSide = None, amplitude: Amplitude = 0.5
     ) -> bool:
-        """Whether the law can be expected to give what is asked for.
+        """Whether the law can be expected to give the required restitution.
 
         It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
-        least MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE times as
-        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base. The
-        arguments are those of a call.
+        least REACH_MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE
+        times as far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the
+        base.
+
+        Args:
+            wall, e, k_n, k_side, amplitude: as those of `__call__`.
+
+        Raises:
+            ValueError: for a value outside its range.
         """
         require_kind("e", e, Restitution)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         low, high = self.reach(wall, k_n, amplitude)
-        k_n, amplitude = float(k_n), float(amplitude)
         margin = REACH_MARGIN * (high - low)
         return (
             not self._outside(wall, e, k_n, k_side)
@@ -207,13 +440,10 @@ class DampingLaw:
         path = require_path("path", path)
         try:
             text = tomllib.loads(require_file(path).read_text(encoding="utf-8"))
-            values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
+            values = text | {key: tuple(value) for key, value in text.items() if isinstance(value, list)}
             for part in ("base", "side"):
                 given = dict(text[part])
-                name = given.pop("form")
-                if name not in FORMS:
-                    raise ValueError(f"form = {name!r} is not one of {', '.join(FORMS)}")
-                values[part] = FORMS[name](**given)
+                values[part] = FORMS[require_one_of("form", given.pop("form"), FORMS)](**given)
             return cls(**values)
         except KeyError as error:
             raise ValueError(f"{path} is not a damping law: {error} is missing") from None
@@ -224,8 +454,8 @@ class DampingLaw:
 def rebound_over_uplift(wall: Block, e: Restitution, k_n: float, amplitude: float) -> float:
     """Rotation of the first rebound from a side stop over that at which an edge of the wall lifts off its base [-].
 
-    The wall is released from `amplitude` theta_0/alpha on a base of `k_n` [N/m3], and rebounds as `e` says. Below 1
-    that rebound lifts no edge: it is an elastic motion of the base. One that lifts an edge is larger than `e` says.
+    The wall is released from `amplitude` theta_0/alpha on a base of `k_n` [N/m3], and rebounds with `e`. Below 1
+    that rebound lifts no edge: it is an elastic motion of the base. One that lifts an edge is larger than that of `e`.
     """
     released = float(wall.potential_energy(amplitude * wall.alpha))
     rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha

@@ -1,4 +1,4 @@
-"""A contact from what is measured: heights of bounces, times of contact, or the elasticity of a round body.
+"""A contact from measurements: heights of bounces, times of contact, or the elasticity of a round body.
 
 A body that is dropped from h and bounces to h' has e = sqrt(h' / h), gravity counted, because it passes the surface
 with sqrt(2 g h) and sqrt(2 g h'). Its contact lasts for a time T, which gives omega = D(xi, g / (omega v)) / T with the
@@ -11,16 +11,15 @@ together. A linear contact has its indentation under one force, or lasts as long
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import GRAVITY, Array, Within, is_iterable, require_row, short_repr, shown, within_ranges
-from .falling import MOST_PULL, falling_damping, falling_rebound
-from .rebound import rebound_damping
+from .rebound import MOST_PULL, falling_damping, falling_rebound, rebound_damping
 
 Mass = Annotated[float | None, Within(1e-12, 1e12, "kg")]
 Modulus = Annotated[float, Within(1, 1e15, "Pa")]
@@ -77,7 +76,7 @@ def measured_contact(
 
     Raises:
         TypeError, ValueError: for a value outside its range, fewer than two heights in a drop, a bounce that is higher
-            than what it came from, or times without a mass.
+            than the height before it, or times without a mass.
     """
     ratios, release = _ratios(heights)
     e, low, high = _interval(ratios, confidence, 0.0, 1.0)
@@ -145,17 +144,15 @@ def _compliance(E: Modulus, nu: Ratio) -> float:
 
 def _ratios(heights: object) -> tuple[Array, float]:
     """e of every bounce [-], and the mean height of the releases [m]."""
-    nested = isinstance(heights, list | tuple) and any(is_iterable(row) for row in heights)
-    nested = nested or (isinstance(heights, np.ndarray) and heights.ndim > 1)
-    several: Any = heights if nested else [heights]
+    several: Iterable[object] = [heights]
+    if isinstance(heights, list | tuple | np.ndarray) and any(map(is_iterable, heights)):
+        several = heights
     drops = [require_row("heights", row, "height") for row in several]
     for drop in drops:
         if len(drop) < 2:
             raise ValueError(f"heights of a drop are {drop.tolist()}; a release and at least one bounce are needed")
         if drop.min() <= 0 or drop.max() > 1e6 or (np.diff(drop) > 0).any():
-            raise ValueError(
-                f"heights = {drop.tolist()} m have to be positive, and no bounce higher than the one before"
-            )
+            raise ValueError(f"heights = {drop.tolist()} m have to be positive, and no bounce higher than the last")
     ratios = np.concatenate([np.sqrt(drop[1:] / drop[:-1]) for drop in drops])
     return ratios, float(np.mean([drop[0] for drop in drops]))
 

@@ -36,7 +36,7 @@ class Restitution:
         base: e_2s, one impact on the base, two-sided rocking [-], in (0, 1].
         side: e_side, the impact on the side stop [-], in [-1, 1]; negative where the wall rebounds.
         made_for: alpha of the wall [rad] and the share of its height that the side stop reaches [-], where the values
-            come from the geometry; None does not say.
+            come from the geometry; None if unknown.
 
     Raises:
         ValueError: for a value outside its range.
@@ -153,14 +153,12 @@ class Restitution:
         This is how Table 2 of the paper turns its experiments into damping ratios.
 
         Raises:
-            ValueError: if the measured value asks more of the side than a perfect rebound.
+            ValueError: if the measured value requires more than a perfect rebound of the side.
         """
         lumped = require_real("lumped restitution", lumped)
         base = cls.from_geometry(wall).base
         if not -(base**2) <= lumped < 0:
-            raise ValueError(
-                f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0 for this wall"
-            )
+            raise ValueError(f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0")
         return cls(base=base, side=lumped / base**2)
 
 

@@ -25,19 +25,23 @@ from .records import (
     COUNT,
     DECIMAL,
     FINEST,
+    SPREADSHEETS,
     Parse,
     Trace,
+    Wanted,
+    all_numbers,
     binary_kind,
     factor_of,
     in_message,
-    number,
     numbers,
+    parse_table,
+    require_visible,
     samples,
     stated_units,
     step,
+    table_lines,
     value_of,
 )
-from .tables import SPREADSHEETS, Wanted, parse_table, table_lines
 
 AT2_UNIT = re.compile(
     r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
@@ -77,6 +81,11 @@ GEONET_STEP = re.compile(rf"(?:.*\bat\s+{DECIMAL}\s*s(?:ec)?\s+intervals|.*inter
 GEONET_COUNT = re.compile(rf"Number of points\s+{COUNT}\b.*", AS_ASCII)
 GEONET_HEAD = 26
 """Lines of the header of a component of GeoNet: 16 of text and 10 of numbers."""
+SEISMOGRAM = {
+    "NETWORK": "network", "STATION_CODE": "station", "LOCATION": "location", "STREAM": "channel",
+    "DATE_TIME_FIRST_SAMPLE": "starttime",
+}  # fmt: skip
+"""Fields of the header of a seismogram, as ObsPy names them."""
 SMC_HEAD = 27
 """Lines of the header of an SMC file: 11 of text, 6 of whole numbers and 10 of real ones; then its comments."""
 
@@ -106,9 +115,7 @@ def parse_esm(lines: list[str]) -> list[Trace]:
     if not re.fullmatch(COUNT, head["NDATA"]):
         raise ValueError(f"NDATA is {in_message(head['NDATA'])}; it has to be the number of samples")
     place = list(head).index("SAMPLING_INTERVAL_S") + 1
-    dt = require_within(
-        f"line {place}: time step dt", number(head["SAMPLING_INTERVAL_S"], place), FINEST, COARSEST, "s"
-    )
+    dt = step(head["SAMPLING_INTERVAL_S"], place)
     values = samples(lines, ESM_LINES, int(head["NDATA"]), list(head).index("NDATA") + 1)
     return [Trace(ESM_UNITS[unit] * values, dt, head)]
 
@@ -116,7 +123,7 @@ def parse_esm(lines: list[str]) -> list[Trace]:
 def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
     """An ESM file of accelerations [m/s2] every dt seconds, which states its own unit, step, and number of samples.
 
-    A ValueError says where the header has a field that such a file cannot have.
+    A ValueError is raised for a field of the header that such a file cannot have.
     """
     stated = {
         "SAMPLING_INTERVAL_S": repr(dt),
@@ -132,9 +139,7 @@ def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
     lines = [f"{name}: {value}" for name, value in fields.items()]
     fit = all(ESM_FIELD.fullmatch(line) and not BREAK.search(line) for line in lines)
     if len(lines) != ESM_LINES or not fit or any(name != name.upper() for name in fields):
-        raise ValueError(
-            f"header = {in_message(str(dict(header)))}: at most 58 fields of one line, named as in an ESM file"
-        )
+        raise ValueError(f"header = {in_message(str(dict(header)))}: at most 58 fields of one line, as in an ESM file")
     return "\n".join([*lines, *(repr(value) for value in (accel / ESM_UNITS["cm/s^2"]).tolist())]) + "\n"
 
 
@@ -156,10 +161,8 @@ def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
         instead = f"line 2 is {in_message(lines[1])}" if len(lines) > 1 else "1 line"
-        raise ValueError(
-            f"{instead}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
-        )
-    numbers(head[3] or "", 2)  # what the other columns say is not used
+        raise ValueError(f"{instead}: not the plain text of a SAC record, whose line 2 begins with count and dt")
+    numbers(head[3] or "", 2)  # the other columns are not used
     return [Trace(factor_of(unit) * samples(lines, 2, int(head[1])), step(head[2], 2), {})]
 
 
@@ -213,29 +216,24 @@ def channels(lines: Sequence[str]) -> Iterator[Channel]:
     have that width.
     """
     text: list[str] = []
-    i = 0
-    while i < len(lines):
-        if hidden := BREAK.search(lines[i]):
-            raise ValueError(f"line {i + 1} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
-        head = SAMPLE_COUNT.fullmatch(lines[i])
-        text += [lines[i]] if re.search("[a-zA-Z]{2}", lines[i]) else []
-        i += 1
-        if head is None:
-            continue
-        values: list[float] = []
-        place, stated = i, WIDTH.search(lines[i - 1])
-        width = int(stated[1]) if stated else 0
-        while i < len(lines) and len(values) < int(head[1]):
-            row = _columns(lines[i], width) if width else lines[i]
-            values += numbers(row, i + 1)
-            i += 1
-        if len(values) != int(head[1]):
-            raise ValueError(f"{len(values)} samples; line {place} states {head[1]}")
-        yield Channel(place, "\n".join(text), np.array(values))
-        text = []
+    rest = iter(enumerate(lines, 1))
+    for place, line in rest:
+        require_visible(line, place)
+        text += [line] if re.search("[a-zA-Z]{2}", line) else []
+        if head := SAMPLE_COUNT.fullmatch(line):
+            values: list[float] = []
+            while len(values) < int(head[1]) and (row := next(rest, None)):
+                values += numbers(_columns(row[1], line), row[0])
+            if len(values) != int(head[1]):
+                raise ValueError(f"{len(values)} samples; line {place} states {head[1]}")
+            yield Channel(place, "\n".join(text), np.array(values))
+            text = []
 
 
-def _columns(line: str, width: int) -> str:
+def _columns(line: str, announced: str) -> str:
+    """A line whose columns are set apart, where the line that announces it states their width."""
+    stated = WIDTH.search(announced)
+    width = int(stated[1]) if stated else 0
     return " ".join(line[k : k + width] for k in range(0, len(line.rstrip()), width)) if width else line
 
 
@@ -265,9 +263,8 @@ def _cosmos_step(lines: Sequence[str], place: int) -> float:
     heads = [i for i in range(place) if re.match(r"\s*\d+ Real-header values follow", lines[i], AS_ASCII)]
     if not heads:
         raise ValueError(f"line {place} states no time step, and no header of real numbers stands before it")
-    width = WIDTH.search(lines[heads[-1]])
     rows = itertools.takewhile(lambda i: not re.search("[|a-zA-Z]", lines[i]), range(heads[-1] + 1, place))
-    values = [x for i in rows for x in numbers(_columns(lines[i], int(width[1]) if width else 0), i + 1)]
+    values = [x for i in rows for x in numbers(_columns(lines[i], lines[heads[-1]]), i + 1)]
     if len(values) < 62:
         raise ValueError(f"line {heads[-1] + 1}: {len(values)} numbers follow; the 62nd is the time step [ms]")
     return values[61] / 1000
@@ -292,11 +289,9 @@ def parse_geonet(lines: list[str]) -> list[Trace]:
     In V2A velocities and displacements follow, which are passed over.
     """
     heads = [i for i, line in enumerate(lines) if re.match("(Unc|C)orrected accelerogram .*GNS", line)]
-    if not heads or heads[0] != 0:
-        raise ValueError(
-            f"line 1 is {in_message(lines[0])}: not a GeoNet file, which begins Corrected accelerogram, GNS Science"
-        )
-    return [_geonet_component(lines[: heads[k + 1]] if k + 1 < len(heads) else lines, i) for k, i in enumerate(heads)]
+    if heads[:1] != [0]:
+        raise ValueError(f"line 1 is {in_message(lines[0])}: not a GeoNet file, Corrected accelerogram, GNS Science")
+    return [_geonet_component(lines[:end], first) for first, end in itertools.pairwise([*heads, len(lines)])]
 
 
 def _geonet_component(lines: list[str], first: int) -> Trace:
@@ -310,12 +305,10 @@ def _geonet_component(lines: list[str], first: int) -> Trace:
     for place, line in enumerate(lines[first : first + 16], first + 1):
         said |= {name: (place, found) for name, pattern in patterns.items() if (found := pattern.fullmatch(line))}
     if missing := [name for name in patterns if name not in said]:
-        raise ValueError(
-            f"lines {first + 1} to {first + 16} state no {missing[0]}: not the header of a GeoNet component"
-        )
+        raise ValueError(f"lines {first + 1} to {first + 16} state no {missing[0]}: no header of a GeoNet component")
     count, (place, every) = int(said["count"][1][1]), said["step"]
     after = first + GEONET_HEAD
-    values = np.array([x for number_of, line in enumerate(lines[after:], after + 1) for x in numbers(line, number_of)])
+    values = np.array(all_numbers(lines, after))
     if len(values) not in (count, 3 * count):
         raise ValueError(
             f"{len(values)} samples from line {after + 1} on; line {said['count'][0]} states {count}, of accelerations "
@@ -329,8 +322,7 @@ def parse_smc(lines: list[str]) -> list[Trace]:
     """The record of an SMC file of the USGS: a corrected accelerogram at a stated rate, in cm/s2."""
     if len(lines) < SMC_HEAD or not re.match(r"\s*2 CORRECTED ACCELEROGRAM", lines[0], AS_ASCII):
         raise ValueError(f"line 1 is {in_message(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
-    whole = [x for i in range(11, 17) for x in numbers(lines[i], i + 1)]
-    real = [x for i in range(17, SMC_HEAD) for x in numbers(lines[i], i + 1)]
+    whole, real = all_numbers(lines, 11, 17), all_numbers(lines, 17, SMC_HEAD)
     if len(whole) != 48 or len(real) != 50:
         raise ValueError(f"lines 12 to 27 hold {len(whole)} whole and {len(real)} real numbers; they are 48 and 50")
     rate = require_within("line 18: samples a second", real[1], 1 / COARSEST, 1 / FINEST, "Hz")
@@ -347,7 +339,7 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
 
     Raises:
         ImportError: if ObsPy is missing.
-        ValueError: for a file that ObsPy does not know, a record with gaps, or no unit.
+        ValueError: for a file that ObsPy cannot read, a record with gaps, or no unit.
     """
     try:
         import obspy
@@ -365,29 +357,19 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     ids = [trace.id for trace in stream]
     if broken := [name for name in ids if ids.count(name) > 1]:
         raise ValueError(f"{broken[0]} has a gap or an overlap: {ids.count(broken[0])} pieces; one is needed")
-    return [
-        Trace(
-            factor_of(unit) * np.asarray(trace.data, dtype=float),
-            float(trace.stats.delta),
-            {
-                name: value
-                for name, value in (
-                    ("NETWORK", trace.stats.network), ("STATION_CODE", trace.stats.station),
-                    ("LOCATION", trace.stats.location), ("STREAM", trace.stats.channel),
-                    ("DATE_TIME_FIRST_SAMPLE", str(trace.stats.starttime)),
-                )
-                if value
-            },
-        )
-        for trace in stream
-    ]  # fmt: skip
+    traces = []
+    for trace in stream:
+        said = {name: str(getattr(trace.stats, field)) for name, field in SEISMOGRAM.items()}
+        header = {name: value for name, value in said.items() if value}
+        traces.append(Trace(factor_of(unit) * np.asarray(trace.data, dtype=float), float(trace.stats.delta), header))
+    return traces
 
 
 class Format(NamedTuple):
     """A format of text.
 
     Args:
-        name: what it is called.
+        name: its name.
         signs: what one of its first lines holds, and no other format's.
         parse: its parser.
     """
@@ -418,8 +400,8 @@ SEISMOLOGY = re.compile(r"TIMESERIES |WID[12] |BEGIN GSE2")
 
 
 def recognised(path: Path, unit: str | float | None) -> list[Trace]:
-    """The traces of a file of any format, which its first lines tell; of a table whose header states its step and unit;
-    and of a file of seismology by ObsPy."""
+    """The traces of a file: of a format that its first lines show, of a table whose header states its step and unit, or
+    of a file of seismology by ObsPy."""
     start = path.read_bytes()[:4096]
     kind = None if path.suffix.lower() in SPREADSHEETS or start.startswith(UTF_16) else binary_kind(start)
     if kind and (kind != BINARY or importlib.util.find_spec("obspy")):

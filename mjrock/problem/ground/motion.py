@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 import numpy as np
 import scipy
@@ -23,20 +23,20 @@ from ...quantities import (
     keep,
     require_flag,
     require_kind,
+    require_one_of,
     require_path,
     require_reals,
     require_size,
     require_whole,
     require_within,
+    shown,
     spelt,
     warn_of,
     within_ranges,
 )
-from .correction import integral, within_band, without_baseline
 from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
 from .oscillator import building_modes, oscillator_steps, total_acceleration
-from .records import COARSEST, FINEST, Parse, Trace, checked_record, read, text_lines
-from .tables import Wanted, parse_table, table_lines
+from .records import COARSEST, FINEST, Parse, Trace, Wanted, checked_record, read, table_traces, text_lines
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
@@ -46,8 +46,14 @@ DRIFT = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
 """Fields of a header that name its record."""
-LARGEST_PULSE = 1e4
-"""Bound of the amplitude of a pulse [m/s2]."""
+Amplitude = Annotated[float, Within(-1e4, 1e4, "m/s2")]
+"""Largest acceleration of a pulse, with its sign."""
+Span = Annotated[float, Within(0.01, 100, "s")]
+"""Period or duration of a pulse."""
+BASELINES = {"constant": 0, "linear": 1, "quadratic": 2}
+"""Degree of the polynomial of accelerations that is taken off, by name."""
+ORDER = 4
+"""Order of the Butterworth filter, which runs forwards and backwards."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,12 +61,12 @@ class GroundMotion:
     """Horizontal acceleration of the base with the sign of Eq. 1: a negative one opens the wall.
 
     Between samples it is linear, before the first and after the last the ground is quiet. A one-sided wall takes the
-    two polarities differently: ask for both of `polarities`.
+    two polarities differently: run both of `polarities`.
 
     Args:
         accel: accelerations [m/s2], shape (n,), n at least 2.
         dt: time step of the samples [s], 1e-5 to 1.
-        name: what it is called in tables and pictures.
+        name: its name in tables and pictures.
         header: the fields of the header of its file, such as the event and the station, where that has some.
 
     Raises:
@@ -97,10 +103,10 @@ class GroundMotion:
     def __hash__(self) -> int:
         return hash((self.dt, (self.accel + 0.0).tobytes()))  # -0.0 equals 0.0, and must hash as it does
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {field.name: getattr(self, field.name) for field in fields(self)}  # what is cached stays at home
+    def __getstate__(self) -> dict[str, object]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # without cached values
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
+    def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
         self.accel.setflags(write=False)
 
@@ -178,9 +184,7 @@ class GroundMotion:
             ValueError: for a value outside its range, both or neither, or a peak of a motion that has none.
         """
         if (factor is None) == (peak is None):
-            raise ValueError(
-                f"scaled takes either a factor or a peak [m/s2]; factor = {spelt(factor)}, peak = {spelt(peak)}"
-            )
+            raise ValueError(f"factor = {spelt(factor)}, peak = {spelt(peak)}: give either a factor or a peak [m/s2]")
         if peak is None:
             multiple = require_within("factor", factor, -1e6, 1e6)
             return GroundMotion(multiple * self.accel, self.dt, f"{self.name} x {multiple:g}", self.header)
@@ -248,7 +252,7 @@ class GroundMotion:
         With both, the baseline is taken off before the filter and again after it, which leaves some of its own where
         its zeros before and after the record are cut off.
 
-        `residual_velocity` and `residual_displacement` of both say what it has done, and `mr.plotting.record` draws
+        `residual_velocity` and `residual_displacement` of both show its effect, and `mr.plotting.record` draws
         them beside each other.
 
         Args:
@@ -303,13 +307,19 @@ class GroundMotion:
         return GroundMotion(floor, h, f"{self.name} on a floor", self.header)
 
     @classmethod
-    def sine(cls, amplitude: float, period: float, cycles: float = 1.0, samples: int = 400) -> Self:
-        """A sine pulse of `amplitude` [m/s2] and `period` [s], `samples` to a cycle. A positive one starts inwards.
+    @within_ranges
+    def sine(cls, amplitude: Amplitude, period: Span, cycles: float = 1.0, samples: int = 400) -> Self:
+        """A sine pulse with `samples` to a cycle. A positive one starts inwards.
+
+        Args:
+            amplitude: of the acceleration [m/s2], -1e4 to 1e4.
+            period: of the sine [s], 0.01 to 100.
+            cycles: number of periods [-], 0.5 to 1000.
+            samples: steps to a period, so many that a step has 1e-5 to 1 s.
 
         Raises:
-            ValueError: for a period outside 0.01 to 100 s, cycles outside 0.5 to 1000, or steps outside 1e-5 to 1 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, period = _amplitude(amplitude), _span("period", period)
         cycles, samples = require_within("cycles", cycles, 0.5, 1e3), _samples(samples, period, 2)
         count = math.ceil(cycles * samples)
         require_size("the number of samples", count + 1, "choose fewer cycles or fewer samples to a cycle")
@@ -318,32 +328,42 @@ class GroundMotion:
         return cls(accel, cycles * period / count, f"sine {amplitude:g} m/s2, {period:g} s")
 
     @classmethod
-    def half_sine(cls, amplitude: float, duration: float, samples: int = 400) -> Self:
-        """Half a sine of `amplitude` [m/s2] over `duration` [s], in `samples` steps. A positive one pushes inwards.
+    @within_ranges
+    def half_sine(cls, amplitude: Amplitude, duration: Span, samples: int = 400) -> Self:
+        """Half a sine in `samples` steps, at least 2. A positive one pushes inwards.
+
+        Args:
+            amplitude: of the acceleration [m/s2], -1e4 to 1e4.
+            duration: of the half [s], 0.01 to 100.
+            samples: so many that a step has 1e-5 to 1 s.
 
         Raises:
-            ValueError: for a duration outside 0.01 to 100 s, fewer than 2 samples, or steps outside 1e-5 to 1 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, duration = _amplitude(amplitude), _span("duration", duration)
         samples = _samples(samples, duration, 2)
         accel = amplitude * np.sin(np.pi * np.arange(samples + 1) / samples)
         return cls(accel, duration / samples, f"half sine {amplitude:g} m/s2, {duration:g} s")
 
     @classmethod
-    def rectangular(cls, amplitude: float, duration: float) -> Self:
-        """A constant `amplitude` [m/s2] from zero to `duration` [s], exactly. A positive one pushes inwards.
+    @within_ranges
+    def rectangular(cls, amplitude: Amplitude, duration: Span) -> Self:
+        """A constant acceleration from zero to `duration`, exactly. A positive one pushes inwards.
+
+        Args:
+            amplitude: of the acceleration [m/s2], -1e4 to 1e4.
+            duration: of the pulse [s], 0.01 to 100.
 
         Raises:
-            ValueError: for a duration outside 0.01 to 100 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, duration = _amplitude(amplitude), _span("duration", duration)
         steps = math.ceil(duration)
         name = f"rectangular {amplitude:g} m/s2, {duration:g} s"
         return cls(np.full(steps + 1, amplitude), duration / steps, name)
 
     @classmethod
-    def ricker(cls, amplitude: float, period: float, antisymmetric: bool = False, samples: int = 400) -> Self:
-        """A Ricker wavelet whose largest |acceleration| is `amplitude` [m/s2], with `samples` to a `period` [s].
+    @within_ranges
+    def ricker(cls, amplitude: Amplitude, period: Span, antisymmetric: bool = False, samples: int = 400) -> Self:
+        """A Ricker wavelet.
 
         With t from the middle of the wavelet and T the period, the reciprocal of the frequency at which its Fourier
         spectrum peaks,
@@ -355,10 +375,15 @@ class GroundMotion:
         1.75 T, where less than 1e-6 A is left. The motion starts at time zero. A positive one has its large lobe, or
         the first of its two, inwards. The small lobe before it, of 0.45 A or 0.27 A, goes outwards.
 
+        Args:
+            amplitude: A, the largest |acceleration|, with its sign [m/s2], -1e4 to 1e4.
+            period: T [s], 0.01 to 100.
+            antisymmetric: whether it is the antisymmetric one.
+            samples: steps to a period, at least 10, so many that a step has 1e-5 to 1 s.
+
         Raises:
-            ValueError: for a period outside 0.01 to 100 s, fewer than 10 samples, or steps outside 1e-5 to 1 s.
+            ValueError: for a value outside its range.
         """
-        amplitude, period = _amplitude(amplitude), _span("period", period)
         samples = _samples(samples, period, 10)
         kind = "antisymmetric" if require_flag("antisymmetric", antisymmetric) else "symmetric"
         half = math.ceil((1.75 if antisymmetric else 1.35) * samples)
@@ -431,7 +456,7 @@ class GroundMotion:
     def from_file(
         cls, path: str | PathLike[str], component: str | None = None, *, unit: str | float | None = None
     ) -> GroundMotion:
-        """A component of a file of any format that states its time step, which its first lines tell.
+        """A component of a file of any format that states its time step. Its first lines show the format.
 
         PEER AT2, ESM and ITACA, K-NET and KiK-net, GeoNet V1A and V2A, SMC, CSMIP and COSMOS V1 and V2; a table whose
         header states step and unit; SAC, miniSEED and more by ObsPy (the extra `obspy`), which know no unit.
@@ -511,8 +536,8 @@ class GroundMotion:
         tabs set the columns apart. A header and lines that begin with #, % or // are skipped. A comma may be a decimal
         point.
 
-        What the header states, and numbers before the samples, are held against what is given here. The error says what
-        `skip` reads.
+        The header, and numbers before the samples, are compared with the arguments. The error shows the values
+        of `skip` for either reading.
 
         Args:
             path: the file. Of a spreadsheet (.xlsx, .xls, .ods; the extra `frames`) it is the sheet with numbers.
@@ -530,7 +555,7 @@ class GroundMotion:
             ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step, or what their
                 decimals round), what is not a finite number, and for doubts, with the line and both readings.
         """
-        traces = read(path, lambda file: parse_table(table_lines(file), Wanted(unit, time_unit, dt, columns, skip)))
+        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip))
         if len(traces) > 1:
             raise ValueError(f"{path}: columns has {len(traces)} accelerations; components_in reads them all")
         return motion_of(traces[0], path)
@@ -584,14 +609,56 @@ def _instants(t: ArrayLike) -> Array:
     return times
 
 
-def _amplitude(value: float) -> float:
-    return require_within("amplitude", value, -LARGEST_PULSE, LARGEST_PULSE, "m/s2")
-
-
-def _span(name: str, value: float) -> float:
-    return require_within(name, value, 1e-2, 100.0, "s")
-
-
 def _samples(value: int, span: float, least: int) -> int:
     """The number of steps to a span [s], such that a step is one of a motion."""
     return require_whole("samples", value, max(least, math.ceil(span / COARSEST)), math.floor(span / FINEST))
+
+
+def integral(accel: Array, dt: float) -> Array:
+    """Integral from zero of a motion that is linear between its samples, at each of them, shape (n,)."""
+    return np.concatenate(([0.0], np.cumsum(0.5 * dt * (accel[1:] + accel[:-1]))))
+
+
+def without_baseline(accel: Array, dt: float, baseline: str) -> Array:
+    """Accelerations less a polynomial of time, that whose integral is closest to the velocity in the mean square.
+
+    The velocity starts at zero (Boore, 2001: Bull. Seism. Soc. Am. 91, 1199-1211).
+
+    Raises:
+        ValueError: for another baseline than one of BASELINES.
+    """
+    degree = BASELINES[require_one_of("baseline", baseline, BASELINES)]
+    powers = np.linspace(0, 1, len(accel))[:, None] ** np.arange(degree + 1)
+    velocities = np.column_stack([integral(power, dt) for power in powers.T])
+    factors = np.linalg.lstsq(velocities, integral(accel, dt), rcond=None)[0]
+    return np.asarray(accel - powers @ factors)
+
+
+def within_band(accel: Array, dt: float, band: Sequence[float | None]) -> Array:
+    """Accelerations through a Butterworth filter of fourth order, forwards and backwards, which shifts no phase.
+
+    It runs over zeros before and after the record, for 1.5 orders of periods of the lower corner (Boore, 2005: Bull.
+    Seism. Soc. Am. 95, 745-750), which are cut off again.
+
+    Args:
+        accel: accelerations, shape (n,).
+        dt: time step [s].
+        band: lower and upper corner [Hz], where half of the amplitude is left; None leaves that side open.
+
+    Raises:
+        TypeError, ValueError: unless they are two, one of them at least, within 0.001 Hz and half of the samples a
+            second.
+    """
+    if isinstance(band, str) or not isinstance(band, Sequence) or len(band) != 2 or all(x is None for x in band):
+        raise TypeError(f"band = {shown(band)} is not a pair of corners [Hz], one of which may be None")
+    low, high = band
+    if low is not None:
+        low = require_within("lower corner of band", low, 1e-3, 0.49 / dt, "Hz")
+    if high is not None:
+        high = require_within("upper corner of band", high, max(1e-3, 1.01 * (low or 0.0)), 0.49 / dt, "Hz")
+    pad = math.ceil(1.5 * ORDER / ((low or high) * dt))  # type: ignore[operator]
+    require_size("the number of samples with zeros around them", len(accel) + 2 * pad, "raise the lower corner")
+    corners, kind = (low or high, "low" if low is None else "high") if None in band else (band, "band")
+    sos = scipy.signal.butter(ORDER, corners, kind, output="sos", fs=1 / dt)
+    filtered = scipy.signal.sosfiltfilt(sos, np.pad(accel, pad), padtype=None)
+    return np.asarray(filtered[pad : pad + len(accel)])

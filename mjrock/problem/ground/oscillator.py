@@ -43,6 +43,14 @@ def _answer(accel: Array, h: float, period: float, damping: float, reading: tupl
     return np.asarray(scipy.signal.lfilter(upper[0], lower, accel))
 
 
+def one_or_row(name: str, values: ArrayLike, low: float, high: float, unit: str = "") -> Array:
+    """One value or a row of them, each within a range, as a row, shape (n,)."""
+    row = require_row(name, np.atleast_1d(require_reals(name, values, "one value or a row of them")), "value")
+    for value in row.tolist():
+        require_within(name, value, low, high, unit)
+    return row
+
+
 def building_modes(
     period: ArrayLike, damping: float, participation: ArrayLike, height: ArrayLike
 ) -> tuple[Array, float, Array]:
@@ -57,15 +65,8 @@ def building_modes(
     Raises:
         TypeError, ValueError: for a value outside its range, or shapes that differ.
     """
-    rows = []
-    for name, values, low, high, unit in (
-        ("period", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s"),
-        ("participation", participation, -3.0, 3.0, ""),
-        ("height", height, -1.0, 1.0, ""),
-    ):
-        row = require_row(name, np.atleast_1d(require_reals(name, values, "one value for each mode")), "value")
-        rows.append([require_within(name, value, low, high, unit) for value in row.tolist()])
-    periods, gammas, shapes = map(np.array, rows)
+    periods = one_or_row("period", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
+    gammas, shapes = one_or_row("participation", participation, -3.0, 3.0), one_or_row("height", height, -1.0, 1.0)
     if not len(periods) == len(gammas) == len(shapes):
         raise ValueError(
             f"period has {len(periods)} values, participation {len(gammas)} and height {len(shapes)}; "

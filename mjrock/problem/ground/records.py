@@ -1,15 +1,22 @@
-"""Text of recorded accelerations: lines, numbers, units and steps, which the readers of all formats share.
+"""Text of recorded accelerations: lines, numbers, units and steps, and tables of times and accelerations.
 
 A parser takes the lines of a file and returns its traces. A number has ASCII digits and may have a Fortran exponent,
 1.5D-02. A ValueError with the line says where the samples are not as many as the file states, and where a word on a
 line of numbers is not a finite number.
+
+A table, in text or a spreadsheet, has columns of times and accelerations, or samples in rows. The arguments are
+compared with the file: counts, steps and units in its header, a column of times beside a time step, numbers that stand
+alone before the samples. A ValueError names the line and both readings.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
@@ -18,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...files import require_file
-from ...quantities import GRAVITY, Array, require_path, require_reals, require_within, spelt
+from ...quantities import GRAVITY, Array, require_one_of, require_path, require_reals, require_whole, require_within
 
 FINEST, COARSEST = 1e-5, 1.0
 """Bounds of the time step of a motion [s]."""
@@ -56,7 +63,7 @@ class Trace(NamedTuple):
     Args:
         accel: accelerations [m/s2], shape (n,).
         dt: time step [s].
-        header: what the file says of it, under the names of fields that ESM has, such as STATION_CODE and STREAM.
+        header: its fields in the file, by the names that ESM gives them, such as STATION_CODE and STREAM.
     """
 
     accel: Array
@@ -70,7 +77,7 @@ Parse = Callable[[list[str]], list[Trace]]
 def checked_record(accel: ArrayLike, dt: float) -> tuple[Array, float]:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
-    A TypeError or ValueError says unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
+    A TypeError or ValueError is raised unless they are a row of at least 2 finite numbers, and the step 1e-5 to 1 s.
     """
     values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
     if values.ndim != 1 or len(values) < 2:
@@ -83,7 +90,7 @@ def checked_record(accel: ArrayLike, dt: float) -> tuple[Array, float]:
 
 
 def read(path: str | PathLike[str], traces: Callable[[Path], list[Trace]]) -> list[Trace]:
-    """The traces that a reader finds in a file; a ValueError with its name says if it is not one of the format."""
+    """The traces that a reader finds in a file; a ValueError with its name for a file of another format."""
     path = require_path("path", path)
     try:
         with np.errstate(over="ignore"):  # a number that is too large in m/s2 is named
@@ -111,6 +118,12 @@ def text_lines(path: Path) -> list[str]:
     return re.split(r"\r\r?\n|\r|\n", text)
 
 
+def require_visible(line: str, place: int) -> None:
+    """Raise a ValueError for a control character, which could hide a row at the end of a header or comment."""
+    if hidden := BREAK.search(line):
+        raise ValueError(f"line {place} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
+
+
 def binary_kind(data: bytes) -> str | None:
     """What the bytes of a file are in words, if they are no text."""
     if b"\0" not in data:
@@ -127,14 +140,7 @@ def factor_of(unit: str | float) -> float:
     """How many m/s2 a unit is: one of UNITS, or that number itself, as of the counts of an instrument."""
     if isinstance(unit, int | float) and not isinstance(unit, bool):
         return require_within("unit", unit, 1e-15, 1e3, "m/s2")
-    return named_factor("unit", unit, ACCELERATION_UNITS)
-
-
-def named_factor(name: str, unit: object, units: Mapping[str, float]) -> float:
-    """The factor of one of some units; a ValueError with their names for any other."""
-    if not isinstance(unit, str) or unit not in units:
-        raise ValueError(f"{name} = {spelt(unit)} is not one of {', '.join(units)}")
-    return units[unit]
+    return ACCELERATION_UNITS[require_one_of("unit", unit, ACCELERATION_UNITS)]
 
 
 def stated_units(text: str) -> list[str]:
@@ -145,7 +151,7 @@ def stated_units(text: str) -> list[str]:
 
 def samples(lines: Sequence[str], header: int, count: int, stated: int | None = None) -> Array:
     """All numbers after so many lines; a ValueError if they are not as many as a line states, the last by default."""
-    values = [x for place, line in enumerate(lines[header:], header + 1) for x in numbers(line, place)]
+    values = all_numbers(lines, header)
     if len(values) != count:
         raise ValueError(f"{len(values)} samples; the header states {count} in line {stated or header}")
     return np.array(values)
@@ -153,7 +159,12 @@ def samples(lines: Sequence[str], header: int, count: int, stated: int | None = 
 
 def step(text: str, place: int) -> float:
     """A time step [s] that a line states."""
-    return require_within(f"line {place}: time step dt", value_of(text), FINEST, COARSEST, "s")
+    return require_within(f"line {place}: time step dt", number(text, place), FINEST, COARSEST, "s")
+
+
+def all_numbers(lines: Sequence[str], first: int, end: int | None = None) -> list[float]:
+    """The numbers of lines, from one after the first so many on up to an end."""
+    return [x for place, line in enumerate(lines[first:end], first + 1) for x in numbers(line, place)]
 
 
 def numbers(line: str, place: int) -> list[float]:
@@ -186,3 +197,439 @@ def value_of(text: str) -> float:
 def in_message(text: str) -> str:
     """A text as it stands in a message: what cannot be seen or is not ASCII is escaped."""
     return ascii(text if len(text) <= 60 else f"{text[:57]}...")
+
+
+UNEVEN_TIME = 0.01
+"""How far a printed time may lie from the even grid, as a share of the time step."""
+UNEVEN_ROUNDED = 0.1
+"""The same for times that are rounded to so few decimals that they cannot lie closer."""
+SLOW_SAMPLING = 0.1
+"""Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
+ALONE = 5.0
+"""A first number that is the largest, and so many times as large as those soon after it, is doubted: it may be one of
+the header."""
+SOON = 10
+"""How many numbers those are."""
+ROWS = "rows"
+"""What `columns` is where the samples stand in rows, one after the other."""
+SMOOTH_ROWS = 0.7
+"""Samples stand in rows where they jump less along the rows than this share of what they jump down the columns."""
+HEADER_LINE = 1000
+"""Characters of a line of the header that are looked at."""
+MOST_HEADS = 4
+"""Most numbers of a header that may stand before the samples."""
+SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods")
+
+DECIMAL_COMMA = re.compile(rf"[-+]?(?:\d+,\d*|,\d+){EXPONENT}", AS_ASCII)
+COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
+DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
+"""A line of columns whose first letter or digit is a digit of any script, so that a damaged number is not a header."""
+PROSE = re.compile(r"(?!\b(?:nan|inf|infinity)\b)[a-z]{3}", re.IGNORECASE)
+HEAD_STEP = re.compile(
+    r"(?:(?<![a-z])dt|time[ _]step|(?:sampling|time|sample)[ _](?:interval|period|step))"
+    rf"[ _]*(?:[(\[]s(?:ec)?[)\]])?[ :=]*{DECIMAL} *(ms|msec)?(?![\w.])",
+    AS_ASCII,
+)
+HEAD_RATE = re.compile(
+    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{DECIMAL} *(?:hz|sps|samples)?", AS_ASCII
+)
+HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{DECIMAL}(?![\w.])", AS_ASCII)
+HEAD_COUNT = re.compile(
+    rf"(?:npts|ndata|(?:n[ou]\.?|number) of (?:data|points|samples|pts))[ :=]*{COUNT}(?![\w.])", AS_ASCII
+)
+
+
+class Wanted(NamedTuple):
+    """The arguments that describe a table.
+
+    Args:
+        unit: of the accelerations, one of UNITS or how many m/s2 it is; None takes that of the header.
+        time_unit: of the times and the step.
+        dt: the time step in that unit; None takes that of the column of times or of the header.
+        columns: those to read, by number from 0 or name: the times first, unless a step is given. "rows" for samples in
+            rows. None where there is one choice only.
+        skip: the first lines to leave out; None finds the header and compares it with the other arguments.
+    """
+
+    unit: str | float | None = None
+    time_unit: str = "s"
+    dt: float | None = None
+    columns: int | str | Sequence[int | str] | None = None
+    skip: int | None = None
+
+
+class Stated(NamedTuple):
+    """A number that a line of a header states."""
+
+    value: float
+    place: int
+
+
+@dataclass(frozen=True)
+class RecordTable:
+    """The rows of numbers of a file, and its header.
+
+    Args:
+        head: the lines before the rows, by their number.
+        names: of the columns, as the header has them; empty where it has none.
+        values: the numbers of each row.
+        places: number of the line of each row.
+        decimals: most decimals of a number in the first column.
+    """
+
+    head: dict[int, str]
+    names: list[str]
+    values: list[list[float]]
+    places: list[int]
+    decimals: int
+
+    @cached_property
+    def width(self) -> int:
+        """The number of columns that most rows have."""
+        return Counter(map(len, self.values)).most_common(1)[0][0]
+
+    def without(self, rows: int) -> RecordTable:
+        """The table after its first rows, which are some of the header."""
+        return replace(self, values=self.values[rows:], places=self.places[rows:])
+
+    def stated(self, *patterns: re.Pattern[str]) -> Stated | None:
+        """The number that the header states in one of these forms; a rate is turned into a step."""
+        for place, line in self.head.items():
+            for pattern in patterns:
+                if found := pattern.search(line[:HEADER_LINE]):
+                    value = value_of(found[1]) * (1e-3 if pattern is HEAD_STEP and found[2] else 1)
+                    return Stated(1 / value if pattern is HEAD_RATE and value else value, place)
+        return None
+
+    def column(self, number_of: int) -> Array:
+        """The numbers of a column, shape (rows,)."""
+        return np.array([row[number_of] for row in self.values])
+
+    def bare(self, number_of: int) -> str:
+        """The name of a column without what stands there in brackets."""
+        return re.split(r"[(\[]", self.names[number_of])[0].strip() if self.names else ""
+
+    def says(self, line: int = 0) -> str:
+        """A row, by the number of its line and its words."""
+        return f"line {self.places[line]} is {' '.join(f'{x:g}' for x in self.values[line])}"
+
+    def choice(self, timed: bool) -> str:
+        """The columns and how one chooses among them, in words."""
+        named = f": {', '.join(f'{i} {in_message(name)}' for i, name in enumerate(self.names))}" if self.names else ""
+        such = "(0, 1) for times and accelerations" if timed else "0 for one of accelerations"
+        return f"{self.width} columns{named}; choose with columns=, such as columns={such}"
+
+
+def table_lines(path: Path) -> list[str]:
+    """The lines of a text, or those of the only sheet with numbers of a spreadsheet, its cells set apart by tabs.
+
+    Raises:
+        ImportError: for a spreadsheet where pandas, or its library for the format, is missing.
+        ValueError: for a spreadsheet with numbers on several sheets or on none.
+    """
+    if path.suffix.lower() not in SPREADSHEETS:
+        return text_lines(path)
+    try:
+        import pandas
+
+        sheets = pandas.read_excel(path, sheet_name=None, header=None, dtype=object)
+    except ImportError as error:
+        raise ImportError(f"{error}; pandas reads spreadsheets: pip install pandas openpyxl") from error
+    except Exception as error:
+        raise ValueError(f"pandas does not read it as a spreadsheet: {in_message(str(error))}") from error
+    texts = {name: ["\t".join(map(_cell, row)).rstrip() for row in sheet.to_numpy()] for name, sheet in sheets.items()}
+    full = [name for name, lines in texts.items() if sum(bool(DATA.match(line)) for line in lines) > 1]
+    if len(full) != 1:
+        raise ValueError(f"{len(full)} sheets have rows of numbers, {in_message(', '.join(full))}; save one as CSV")
+    return texts[full[0]]
+
+
+def table_traces(path: str | PathLike[str], wanted: Wanted) -> list[Trace]:
+    """The accelerations of a file that is a table, see `parse_table`."""
+    return read(path, lambda file: parse_table(table_lines(file), wanted))
+
+
+def _cell(value: object) -> str:
+    return "" if value != value else " ".join(str(value).split())
+
+
+def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
+    """The accelerations of a table, a trace for each of its columns that is wanted, in their order.
+
+    Lines ahead of the first number are a header; blank lines and those that begin with #, % or // are skipped.
+
+    Raises:
+        TypeError, ValueError: for an unknown unit, uneven times, a column that is not there, a choice that the caller
+            has to make, and where the file contradicts the arguments.
+    """
+    scale = TIME_UNITS[require_one_of("time_unit", wanted.time_unit, TIME_UNITS)]
+    if wanted.unit is not None:
+        factor_of(wanted.unit)
+    dt = wanted.dt
+    if dt is not None:
+        dt = scale * require_within("dt", dt, FINEST / scale, COARSEST / scale, wanted.time_unit)
+    found = _table_of(lines, wanted.skip)
+    if len(found.values) < 2:
+        raise ValueError(
+            f"{len(found.values)} rows of numbers in {len(lines)} lines, the first of them {in_message(lines[0])}; at "
+            "least 2 rows are needed, of time and acceleration or with dt of accelerations alone"
+        )
+    stated, scaled = found.stated(HEAD_STEP, HEAD_RATE), found.stated(HEAD_SCALE)
+    if scaled and scaled.value != 1:
+        raise ValueError(
+            f"line {scaled.place} states a scale of {scaled.value:g}: of the samples, or one that they have already? "
+            f"skip= leaves it out, and scaled({scaled.value:g}) applies it"
+        )
+    if wanted.skip is None:
+        found, stated = _without_header(found, dt, stated)
+    timed = wanted.columns != ROWS and found.width > 1 and _is_grid(scale * found.column(0), found.decimals, scale)
+    if stated and not FINEST <= stated.value <= COARSEST:
+        stated = None
+    if stated:
+        _agree("dt, which was given,", dt, stated)
+        dt = stated.value if dt is None and not timed else dt
+    if wanted.columns == ROWS or (wanted.columns is None and dt is not None and not timed and _in_rows(found)):
+        if dt is None:
+            raise ValueError("samples in rows need their time step: give dt")
+        columns = {0: np.array([x for row in found.values for x in row])}
+    else:
+        columns, dt = _columns_of(found, wanted, dt)
+        _agree("the step of the times", dt, stated)
+    count = found.stated(HEAD_COUNT)
+    if count and count.value != (n := len(next(iter(columns.values())))):
+        raise ValueError(f"{n} samples; the header states {count.value:g} in line {count.place}; skip= leaves it out")
+    return [
+        Trace(_factor(found, wanted.unit, i) * values, dt, {"STREAM": name or f"{i}"} if len(columns) > 1 else {})
+        for (i, values), name in zip(columns.items(), [found.bare(i) for i in columns], strict=True)
+    ]
+
+
+def _table_of(lines: Sequence[str], skip: int | None) -> RecordTable:
+    """The header and the rows of a file; a ValueError names the first word of a row that is no number."""
+    first = 0 if skip is None else require_whole("skip", skip, 0, max(len(lines) - 1, 0))
+    head: dict[int, str] = {}
+    texts: dict[int, str] = {}
+    for place, line in enumerate(lines[first:], first + 1):
+        if COMMENT.match(line) or not (texts or _is_row(lines, place)):
+            require_visible(line, place)
+            head |= {} if texts else {place: line}
+        else:
+            texts[place] = line
+    commas = _decimal_commas(texts.values())
+    rows: list[list[float]] = []
+    decimals = 0
+    for place, line in texts.items():
+        words_of = _cells(line, commas)
+        try:
+            rows.append([number(word, place) for word in words_of])
+        except ValueError as error:
+            raise ValueError(f"{error}; skip={place} leaves out what is above" if not rows else str(error)) from error
+        decimals = max(decimals, len(words_of[0].partition(".")[2]))
+    return RecordTable({} if skip is not None else head, _names(list(head.values()), rows), rows, list(texts), decimals)
+
+
+def _is_row(lines: Sequence[str], place: int) -> bool:
+    """Whether a line may be the first row: a line of words that has not as many columns as the next one is a header."""
+    line = lines[place - 1]
+    if not DATA.match(line) or not PROSE.search(line):
+        return bool(DATA.match(line))
+    after = next((line for line in lines[place:] if not COMMENT.match(line)), line)
+    return len(re.split(r"[\s,;]+", line.strip())) == len(re.split(r"[\s,;]+", after.strip()))
+
+
+def _decimal_commas(texts: Iterable[str]) -> bool:
+    """Whether each comma of some rows is a decimal one: all columns between tabs or blanks have such numbers, or one
+    column has, where a digit of zero follows a comma, with which no number begins."""
+    with_commas = [text for text in texts if "," in text]
+    if not with_commas or any("." in text or ";" in text for text in texts):
+        return False
+    if not all(DECIMAL_COMMA.fullmatch(word) for text in with_commas for word in words(text) if "," in word):
+        return False
+    return any(len(words(text)) > 1 or re.search(r",0\d", text) for text in with_commas)
+
+
+def _cells(line: str, commas: bool) -> list[str]:
+    """The words of a row, set apart by semicolons, commas, or blanks and tabs, without quotes; a last separator is
+    none. Between semicolons and within quotes a comma is a decimal point."""
+    line = re.sub('"([^"]*)"', lambda quoted: quoted[1].replace(",", "."), line)
+    if commas or ";" in line:
+        line = line.replace(",", ".")
+    mark = next((mark for mark in ";," if mark in line), None)
+    if mark is None:
+        return [part for word in words(line) for part in split_columns(word)]
+    return [word.strip(" \t") for word in line.strip(" \t").removesuffix(mark).split(mark)]
+
+
+def _names(head: Sequence[str], rows: Sequence[Sequence[float]]) -> list[str]:
+    """Names of the columns: the last line of the header if it has as many words as the rows have columns."""
+    last = next((line for line in reversed(head) if line.strip()), "").lstrip("#%/ ")
+    width = len(rows[-1]) if rows else 0
+    for apart in (";", "\t", ",", r"\s{2,}", r"\s+"):
+        names = [name.strip(' "\t') for name in re.split(apart, last)]
+        names = names[:-1] if names and not names[-1] else names
+        if len(names) == width and any(names):
+            return names
+    return []
+
+
+def _without_header(found: RecordTable, dt: float | None, stated: Stated | None) -> tuple[RecordTable, Stated | None]:
+    """The table without rows that are numbers of a header, and the step that they state.
+
+    They are some where one of them is the number of rows or samples that follow. A ValueError names both readings where
+    they may be: one equals dt, stands alone, or the row is not as wide as the others.
+    """
+    for rows in range(1, MOST_HEADS):
+        lead, rest = [x for row in found.values[:rows] for x in row], found.values[rows:]
+        if len(lead) > MOST_HEADS or len(rest) < 10:
+            break
+        counts = {float(len(rest))} | ({float(sum(map(len, rest)))} if found.width > 2 else set())
+        if set(lead) & counts:
+            steps = [x for x in lead if FINEST <= x < COARSEST]
+            return found.without(rows), Stated(steps[0], found.places[0]) if len(steps) == 1 else stated
+    first, *others = found.values
+    doubted = 0
+    if len(others) >= 3:
+        wide = found.width > 1
+        follows = others[0] == [dt] and first[0] != 0 and first[0] == int(first[0])
+        alone = len(others) >= 10 and abs(first[0]) > max(
+            max(abs(row[0]) for row in others), ALONE * max(abs(row[0]) for row in others[:SOON])
+        )
+        grid = wide and len(first) == found.width and _is_grid(found.without(1).column(0), found.decimals, 1.0)
+        early = grid and not _is_grid(found.column(0), found.decimals, 1.0)
+        if len(first) == 1 and not wide and dt is not None:
+            doubted = 2 if follows else int(first == [dt] or alone)
+        elif len(first) != found.width or early:
+            doubted = 1
+    if doubted:
+        where, given = found.places[0], "" if dt is None else f" (dt = {dt:g} s was given)"
+        raise ValueError(
+            f"{' and '.join(found.says(i) for i in range(doubted))}{given}: of the header, or the first row? "
+            f"skip={found.places[doubted] - 1} reads what follows, skip={where - 1} takes it as a row"
+        )
+    return found, stated
+
+
+def _columns_of(found: RecordTable, wanted: Wanted, dt: float | None) -> tuple[dict[int, Array], float]:
+    """The accelerations by the number of their column, in the unit of the file, and their time step [s]."""
+    if wanted.columns is not None:
+        given = [wanted.columns] if isinstance(wanted.columns, int | str) else list(wanted.columns)
+        picked = [_number_of(found, column) for column in given]
+    else:
+        picked = list(range(found.width))
+    for place, row in zip(found.places, found.values, strict=True):
+        if len(row) != found.width:
+            rows = "; samples in rows are read with dt" if dt is None and place == found.places[-1] else ""
+            raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}{rows}")
+    scale = TIME_UNITS[wanted.time_unit]
+    time = scale * found.column(picked[0])
+    grid = _is_grid(time, found.decimals, scale)
+    timed = len(picked) > 1 and (dt is None or grid)
+    if wanted.columns is None and (len(picked) > 2 or (len(picked) == 2 and not timed)):
+        rows = "" if grid else f", or {'' if dt else 'dt= and '}columns='rows' for samples in rows"
+        raise ValueError(f"line {found.places[0]} has {found.choice(timed)}{rows}")
+    if not timed:
+        if dt is None:
+            raise ValueError(f"line {found.places[0]} has one column of accelerations; give its time step dt")
+        return {i: found.column(i) for i in picked}, dt
+    if len(picked) < 2:
+        raise ValueError("a column of accelerations is needed beside the one of times")
+    return {i: found.column(i) for i in picked[1:]}, _step_of(time, found, scale, dt)
+
+
+def _number_of(found: RecordTable, column: object) -> int:
+    """The number of a column that is given by it or by its name, with or without what stands there in brackets."""
+    if not isinstance(column, str):
+        return require_whole("a number in columns", column, 0, found.width - 1)
+    for names in (found.names, [found.bare(i) for i in range(len(found.names))]):
+        fit = [i for i, name in enumerate(names) if name.casefold() == column.strip().casefold()]
+        if len(fit) == 1:
+            return fit[0]
+    valid = ", ".join(map(in_message, found.names)) or "not in the file"
+    raise ValueError(f"columns has {in_message(column)}; the names are {valid}")
+
+
+def _grid(time: Array) -> tuple[float, float]:
+    """The step of the even grid that lies closest to times, and how far from it one of them lies at most."""
+    i = np.arange(len(time)) - 0.5 * (len(time) - 1)
+    dt = float(i @ time / (i @ i))
+    return dt, float(np.abs(time - time.mean() - dt * i).max())
+
+
+def _is_even(time: Array, decimals: int, scale: float) -> bool:
+    """Whether times lie on an even grid within 1 % of its step, or what their decimals round, up to a tenth of it."""
+    dt, off = _grid(time)
+    return 0 <= off <= max(UNEVEN_TIME * dt, min(0.51 * scale * 10.0**-decimals, UNEVEN_ROUNDED * dt))
+
+
+def _is_grid(time: Array, decimals: int, scale: float) -> bool:
+    """Whether a column may be one of times: at least three that increase evenly."""
+    return len(time) > 2 and bool((np.diff(time) > 0).all()) and _is_even(time, decimals, scale)
+
+
+def _step_of(time: Array, found: RecordTable, scale: float, given: float | None) -> float:
+    """The step of a column of times [s], or the given one, against which the column is held."""
+    steps, places = np.diff(time), found.places
+    back = np.flatnonzero(steps <= 0)
+    if back.size:
+        i = back[0]
+        raise ValueError(f"line {places[i + 1]}: time does not increase, {time[i]:g} s to {time[i + 1]:g} s")
+    dt = float(f"{_grid(time)[0]:.12g}")  # so that two components have one step
+    if not _is_even(time, found.decimals, scale):
+        usual = float(np.median(steps))
+        i = int(np.abs(steps - usual).argmax())
+        raise ValueError(
+            f"line {places[i + 1]}: uneven time steps, {steps[i]:g} s from {time[i]:g} s on where {usual:g} s is usual"
+        )
+    if given is not None:
+        numbered = found.decimals == 0 and math.isclose(dt, scale)
+        if abs(given - dt) > max(UNEVEN_TIME * given, 10.0**-found.decimals * scale / len(steps)) and not numbered:
+            raise ValueError(f"dt = {given:g} s was given, and the times from line {places[0]} on step by {dt:g} s")
+        return given
+    if SLOW_SAMPLING <= dt <= COARSEST:
+        raise ValueError(
+            f"line {places[0]}: the first column steps by {dt:g} s: times so far apart, or the numbers of the rows? "
+            f"dt= gives the time step, and dt={dt / scale:g} takes it as times"
+        )
+    return dt
+
+
+def _agree(name: str, given: float | None, stated: Stated | None) -> None:
+    """Raise a ValueError with both readings where a step is another than the one that a header states."""
+    if given is not None and stated is not None and abs(given - stated.value) > UNEVEN_TIME * stated.value:
+        raise ValueError(
+            f"{name} is {given:g} s, and line {stated.place} states {stated.value:g} s; skip= leaves it out"
+        )
+
+
+def _in_rows(found: RecordTable) -> bool:
+    """Whether samples stand in rows.
+
+    They do where the last row is shorter. They also do where at least four jump less along the rows than down the
+    columns, and from the end of a row to the next not much more than within it.
+    """
+    *full, last = found.values
+    if found.width < 3 or any(len(row) != found.width for row in full) or len(last) > found.width:
+        return False
+    if len(last) < found.width:
+        return True
+    values = np.array(found.values)
+    down, within = (float(np.abs(np.diff(values, axis=axis)).mean()) for axis in (0, 1))
+    on = float(np.abs(values[1:, 0] - values[:-1, -1]).mean())
+    return found.width > 3 and within < SMOOTH_ROWS * down and on < 2 * within
+
+
+def _factor(found: RecordTable, unit: str | float | None, column: int) -> float:
+    """The unit of a column [m/s2], held against that of its name, or against the only one that the header names."""
+    name = found.names[column] if column < len(found.names) else ""
+    of_name = stated_units(name)
+    of_head = {unit: place for place, line in found.head.items() for unit in stated_units(line[:HEADER_LINE])}
+    stated = of_name or list(of_head)
+    if unit is None:
+        if len(stated) != 1:
+            said = " and ".join(stated) or "no unit"
+            raise ValueError(f"the header names {said}; give unit=, one of {', '.join(ACCELERATION_UNITS)}")
+        return ACCELERATION_UNITS[stated[0]]
+    if isinstance(unit, str) and found.head and len(stated) == 1 and stated != [unit]:
+        where = f"the name {in_message(name)} of the column" if of_name else f"line {of_head[stated[0]]}"
+        raise ValueError(f"unit = {unit!r} was given, and {where} says {stated[0]}; skip= leaves it out")
+    return factor_of(unit)

@@ -1,17 +1,345 @@
-"""Response spectra of a ground motion, and motions scaled to them."""
+"""Response spectra of codes, on the ground and on a floor, and of ground motions, and motions scaled to them."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, require_kind, require_reals, require_row, require_within, short_repr
-from .code_spectrum import SpectrumOfCode
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Implausible,
+    Within,
+    frozen,
+    keep,
+    keep_declared,
+    require_array,
+    require_increasing,
+    require_kind,
+    require_one_of,
+    require_reals,
+    require_row,
+    require_within,
+    short_repr,
+    spelt,
+    warn_of,
+    within_ranges,
+)
 from .motion import GroundMotion
-from .oscillator import LONGEST_PERIOD, SHORTEST_PERIOD, oscillator_steps, relative_displacement
+from .oscillator import (
+    LONGEST_PERIOD,
+    SHORTEST_PERIOD,
+    building_modes,
+    one_or_row,
+    oscillator_steps,
+    relative_displacement,
+)
+
+LEAST_ETA = 0.55
+"""Least correction for damping [-], NTC 2018 equation 3.2.4 and EN 1998-1 equation 3.6."""
+SITE_NTC = {
+    "A": (1.00, 0.00, 1.00, 1.00, 1.00, 0.00, 4.5),
+    "B": (1.40, 0.40, 1.00, 1.20, 1.10, -0.20, 5.0),
+    "C": (1.70, 0.60, 1.00, 1.50, 1.05, -0.33, 6.0),
+    "D": (2.40, 1.50, 0.90, 1.80, 1.25, -0.50, 6.0),
+    "E": (2.00, 1.10, 1.00, 1.60, 1.15, -0.40, 6.0),
+}
+"""S_S = first - second F_0 a_g/g between third and fourth, C_C = fifth T_C*^sixth, NTC 2018 table 3.2.IV; and T_E [s],
+table 3.2.VII."""
+TOPOGRAPHY_NTC = {"T1": 1.0, "T2": 1.2, "T3": 1.2, "T4": 1.4}
+"""S_T [-], NTC 2018 table 3.2.V."""
+SITE_EC8 = {
+    "EC8 type 1": {
+        "A": (1.00, 0.15, 0.40, 2.0, 4.5),
+        "B": (1.20, 0.15, 0.50, 2.0, 5.0),
+        "C": (1.15, 0.20, 0.60, 2.0, 6.0),
+        "D": (1.35, 0.20, 0.80, 2.0, 6.0),
+        "E": (1.40, 0.15, 0.50, 2.0, 6.0),
+    },
+    "EC8 type 2": {
+        "A": (1.00, 0.05, 0.25, 1.2, math.inf),
+        "B": (1.35, 0.05, 0.25, 1.2, math.inf),
+        "C": (1.50, 0.10, 0.25, 1.2, math.inf),
+        "D": (1.80, 0.10, 0.30, 1.2, math.inf),
+        "E": (1.60, 0.05, 0.25, 1.2, math.inf),
+    },
+}
+"""S, T_B, T_C, T_D [s], EN 1998-1:2004 tables 3.2 and 3.3, recommended values; and T_E [s], table A.1, which is
+given for type 1 alone."""
+FIRM = 10.0
+"""T_F, beyond which the displacement is that of the ground [s]."""
+PROBABLY_IN_G = 0.35
+"""a_g below which it was probably given in g [m/s2]."""
+
+
+@dataclass(frozen=True)
+class CodeSpectrum:
+    """The elastic response spectrum of a code for one site. Called with T and xi it gives S_e [m/s2].
+
+    Args:
+        code: its name.
+        ag: peak acceleration on rock a_g [m/s2].
+        S: soil factor S_S S_T [-].
+        amplification: largest amplification F_0 at 5 % damping [-].
+        TB, TC, TD, TE: corner periods [s]. TE is infinite where the displacement is S_e (T/2 pi)^2 at any period.
+        damping: damping ratio that is taken where none is given [-].
+    """
+
+    code: str
+    ag: float
+    S: float
+    amplification: float
+    TB: float
+    TC: float
+    TD: float
+    TE: float
+    damping: float = 0.05
+
+    def __repr__(self) -> str:
+        corners = ", ".join(f"{getattr(self, name):.3g}" for name in ("TB", "TC", "TD", "TE"))
+        return (
+            f"<CodeSpectrum {self.code}: a_g = {self.ag:.4g} m/s2, S = {self.S:.4g}, F_0 = {self.amplification:.4g}, "
+            f"T_B, T_C, T_D, T_E = {corners} s>"
+        )
+
+    def __call__(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_e at the periods T [s], 0 to 100 [m/s2]; NTC 2018 equation 3.2.2, EN 1998-1 equations 3.2 to 3.5."""
+        T, eta = periods_of(T), damping_correction(self.damping if damping is None else damping)
+        top = self.ag * self.S * eta * self.amplification
+        rising = self.ag * self.S * (1 + T / self.TB * (eta * self.amplification - 1))
+        falling = top * self.TC / np.maximum(T, self.TC) * self.TD / np.maximum(T, self.TD)
+        return np.where(self.TB > T, rising, falling)
+
+    def displacement(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_De at the periods T [s] [m]; NTC 2018 equations 3.2.12 and 3.2.13, EN 1998-1 equations 3.7, A.1 and A.2."""
+        periods, eta = periods_of(T), damping_correction(self.damping if damping is None else damping)
+        short = np.minimum(periods, self.TE)
+        below = self(short, damping) * (short / (2 * math.pi)) ** 2
+        ground = 0.025 * self.ag * self.S * self.TC * self.TD
+        share = np.clip((periods - self.TE) / (FIRM - self.TE), 0.0, 1.0) if math.isfinite(self.TE) else 0.0
+        far = ground * (self.amplification * eta + (1 - self.amplification * eta) * share)
+        return np.where(periods > self.TE, far, below)
+
+    @property
+    def peak(self) -> float:
+        """Peak ground acceleration a_g S [m/s2]."""
+        return self.ag * self.S
+
+    def at_height(
+        self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
+    ) -> FloorSpectrum:
+        """The spectrum on a floor of a building that vibrates in one or some modes.
+
+        Args:
+            period: of the modes T_k [s], 0.01 to 100, shape (k,) or one.
+            damping: of the building xi_k [-], 0.005 to 0.3.
+            participation: gamma_k of each mode [-], -3 to 3; 3 n / (2 n + 1) for n equal storeys in the first mode.
+            height: psi_k, the shape of each mode at the floor over that at the top [-], -1 to 1; z / H for a straight
+                first mode.
+
+        Raises:
+            TypeError, ValueError: for a value outside its range, or shapes that differ.
+        """
+        return FloorSpectrum(self, *building_modes(period, damping, participation, height))
+
+
+@dataclass(frozen=True, eq=False)
+class FloorSpectrum:
+    """The elastic spectrum on a floor, Circolare 2019 n. 7, C8.7.1.2.1.4. Called with T and xi it gives S_eZ [m/s2].
+
+    Each mode amplifies oscillators of periods near its own. The squares of its spectra and of that of the ground are
+    added. An oscillator of a longer period than the first mode has at least the spectrum of the ground.
+
+    Args:
+        ground: spectrum on the ground.
+        period: of the modes T_k [s], shape (k,).
+        damping: of the building xi_k [-].
+        motion: gamma_k psi_k of each mode [-], shape (k,).
+    """
+
+    ground: CodeSpectrum | PointSpectrum
+    period: Array
+    damping: float
+    motion: Array
+
+    __repr__ = short_repr
+
+    def __call__(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_eZ at the periods T [s], 0 to 100 [m/s2]."""
+        T, xi = periods_of(T), self.ground.damping if damping is None else damping
+        on_ground = self.ground(T, xi)
+        # xi_k counts as a fraction here, 4.9 at 5 %, as an oscillator on another in resonance has it; in the root in %
+        top = 1.1 / math.sqrt(self.damping) * damping_correction(xi)
+        square = on_ground**2
+        for Tk, motion in zip(self.period.tolist(), self.motion.tolist(), strict=True):
+            floor = self.ground(Tk, self.damping) * abs(motion) * math.sqrt(1 + 4 * self.damping**2)
+            shorter = np.clip(1 - T / (0.8 * Tk), 0.0, None) ** 1.6
+            longer = np.clip(T / (1.1 * Tk) - 1, 0.0, None) ** 1.2
+            square = square + (top * floor / (1 + (top - 1) * (shorter + longer))) ** 2
+        return np.where(float(self.period.max()) < T, np.maximum(np.sqrt(square), on_ground), np.sqrt(square))
+
+    def displacement(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_DeZ at the periods T [s], S_eZ (T/2 pi)^2, at least that of the ground beyond the first mode [m]."""
+        T = periods_of(T)
+        return np.asarray(self(T, damping) * (T / (2 * math.pi)) ** 2)
+
+    @property
+    def peak(self) -> float:
+        """Peak acceleration of the floor, S_eZ at T = 0 [m/s2]."""
+        return float(self(0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class PointSpectrum:
+    """An elastic spectrum given as points, linear between them, constant beyond them. It stands wherever a spectrum of
+    a code does.
+
+    Other damping ratios multiply it by the correction eta of the codes. Its peak acceleration is that at the first
+    period, which is to be 0 or that of a rigid body.
+
+    Args:
+        period: T, increasing [s], 0 to 100, shape (n,).
+        acceleration: S_e at them [m/s2], above 0, shape (n,).
+        damping: damping ratio of the points [-], 0.005 to 0.5.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
+
+    Examples:
+        >>> site = mr.PointSpectrum([0.0, 0.2, 0.6, 4.0], [2.0, 5.0, 5.0, 0.75])
+        >>> round(float(site(0.1)), 2), site.peak
+        (3.5, 2.0)
+    """
+
+    period: Array
+    acceleration: Array
+    damping: Annotated[float, Within(0.005, 0.5)] = 0.05
+
+    def __post_init__(self) -> None:
+        keep_declared(self, "spectrum")
+        period = require_increasing("period", self.period, "period [s]", LONGEST_PERIOD, f"0 to {LONGEST_PERIOD:g} s")
+        acceleration = require_array("acceleration", self.acceleration, (len(period),))
+        for value in acceleration.tolist():
+            require_within("acceleration", value, 1e-6, 1e3, "m/s2")
+        keep(self, period=frozen(period), acceleration=frozen(acceleration))
+
+    def __repr__(self) -> str:
+        return f"<PointSpectrum of {len(self.period)} points up to {self.period[-1]:g} s, peak {self.peak:.3g} m/s2>"
+
+    def __call__(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_e at the periods T [s], 0 to 100 [m/s2]."""
+        factor = 1.0 if damping is None else damping_correction(damping) / damping_correction(self.damping)
+        return np.asarray(factor * np.interp(periods_of(T), self.period, self.acceleration))
+
+    def displacement(self, T: ArrayLike, damping: float | None = None) -> Array:
+        """S_De at the periods T [s], S_e (T/2 pi)^2 [m]."""
+        return np.asarray(self(T, damping) * (periods_of(T) / (2 * math.pi)) ** 2)
+
+    @property
+    def peak(self) -> float:
+        """Peak acceleration of the ground, S_e at the first period [m/s2]."""
+        return float(self.acceleration[0])
+
+    def at_height(
+        self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
+    ) -> FloorSpectrum:
+        """The spectrum on a floor, as `CodeSpectrum.at_height`."""
+        return FloorSpectrum(self, *building_modes(period, damping, participation, height))
+
+
+SpectrumOfCode = CodeSpectrum | FloorSpectrum | PointSpectrum
+"""The spectrum of a code, on the ground or on a floor, or one given as points."""
+
+
+@within_ranges
+def code_spectrum(
+    code: str,
+    *,
+    ag: Annotated[float, Within(0.05, 10, "m/s2")],
+    soil: str,
+    F0: Annotated[float | None, Within(2, 4)] = None,
+    Tc: Annotated[float | None, Within(0.05, 1, "s")] = None,
+    topography: str = "T1",
+    damping: Annotated[float, Within(0.005, 0.5)] = 0.05,
+    S: Annotated[float | None, Within(0.5, 5)] = None,
+    TB: Annotated[float | None, Within(0.01, 1, "s")] = None,
+    TC: Annotated[float | None, Within(0.05, 3, "s")] = None,
+    TD: Annotated[float | None, Within(0.5, 10, "s")] = None,
+) -> CodeSpectrum:
+    """The elastic response spectrum of a code for one site.
+
+    `spectrum(T, xi)` is the acceleration S_e [m/s2] and `spectrum.displacement(T, xi)` the displacement S_De [m].
+
+    Args:
+        code: "NTC 2018" (Italy), "EC8 type 1" or "EC8 type 2" (EN 1998-1:2004, recommended values).
+        ag: peak acceleration on rock a_g of the limit state, with its factor of importance [m/s2], 0.05 to 10.
+        soil: ground type, "A" to "E".
+        F0: largest amplification F_0 of the limit state, of NTC 2018 alone [-], 2 to 4.
+        Tc: T_C* of the limit state, of NTC 2018 alone [s], 0.05 to 1.
+        topography: "T1" to "T4" of NTC 2018, with S_T at the top of the relief. EC8 takes T1 alone.
+        damping: damping ratio that is taken where none is given [-], 0.005 to 0.5.
+        S: soil factor of a national annex of EC8 [-], 0.5 to 5; None takes the recommended value, here and below.
+        TB: first corner period of a national annex of EC8 [s], 0.01 to 1, less than TC.
+        TC: second corner period of a national annex of EC8 [s], 0.05 to 3, less than TD.
+        TD: third corner period of a national annex of EC8 [s], 0.5 to 10.
+
+    Returns:
+        The `CodeSpectrum`: called with a period [s] and a damping ratio [-] it gives the acceleration [m/s2].
+
+    Raises:
+        ValueError: for a code, a soil or a topography that is not known, or a value outside its range.
+
+    Warns:
+        Implausible: for an a_g below 0.35 m/s2, which is probably in g.
+
+    Examples:
+        >>> spectrum = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B")
+        >>> round(float(spectrum(0.3, 0.05)), 2)
+        6.0
+    """
+    require_one_of("code", code, ("NTC 2018", *SITE_EC8))
+    require_one_of("soil", soil, SITE_NTC)
+    require_one_of("topography", topography, TOPOGRAPHY_NTC)
+    if ag < PROBABLY_IN_G:
+        warn_of(f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?", Implausible)
+    if code in SITE_EC8:
+        for name, value in (("F0", F0), ("Tc", Tc)):
+            if value is not None:
+                raise ValueError(f"{name} = {spelt(value)} is of NTC 2018; {code} takes ag and soil")
+        if topography != "T1":
+            raise ValueError(f"topography = {topography} is of NTC 2018; multiply ag for {code}")
+        recommended, national = SITE_EC8[code][soil], (S, TB, TC, TD)
+        own = [given or usual for given, usual in zip(national, recommended, strict=False)]
+        if not own[1] < own[2] < own[3]:
+            raise ValueError(f"TB, TC, TD = {own[1]:g}, {own[2]:g}, {own[3]:g} s do not increase")
+        return CodeSpectrum(code, ag, own[0], 2.5, own[1], own[2], own[3], recommended[4], damping)
+    for name, value in (("S", S), ("TB", TB), ("TC", TC), ("TD", TD)):
+        if value is not None:
+            raise ValueError(f"{name} = {spelt(value)} is of a national annex of EC8; NTC 2018 takes soil, F0 and Tc")
+    if F0 is None or Tc is None:
+        raise ValueError(f"{'Tc' if F0 else 'F0'} is missing: NTC 2018 takes ag, F0 and Tc of the limit state")
+    first, second, least, most, factor, power, TE = SITE_NTC[soil]
+    S = min(max(first - second * F0 * ag / GRAVITY, least), most) * TOPOGRAPHY_NTC[topography]
+    TC = factor * Tc**power * Tc
+    return CodeSpectrum(code, ag, S, F0, TC / 3, TC, 4.0 * ag / GRAVITY + 1.6, TE, damping)
+
+
+@within_ranges
+def damping_correction(damping: Annotated[float, Within(0, 0.9)]) -> float:
+    """Correction eta of a spectrum for damping [-], NTC 2018 equation 3.2.4, EN 1998-1 equation 3.6."""
+    return max(math.sqrt(10 / (5 + 100 * damping)), LEAST_ETA)
+
+
+def periods_of(T: ArrayLike) -> Array:
+    """Periods as an array [s], each 0 to 100."""
+    periods = require_reals("T", T, "one or more periods [s]")
+    for period in np.atleast_1d(periods).tolist():
+        require_within("T", period, 0.0, LONGEST_PERIOD, "s")
+    return np.asarray(periods)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +390,7 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     """
     require_kind("motion", motion, GroundMotion)
     damping = require_within("damping", damping, 0.0, 0.9)
-    T = require_row("periods", np.atleast_1d(require_reals("periods", periods, "periods [s]")), "period [s]")
-    for period in T:
-        require_within("periods", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
+    T = one_or_row("periods", periods, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
     largest = np.array([_largest(motion, float(period), damping) for period in T])
     return ResponseSpectrum(T, largest, damping)
 

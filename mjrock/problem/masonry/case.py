@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -29,15 +29,82 @@ from ..ground.motion import GroundMotion
 from ..wall.case import Case
 from ..wall.effect import Anchored, Effect, require_only
 from ..wall.effects import EFFECT_KINDS, Carrying, Load
+from ..wall.plausible import IN_G, NEGLIGIBLE_SHARE, Whole, of_effects, of_motion
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
-from .effects import laden, place_in_world, require_anchored, require_placed, require_pushing, with_block_numbers
+from .effects import (
+    held_at,
+    laden,
+    place_in_world,
+    require_anchored,
+    require_placed,
+    require_pushing,
+    with_block_numbers,
+)
 from .histories import Support, supports_of, tilt_history
 from .laws.bond import Bond
+from .limit.collapse import limit_of, pushed
 from .masonry import Masonry
-from .plausible import doubts
 from .standing import MasonryStanding
+
+JUDGED_BLOCKS = 40
+"""Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
+OF_THE_WEIGHT = 3.0
+"""Force of an actuator at its full displacement over the weight, up to which its spring may be a force that is given,
+and the displacement no motion [-]."""
+
+
+def doubts(case: MasonryCase) -> list[str]:
+    """What is odd about a case, in words; empty for a plausible one. `mjrock.problem.wall.plausible` has the same of a
+    wall."""
+    masonry = case.masonry
+    mass = sum(masonry.blocks[i].mass for i in masonry.free)
+    found = of_motion(case.motion, case.duration, "masonry", stood(case))
+    found += of_effects(case.effects, Whole("masonry", "its block", mass), lambda link: _room(masonry, link))
+    return found + [odd for name, jack in case.actuators.items() if (odd := _of_jack(name, jack, masonry, mass))]
+
+
+def stood(case: MasonryCase) -> float:
+    """Acceleration over g that the masonry of a case stands from rest, for a record that may be in g, or infinity."""
+    weak = case.motion is not None and case.motion.peak <= IN_G and len(case.masonry.free) <= JUDGED_BLOCKS
+    at_rest = case.velocity is None and case.vertical is None and not case.effects
+    return _multiplier(case.masonry) if weak and at_rest else math.inf
+
+
+@lru_cache(maxsize=16)
+def _multiplier(masonry: Masonry) -> float:
+    ways = np.eye(masonry.freedom.translations)[0] * [[1.0], [-1.0]]
+    try:
+        return min(limit_of(masonry, way, pushed(masonry, way)).multiplier for way in ways)
+    except ValueError:  # it cannot stand, which the solvers say
+        return math.inf
+
+
+def _room(masonry: Masonry, link: Anchored) -> tuple[float, float]:
+    """Largest extent of the block that a link holds, and of all free blocks along the link [m]."""
+    held = np.zeros(2) if link.at is None else held_at(link)
+    way = held - link.anchor_of(held)
+    return 2 * masonry.blocks[link.block].size, _extent(masonry, way / np.linalg.norm(way))
+
+
+def _extent(masonry: Masonry, way: Array) -> float:
+    """Extent of all free blocks along a unit vector [m]."""
+    return float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ way))
+
+
+def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
+    """A doubt about an actuator, empty where there is none."""
+    far, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
+    if far > extent and jack.stiffness * far > OF_THE_WEIGHT * mass * GRAVITY:
+        return f"{name}: displacement reaches {far:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
+    if 0 < jack.stiffness * far < NEGLIGIBLE_SHARE * mass * GRAVITY:
+        return (
+            f"{name}: stiffness = {jack.stiffness:g} N/m pushes with at most {jack.stiffness * far:.3g} N, and the "
+            f"masonry weighs {mass * GRAVITY:.3g} N: is it in N/m?"
+        )
+    return ""
+
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
@@ -118,8 +185,7 @@ class MasonryCase(Carrying):
         if self.tilt is not None and (self.motion is not None or self.vertical is not None):
             raise ValueError("tilt does not go with motion and vertical: a table either tilts or shakes; leave one out")
         if self.velocity is not None:
-            unknowns = 6 if self.masonry.in_space else 3
-            velocity = require_array("velocity", self.velocity, (len(self.masonry.free), unknowns))
+            velocity = require_array("velocity", self.velocity, (len(self.masonry.free), self.masonry.freedom.nv))
             for value in velocity[np.abs(velocity) > FASTEST].tolist():
                 require_within("velocity", value, -FASTEST, FASTEST, "m/s or rad/s")
             velocity.setflags(write=False)
@@ -271,8 +337,8 @@ class MasonryCase(Carrying):
     @property
     def guided(self) -> Flags:
         """Which velocities of blocks that are not fixed guides of actuators keep at zero, shape (bodies, nv)."""
-        d = 3 if self.masonry.in_space else 2
-        held = np.zeros((len(self.masonry.free), 3 * d - 3), dtype=bool)
+        d = self.masonry.freedom.translations
+        held = np.zeros((len(self.masonry.free), self.masonry.freedom.nv), dtype=bool)
         for actuator in self.actuators.values():
             if not any(actuator.guide):
                 continue  # it may drive all blocks
@@ -289,7 +355,7 @@ class MasonryCase(Carrying):
             velocity: of the blocks that are not fixed [m/s, rad/s], shape (bodies, nv).
             most: velocity that is taken for none, rotations times the size of the block [m/s].
         """
-        held, d = self.guided, 3 if self.masonry.in_space else 2
+        held, d = self.guided, self.masonry.freedom.translations
         for body in np.flatnonzero(held.any(axis=1)).tolist():
             block, speeds = self.masonry.free[body], np.abs(velocity[body])
             speeds[d:] *= self.masonry.blocks[block].size

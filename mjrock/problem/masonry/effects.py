@@ -31,17 +31,17 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
 
     The shape is (free, 3), in space (free, 6), as `falling` takes them.
     """
-    total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
+    total = np.zeros((len(masonry.free), masonry.freedom.nv))
     for effect in effects:
         force = effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added)
         arm = place_in_world(masonry, effect) - masonry.centroids[effect.block]
-        total[masonry.free.index(effect.block)] += acting(arm, np.array(force)[_axes(masonry)])
+        total[masonry.free.index(effect.block)] += acting(arm, np.array(force)[list(masonry.freedom.axes)])
     return total
 
 
 def dragged(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Array:
     """The same of the weight of added masses along a unit vector, shape (2,), in space (3,)."""
-    total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
+    total = np.zeros((len(masonry.free), masonry.freedom.nv))
     for effect in effects:
         arm = place_in_world(masonry, effect) - masonry.centroids[effect.block]
         total[masonry.free.index(effect.block)] += acting(arm, GRAVITY * effect.mass_added * way)
@@ -51,7 +51,7 @@ def dragged(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Array:
 def pulls_of(masonry: Masonry, ties: Sequence[Anchored]) -> Array:
     """Forces and moments on the free blocks of each link that pulls with 1 N, shape (t, free, 3), in space
     (t, free, 6)."""
-    pulls = np.zeros((len(ties), len(masonry.free), 6 if masonry.in_space else 3))
+    pulls = np.zeros((len(ties), len(masonry.free), masonry.freedom.nv))
     for pull, tie in zip(pulls, ties, strict=True):
         held = np.array(place_in_world(masonry, tie))
         anchor = tie.anchor_of(held)
@@ -66,11 +66,6 @@ def acting(arm: Array, force: Array) -> Array:
     """A force and its moment about a centroid, from where it acts from there [m], see `applied`."""
     turn = np.cross(arm, force) if len(arm) == 3 else [arm[1] * force[0] - arm[0] * force[1]]
     return np.array([*force, *turn])
-
-
-def _axes(masonry: Masonry) -> list[int]:
-    """The axes of the world along which blocks of the masonry move."""
-    return [0, 1, 2] if masonry.in_space else [0, 2]
 
 
 def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
@@ -107,7 +102,7 @@ def with_block_numbers(name: str, effect: Effect, masonry: Masonry) -> Effect:
 
 def require_pushing(name: str, actuator: Actuator, masonry: Masonry) -> None:
     """Raise a ValueError that names the field, unless an actuator pushes its block, in the plane or in space."""
-    d = 3 if masonry.in_space else 2
+    d = masonry.freedom.translations
     if actuator.block is None:
         if len(actuator.direction) != d:
             raise ValueError(f"{name}, direction = {actuator.direction}: all blocks of this masonry take {d} numbers")

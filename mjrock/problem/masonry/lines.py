@@ -12,7 +12,7 @@ from scipy.sparse import block_diag, coo_array, csr_array, eye_array, vstack
 from ...geometry.convex import exact_shares, sectioned, spread, within
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
-from ..damping.interface import contact_lines
+from ..damping.contacts import contact_lines
 from .blocks.compound import AnyBlock
 from .blocks.joints import LEVEL, Joint
 from .blocks.joints_in_space import SpaceJoint, axes_across

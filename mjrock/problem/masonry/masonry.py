@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...files import write_text
+from ...geometry.frames import PLANE, SPACE, Freedom
 from ...notebook import Drawn
 from ...quantities import (
     Array,
@@ -33,10 +34,9 @@ from ...quantities import (
     warn_of,
 )
 from ..damping.contacts import AnyLaw, required_law
-from ..wall.bending import VerticalBending
+from ..wall.bending import HorizontalBending, VerticalBending
 from ..wall.block import Block
 from ..wall.effects import SideStop
-from ..wall.horizontal_bending import HorizontalBending
 from ..wall.section import Opening
 from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .blocks.joints import Joint, OverlapError, joints_in_plane, names_of
@@ -83,27 +83,29 @@ from .drawing import (
     touches_told,
     with_sizes,
 )
-from .files.bodies import Given, Mesh, Scale, blocks_of, meshes_of, names_of_list
+from .files.bodies import Given, Mesh, Scale, about, blocks_of, meshes_of, names_of_list
 from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
 from .files.meshes import obj_text, read_obj, read_ply, read_stl
 from .laws.bond import Bond
-from .laws.dry import Dry, Properties
+from .laws.dry import AnyPairs, Dry, Meets, Properties, asked_pair, required_pairs
 from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
     ByKind,
     ByWord,
     Halved,
+    JointOptions,
     JointTable,
     OfBond,
     OfCount,
     OfJoint,
     OrElse,
+    OtherOptions,
+    keywords_checked,
+    one_by_one,
     properties_of,
 )
-from .laws.options import JointOptions, OtherOptions, keywords_checked, one_by_one
-from .laws.pairs import AnyPairs, Meets, asked_pair, required_pairs
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
@@ -247,6 +249,11 @@ class Masonry(Drawn):
     def in_space(self) -> bool:
         """Whether the blocks are bodies in space."""
         return self.blocks[0].in_space
+
+    @property
+    def freedom(self) -> Freedom:
+        """How the blocks may move: in the plane or in space."""
+        return SPACE if self.in_space else PLANE
 
     @cached_property
     def polygons(self) -> tuple[FlatBlock, ...]:
@@ -1097,16 +1104,18 @@ class Masonry(Drawn):
             UserWarning: if the drawing is damaged and was repaired while it was read, or holds splines, hatches or
                 other areas, which are left out.
         """
-        given = Given(fixed, ground, scale, unit, up, convex).checked()
-        drawing = read_dxf(require_path("path", path), None if layers is None else names_of_list("layers", layers))
-        try:
-            blocks = polygons_of(drawing, given, density, length)
-            if given.ground:
-                blocks.insert(0, ground_below_all(blocks))
-            masonry = cls(blocks, **options)._touching()
-        except ValueError as error:
-            drawn = {outline.name: outline.corners for outline in drawing.outlines}
-            raise ValueError(f"path = {path}: {with_sizes(error, drawn, given.matrix(drawing.unit or 1.0))}") from None
+        given, path = Given(fixed, ground, scale, unit, up, convex).checked(), require_path("path", path)
+        asked = None if layers is None else names_of_list("layers", layers)
+        with about(f"path = {path}"):
+            drawing = read_dxf(path, asked)
+            try:
+                blocks = polygons_of(drawing, given, density, length)
+                if given.ground:
+                    blocks.insert(0, ground_below_all(blocks))
+                masonry = cls(blocks, **options)._touching()
+            except ValueError as error:
+                drawn = {outline.name: outline.corners for outline in drawing.outlines}
+                raise with_sizes(error, drawn, given.matrix(drawing.unit or 1.0)) from None
         if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
             warn_of(f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another")
         return masonry
@@ -1138,11 +1147,8 @@ class Masonry(Drawn):
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
         given, path = given.checked(), require_path("path", path)
-        meshes = read(path)
-        try:
-            return cls._of_meshes(meshes, density, given, options)
-        except ValueError as error:
-            raise ValueError(f"path = {path}: {error}") from None
+        with about(f"path = {path}"):
+            return cls._of_meshes(read(path), density, given, options)
 
     @classmethod
     def _of_meshes(cls, meshes: Sequence[Mesh], density: float, given: Given, options: JointOptions) -> Self:

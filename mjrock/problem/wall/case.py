@@ -28,9 +28,8 @@ from .block import Block
 from .effect import Anchored, Effect, require_only
 from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, constant_forces_of
 from .plausible import doubts
-from .restoring_moment import Restoring, of_force
+from .restoring_moment import Restoring, TiePull, of_force, taken, tie_energy, tie_limits, yielded
 from .standing import WallStanding
-from .ties_on_wall import TiePull, taken, tie_energy, tie_limits, yielded
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,10 @@ from itertools import accumulate
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...quantities import Array, keep, require_array, require_whole, require_within, short_repr
+from ...compiled import inlined
+from ...quantities import Array, keep, keep_declared, require_array, require_whole, require_within, short_repr
 
 Point = tuple[float, float, float]
 PointOf = tuple[float, ...]
@@ -44,26 +46,6 @@ def place_or_none(name: str, value: Any, least: int = 2) -> PointOf | None:
     return tuple(
         require_within(name, each, -FARTHEST_POINT, FARTHEST_POINT, "m")
         for each in require_array(name, value, (count,))
-    )
-
-
-def keep_place(effect: Any, kind: str) -> None:
-    """Check and keep where an effect is: its block, its height or point, and the anchor of a tie or damper.
-
-    Raises:
-        TypeError, ValueError: with the name and the kind of effect, for what is not a number or point, or out of range.
-    """
-    for name in ("at", "anchor"):
-        if hasattr(effect, name):
-            keep(effect, **{name: place_or_none(f"{name} of the {kind}", getattr(effect, name))})
-    if effect.at is None and getattr(effect, "anchor", None) is not None:
-        raise ValueError(f"anchor of the {kind} = {effect.anchor} m goes with at, the point that is held; give it too")
-    if getattr(effect, "anchor_block", None) is not None:
-        keep(effect, anchor_block=_block(f"anchor_block of the {kind}", effect.anchor_block))
-    keep(
-        effect,
-        height=_height(kind, effect.height, effect.at),
-        block=_block(f"block of the {kind}", effect.block),
     )
 
 
@@ -143,6 +125,32 @@ class LinkLaw(NamedTuple):
         return np.array(list(slid)[1:])
 
 
+DASHPOT = ("c",)
+"""The numbers of `LinkLaw` that its dashpot has."""
+
+
+@inlined
+def resistance(law: LinkLaw, rate: float) -> float:
+    """Force with which the dashpot of a link resists the rate of its length [N], for all solvers.
+
+    `law` may be a row with the numbers of `DASHPOT`.
+    """
+    return law.c * rate
+
+
+def steepest(law: NDArray[np.void]) -> Array:
+    """The largest slope of `resistance` over the rate [N s/m], from which the longest step follows.
+
+    `law` are rows with the numbers of `DASHPOT`.
+    """
+    return law["c"]
+
+
+def beyond_text(law: LinkLaw) -> str:
+    """The number of a law that the text of a model, and so a fixed step, cannot have, in words; empty for none."""
+    return f"ultimate = {law.ultimate:g} m" if law.ultimate < math.inf else ""
+
+
 class Told(Protocol):
     """What sketch and report speak of: an effect, or what several effects stand for.
 
@@ -164,6 +172,7 @@ class Effect:
 
     Attributes:
         label: its name, to which its number among those of its kind is added.
+        called: its kind in messages; the words of the label where it is empty.
         arguments: names of its arguments as they stand in a sketch.
         on_face: whether it holds the inner face. Otherwise it acts at `offset` from the middle of base or block.
         on_block: whether its point has to lie on its block.
@@ -172,6 +181,7 @@ class Effect:
     """
 
     label: ClassVar[str]
+    called: ClassVar[str] = ""
     arguments: ClassVar[str]
     only: ClassVar[str] = ""
     on_face: ClassVar[bool] = False
@@ -182,6 +192,24 @@ class Effect:
     offset: float = 0.0
 
     __repr__ = short_repr
+
+    def __post_init__(self) -> None:
+        """Check and keep its block, its height or point, its anchor, and the numbers that declare a range.
+
+        Raises:
+            TypeError, ValueError: with the name and the kind of effect, for what is not a number or point, or out of
+                range.
+        """
+        kind, anchor_block = self.called or self.label.replace("_", " "), getattr(self, "anchor_block", None)
+        for name in ("at", "anchor"):
+            if hasattr(self, name):
+                keep(self, **{name: place_or_none(f"{name} of the {kind}", getattr(self, name))})
+        if self.at is None and (anchor := getattr(self, "anchor", None)) is not None:
+            raise ValueError(f"anchor of the {kind} = {anchor} m goes with at, the point that is held; give it too")
+        if anchor_block is not None:
+            keep(self, anchor_block=_block(f"anchor_block of the {kind}", anchor_block))
+        keep(self, height=_height(kind, self.height, self.at), block=_block(f"block of the {kind}", self.block))
+        keep_declared(self, kind)
 
     @property
     def mass_added(self) -> float:

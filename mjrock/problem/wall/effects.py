@@ -1,4 +1,4 @@
-"""Effects that a case may carry: ties, thrusts, loads, added masses, and a side stop that reaches only so high.
+"""Effects that a case may carry: ties, dampers, thrusts, loads, added masses, and a side stop up to a height.
 
 Heights are measured from the base. Offsets are measured from the middle of the base, positive outwards, away from the
 side stop. A wall of many blocks names the block that an effect belongs to; a single wall is block 0. On masonry in
@@ -10,14 +10,120 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, TypeVar
+from typing import Annotated, ClassVar, Literal, TypeVar
 
 from ...notebook import Drawn
 from ...quantities import Within, keep, keep_declared, short_repr, shown
 from ..ground.motion import GroundMotion
-from .damper import Damper, FrictionDamper
-from .effect import HIGHEST_WALL, IN_SPACE, OF_MASONRY, Anchored, Effect, Point, PointOf, keep_place, place_or_none
+from .effect import (
+    HIGHEST_WALL,
+    IN_SPACE,
+    OF_MASONRY,
+    Anchored,
+    Effect,
+    LinkLaw,
+    Point,
+    PointOf,
+    place_or_none,
+)
 from .tie import Tie
+
+
+@dataclass(frozen=True, repr=False)
+class Damper(Anchored):
+    """A linear viscous damper that runs horizontally from the inner face to an anchor behind the wall.
+
+    It resists both ways with c times the rate of its length. A wall at rest does not feel it.
+
+    Args:
+        height: where it holds the wall [m].
+        c: damping coefficient [N s/m], 0 to 1e9.
+        length: distance from the inner face to the anchor [m], 0.01 to 1000.
+        block: the block that it holds.
+        at: of masonry, the point that it holds, x, z or x, y, z at rest [m]; it takes the place of the height.
+        anchor: of masonry, its other end at rest [m]. None is `length` behind the point.
+        anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
+            plane the end lies `length` to the left.
+
+    Raises:
+        ValueError: for a value outside its range.
+
+    Examples:
+        >>> damper = mr.Damper(height=4.0, c=2e4)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(damper,)).effects[0].c
+        20000.0
+    """
+
+    label: ClassVar[str] = "damper"
+    arguments: ClassVar[str] = "height, c, length"
+    colour: ClassVar[str] = "#3f8f5b"
+    dashes: ClassVar[Literal["-", "--", "-."]] = "-."
+    height: float = None  # type: ignore[assignment]
+    c: Annotated[float, Within(0, 1e9, "N s/m", "coefficient c of the damper")] = None  # type: ignore[assignment]
+    length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
+    block: int = 0
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+
+    @property
+    def law(self) -> LinkLaw:
+        """A dashpot."""
+        return LinkLaw(c=self.c)
+
+    @property
+    def said(self) -> str:
+        """For sketches, and for reports that have no words for it."""
+        return f"z = {self.height:g} m, c = {self.c / 1e3:g} kN s/m"
+
+
+@dataclass(frozen=True, repr=False)
+class FrictionDamper(Anchored):
+    """A friction damper that runs horizontally from the inner face to an anchor behind the wall.
+
+    It is a spring with a slider: its force is that of the spring up to the slip force, at which it slips, in either
+    direction. A cycle of the amplitude d takes 4 F (d - F/k) from the wall, with F the slip force and k the stiffness.
+    It is put in when the wall stands, so that it bears nothing at rest.
+
+    Args:
+        height: where it holds the wall [m].
+        stiffness: of the spring [N/m], 1 to 1e12.
+        slip_force: force at which it slips [N], 1e-3 to 1e9.
+        length: distance from the inner face to the anchor [m], 0.01 to 1000.
+        block: the block that it holds.
+        at: of masonry, the point that it holds, x, z or x, y, z at rest [m]; it takes the place of the height.
+        anchor: of masonry, its other end at rest [m]. None is `length` behind the point.
+        anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
+            plane the end lies `length` to the left.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    label: ClassVar[str] = "friction_damper"
+    arguments: ClassVar[str] = "height, stiffness,\nslip_force, length"
+    colour: ClassVar[str] = "#8a4f9e"
+    dashes: ClassVar[Literal["-", "--", "-."]] = "--"
+    limit: ClassVar[str] = "slip_force"
+    height: float = None  # type: ignore[assignment]
+    stiffness: Annotated[float, Within(1, 1e12, "N/m")] = None  # type: ignore[assignment]
+    slip_force: Annotated[float, Within(1e-3, 1e9, "N")] = None  # type: ignore[assignment]
+    length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
+    block: int = 0
+    at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+
+    @property
+    def law(self) -> LinkLaw:
+        """A spring that yields both ways."""
+        return LinkLaw(self.stiffness, self.span, self.slip_force, push=self.slip_force)
+
+    @property
+    def said(self) -> str:
+        """For sketches, and for reports that have no words for it."""
+        said = f"z = {self.height:g} m,\nk = {self.stiffness / 1e6:.4g} kN/mm"
+        return f"{said}, slips at {self.slip_force / 1e3:g} kN"
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,8 +161,7 @@ class Thrust(Effect):
                 name = f"direction of the thrust = {given}"
                 raise ValueError(f"{name} has no length; the valid range are vectors longer than 1e-9")
             keep(self, direction=(given[0] / length, given[1] / length, given[2] / length))
-        keep_place(self, "thrust")
-        keep_declared(self, "thrust")
+        super().__post_init__()
 
     @property
     def force_vector(self) -> Point:
@@ -100,10 +205,6 @@ class Load(Effect):
     block: int = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
-    def __post_init__(self) -> None:
-        keep_place(self, "load")
-        keep_declared(self, "load")
-
     @property
     def force_vector(self) -> Point:
         """Downwards."""
@@ -131,6 +232,7 @@ class AddedMass(Effect):
     """
 
     label: ClassVar[str] = "mass"
+    called: ClassVar[str] = "added mass"
     arguments: ClassVar[str] = "mass, height, offset"
     on_block: ClassVar[bool] = False
     mass: Annotated[float, Within(0, 1e8, "kg", "added mass")]
@@ -138,10 +240,6 @@ class AddedMass(Effect):
     offset: Annotated[float, Within(-13, 13, "m")] = 0.0
     block: int = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-
-    def __post_init__(self) -> None:
-        keep_place(self, "added mass")
-        keep_declared(self, "added mass")
 
     @property
     def mass_added(self) -> float:

@@ -10,10 +10,10 @@ import numpy as np
 
 from ...quantities import GRAVITY, Implausible, warn_of
 from ..ground.motion import GroundMotion
-from .effect import Anchored, Effect
+from .effect import Anchored, Effect, resistance
 from .effects import AddedMass, Load, Thrust
+from .restoring_moment import TiePull, moment_at_strength, pulled
 from .tie import Tie
-from .ties_on_wall import TiePull, moment_at_strength, pulled
 
 NEGLIGIBLE_SHARE = 1e-4
 """Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
@@ -220,7 +220,7 @@ def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     if not link.law.c > 0:
         return ""
     speed, weight = math.sqrt(GRAVITY * room(link)[0]), whole.mass * GRAVITY
-    force = link.law.c * speed
+    force = resistance(link.law, speed)
     if NEGLIGIBLE_SHARE * weight <= force <= EXCESSIVE * weight:
         return ""
     unit = "kN s/m" if force < weight else "N s/m"

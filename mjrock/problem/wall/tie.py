@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
-from ...quantities import Within, keep, keep_declared, require_array, require_real, require_within, within_ranges
-from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, LinkLaw, PointOf, keep_place
+from ...quantities import Within, keep, require_array, require_real, require_within, within_ranges
+from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, LinkLaw, PointOf
 
 GOVERNING = ("bar", "punching", "bearing")
 """What the strength of a tie with an anchor plate may be that of."""
@@ -74,8 +74,7 @@ class Tie(Anchored):
     prestress: Annotated[float, Within(0, 1e9, "N")] = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
-        keep_place(self, "tie")
-        keep_declared(self, "tie")
+        super().__post_init__()
         keep(self, strength=require_real("strength of the tie", self.strength))
         if not self.strength > 0:
             raise ValueError(

@@ -2,27 +2,42 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import signal
 import warnings
-from collections.abc import Iterable, Sequence
-from concurrent.futures import BrokenExecutor, Executor
-from itertools import chain
+from collections import deque
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from dataclasses import dataclass
+from itertools import chain, islice
 from pathlib import Path
+from pickle import PickleError
+from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import TypedDict, Unpack, cast
 
+from pebble import ProcessExpired
+
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
-from .pool import Workers
+from .pool import CHUNK_SECONDS, QUIT, Workers
 from .progress import CampaignProgress, collect_warnings
-from .run import Runner
 from .store import Store
-from .task import Row, Task, carry_out_all, column_names, keyed
+from .task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
+DEATHS = 2
+"""A task during which this many worker processes have died is run alone."""
+LOOK_EVERY = 0.1
+"""Time between two looks for the row of a task that runs in this process [s]."""
 GUARD = (
     "the worker processes die as they start: they import the script that calls the campaign; let it do so "
     'below `if __name__ == "__main__":`; or give workers=1 without a time limit'
 )
+
+Submit = Callable[[list[tuple[Task, Path | None]]], Future[list[Row]]]
+"""Hands tasks over, and returns the future rows of the first of them."""
 
 
 class CampaignOptions(TypedDict, total=False):
@@ -97,14 +112,14 @@ def campaign(
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry=retry, limit=limit)
         try:
-            with collect_warnings(run.warned.add):
+            with collect_warnings(progress.warned.add):
                 _carry_out(run, tasks, executor, count)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
             ) from None
         finally:
-            run.close()
+            progress.close()
         if total is not None and run.asked != total:
             raise RuntimeError(f"the tasks ended after {run.asked} of {total}; the same call carries on from there")
     return path
@@ -142,7 +157,7 @@ def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, co
             with Workers(count, run.limit) as workers:
                 run.across(chain([first], pending), count, workers.submit)
     except BrokenExecutor as error:
-        if executor is None and not run.finished:
+        if executor is None and not run.progress.finished:
             raise RuntimeError(GUARD) from None
         raise RuntimeError(
             f"the processes broke down: {error}; what is done is kept, and the same call carries on"
@@ -150,17 +165,17 @@ def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, co
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
-    """The row of each task, in the order asked, from a store that may hold other rows too; None where there is none."""
+    """The row of each task, in their order, from a store that may hold other rows too; None where there is none."""
     tasks = required_tasks(tasks)
     with Store(require_path("store", store)) as file:
         rows = {row["key"]: row for row in file.rows()}
-    with warnings.catch_warnings():  # what a task warns of as it is made was said when it ran
+    with warnings.catch_warnings():  # a task warned as it was made for the run
         warnings.simplefilter("ignore", UserWarning)
         return [rows.get(keyed(task)[0]) for task in tasks]
 
 
 def completed(tasks: Iterable[Task], store: str | Path, **options: Unpack[CampaignOptions]) -> list[Row]:
-    """The rows of the tasks, in the order asked, once a `campaign` with these options has run what the store lacks.
+    """The rows of the tasks, in their order, once a `campaign` with these options has run what the store lacks.
 
     Raises:
         RuntimeError: if a task has failed; its row in the store says how.
@@ -174,3 +189,176 @@ def completed(tasks: Iterable[Task], store: str | Path, **options: Unpack[Campai
             f"{len(failed)} of {len(rows)} tasks failed, the first with {failed[0]['error']}; see {store}"
         )
     return rows
+
+
+@dataclass
+class Job:
+    """A task that is to be run, and how often a worker has died while it was in progress."""
+
+    task: Task
+    key: str
+    position: int
+    history: Path | None
+    deaths: int = 0
+
+
+class Runner:
+    """A running campaign: its store, its counts, and where its tasks are."""
+
+    def __init__(
+        self, file: Store, progress: CampaignProgress, folder: Path | None, *, retry: bool, limit: float | None
+    ) -> None:
+        self.file, self.progress, self.folder, self.retry, self.limit = file, progress, folder, retry, limit
+        self.seconds = 0.0
+        self.asked = 0
+
+    def pending(self, tasks: Iterable[Task]) -> Iterator[Job]:
+        """The tasks that have no row yet, each once. One that cannot be run gets its row here."""
+        statuses = self.file.statuses()
+        partial = self._partial_histories()
+        columns: tuple[str, ...] = ()
+        labels: dict[str, dict[str, object]] = {}
+        for position, asked in enumerate(tasks):
+            self.asked += 1
+            key, task = keyed(asked)
+            if (first := labels.setdefault(key, dict(task.labels))) != task.labels:
+                same = f"the case labelled {dict(task.labels)} is that labelled {first}"
+                self.progress.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")
+            history = None if self.folder is None else self.folder / f"{key}.npz"
+            status = statuses.get(key)
+            kept = status in ("failed", "taken") or history is None or history.exists()
+            if status is not None and kept and not (self.retry and status == "failed"):
+                self.progress.skipped += 1
+                continue
+            statuses[key] = "taken"
+            names = column_names(task)
+            if names != columns:
+                self.file.add_columns(names)
+                columns = names
+            for path in partial.pop(key, ()):
+                path.unlink(missing_ok=True)
+            job = Job(task, key, position, history)
+            if isinstance(task, Refused):
+                self.write([job], [{"status": "failed", "error": task.error, "seconds": 0.0}])
+            else:
+                yield job
+
+    def _partial_histories(self) -> dict[str, list[Path]]:
+        """What killed campaigns have left of time histories, by the key of the task."""
+        partial: dict[str, list[Path]] = {}
+        for path in self.folder.glob("*.npz.*.partial*") if self.folder is not None else ():
+            partial.setdefault(path.name.partition(".")[0], []).append(path)
+        return partial
+
+    def write(self, jobs: Sequence[Job], rows: Sequence[Row]) -> None:
+        """Write the rows of jobs and show how far the campaign is. What a worker has warned of is counted."""
+        for text in (text for row in rows for text in row.pop("warned", ())):
+            self.progress.warned.add(text)
+        self.file.add(
+            [
+                {"key": job.key, "position": job.position, "version": VERSION, **job.task.labels, **row}
+                for job, row in zip(jobs, rows, strict=True)
+            ]
+        )
+        self.seconds += sum(row["seconds"] for row in rows)
+        self.progress.add(rows)
+
+    def here(self, job: Job) -> None:
+        """Run a job in a thread of this process.
+
+        The main thread waits for the row, so that Ctrl-C reaches it also while compiled code runs.
+        """
+        rows: SimpleQueue[Row] = SimpleQueue()
+        Thread(target=lambda: rows.put(carry_out(job.task, job.history)), daemon=True).start()
+        while True:
+            with contextlib.suppress(Empty):
+                return self.write([job], [rows.get(timeout=LOOK_EVERY)])
+
+    def across(self, pending: Iterator[Job], width: int, submit: Submit) -> None:
+        """Run jobs in other processes, with twice as many chunks in flight as there are processes.
+
+        What a chunk leaves undone runs again, task by task. So does a task whose process was killed: after DEATHS
+        deaths alone, in case memory was short, and if its process dies again, it gets a row that says so.
+
+        Args:
+            pending: the jobs.
+            width: how many processes there are.
+            submit: hands a chunk over. A job that cannot be handed over gets a row with the error.
+
+        Raises:
+            BrokenExecutor: if no process can take a job any more.
+        """
+        again: deque[Job] = deque()
+        flying: dict[Future[list[Row]], list[Job]] = {}
+        try:
+            while True:
+                while len(flying) < 2 * width and (jobs := self.take(pending, again, flying.values())):
+                    try:
+                        flying[submit([(job.task, job.history) for job in jobs])] = jobs
+                    except (PickleError, AttributeError, TypeError) as error:  # what pickle raises
+                        again.extend(self.left(jobs, error))
+                if not flying:
+                    return
+                done = wait(flying, return_when=FIRST_COMPLETED).done
+                for future in [future for future in flying if future in done]:  # in the order of the tasks
+                    jobs = flying.pop(future)
+                    try:
+                        rows = future.result()
+                    except BrokenExecutor:
+                        raise
+                    except Exception as error:
+                        again.extend(self.left(jobs, error))
+                    else:
+                        self.write(jobs[: len(rows)], rows)
+                        again.extend(jobs[len(rows) :])
+        finally:
+            for future in flying:
+                future.cancel()
+
+    def take(self, pending: Iterator[Job], again: deque[Job], flying: Collection[Sequence[Job]]) -> list[Job]:
+        """The jobs of the next chunk, none where one that is in flight, or the next one, has to run alone."""
+        if any(job.deaths >= DEATHS for jobs in flying for job in jobs):
+            return []
+        if again:
+            return [again.popleft()] if again[0].deaths < DEATHS or not flying else []
+        return list(islice(pending, self.chunk()))
+
+    def chunk(self) -> int:
+        """How many jobs are about CHUNK_SECONDS of work; one where there is a time limit."""
+        finished = self.progress.finished
+        if self.limit is not None or not finished:
+            return 1
+        return min(max(int(CHUNK_SECONDS * finished / max(self.seconds, 1e-9)), 1), 64)
+
+    def left(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
+        """The jobs of a chunk without rows that are to be tried again, each alone. Others get their rows."""
+        for job in jobs:
+            for path in job.history.parent.glob(f"{job.history.name}.*.partial*") if job.history is not None else ():
+                path.unlink(missing_ok=True)
+        if len(jobs) > 1:
+            return jobs
+        (job,) = jobs
+        if isinstance(error, ProcessExpired):
+            return self.died(job, error.exitcode or 0)
+        if isinstance(error, TimeoutError) and self.limit is not None:
+            row = failed_row(TimeoutError(f"the case took longer than the time limit of {self.limit:g} s"))
+            self.write(jobs, [row | {"seconds": self.limit}])
+        elif isinstance(error, OSError):
+            raise error
+        else:
+            self.write(jobs, [failed_row(error)])
+        return ()
+
+    def died(self, job: Job, exitcode: int) -> Sequence[Job]:
+        """The job whose process has died, if it was killed and is to be tried again."""
+        job.deaths += 1
+        if exitcode < 0 and job.deaths <= DEATHS:
+            return [job]
+        if exitcode < 0:
+            how = f"was killed by {signal.Signals(-exitcode).name}"
+        else:
+            cause = ", as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold" if exitcode == 1 else ""
+            how = f"ended with exit status {exitcode % QUIT}{cause}"
+        often = f", {job.deaths} times in all" if job.deaths > 1 else ""
+        self.write([job], [failed_row(RuntimeError(f"its worker process {how}{often}"))])
+        return ()

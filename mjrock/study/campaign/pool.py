@@ -16,7 +16,6 @@ from concurrent.futures import Future
 from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
-from typing import Any
 
 from pebble import ProcessPool
 from tqdm import tqdm
@@ -28,7 +27,7 @@ CHUNK_SECONDS = 0.5
 """Work that a worker does before it hands over its rows [s]: long compared with the 1 ms of handing over, and short
 enough to keep the progress bar moving."""
 QUIT = 256
-"""Exit status of a worker that ended with 0, which `pebble` would take for one that it has ended itself."""
+"""Exit status that is given to a worker that ended with 0: `pebble` would take 0 for one that it has ended itself."""
 
 
 class Workers:
@@ -68,13 +67,13 @@ class _Worker(SpawnProcess):
             super().start()
 
     def is_alive(self) -> bool:
-        """Whether it runs. A death is told at the second look, when `pebble` has read which task was in progress."""
+        """Whether it runs: False from the second call after a death, when `pebble` has read which task it ended."""
         told, self.dead = self.dead, not super().is_alive()
         return not (told and self.dead)
 
     @property
     def exitcode(self) -> int | None:
-        """How it ended, see QUIT."""
+        """Its exit status, see QUIT."""
         code = super().exitcode
         return QUIT if code == 0 else code
 
@@ -120,7 +119,8 @@ def start_worker() -> None:
 
 
 def _end_with_the_campaign() -> None:
-    parent: Any = multiprocessing.parent_process()
+    parent = multiprocessing.parent_process()
+    assert parent is not None
     parent.join()
     os._exit(1)
 

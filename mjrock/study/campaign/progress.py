@@ -1,4 +1,4 @@
-"""How far a campaign is: a bar or lines while it runs, what was warned of, and what its store says."""
+"""Progress of a campaign: a bar or lines while it runs, its warnings by their kinds, and the status of its store."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TextIO
 
 from ...bars import OF_ALL, PLAIN, shown_bar
 from .store import Store
+from .task import Row
 
 NUMBER_IN_TEXT = re.compile(r"\d[\d.]*(?:e[-+]?\d+)?")
 
@@ -27,7 +28,7 @@ class WarningCounter:
         self.texts: dict[str, str] = {}
 
     def add(self, text: str, kind: str = "") -> bool:
-        """Count a warning, and say whether it is the first of its kind, by default its text without numbers."""
+        """Count a warning. Returns whether it is the first of its kind, by default its text without numbers."""
         kind = kind or NUMBER_IN_TEXT.sub("#", text)
         self.counts[kind] += 1
         return self.texts.setdefault(kind, text) is text
@@ -42,12 +43,19 @@ class WarningCounter:
 
 @contextlib.contextmanager
 def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
-    """Hand the text of every warning that would be shown to `first`, and show those for which it says so."""
+    """Pass the text of every warning that would be shown to `first`, and show those for which it returns True."""
     before = warnings.showwarning
 
-    def shown(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+    def shown(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
         if first(f"{category.__name__}: {message}"):
-            before(message, category, *place, **more)
+            before(message, category, filename, lineno, file, line)
 
     warnings.showwarning = shown
     try:
@@ -71,8 +79,8 @@ def closing(
 ) -> str:
     """The last line of a campaign.
 
-    It says how many tasks had a row and were kept, how many of the others are done or failed and how they ended, how
-    long that took [s], and how many of the total are left, None if nobody knows.
+    It has the number of tasks whose rows were kept, how many of the others are done or failed and how they ended, the
+    time that it took [s], and how many of the total are left; a total of None is not known.
     """
     rows = kept + sum(statuses.values())
     of = "" if total is None else f" of {total}"
@@ -86,7 +94,7 @@ def closing(
 def status(path: str | Path) -> str:
     """How many rows a store holds, how they ended, how long they took and what has failed, as text.
 
-    It may be asked while the campaign runs.
+    It can be called while the campaign runs.
 
     Raises:
         ValueError, OSError: as `Store`.
@@ -121,17 +129,21 @@ def answer(argv: Sequence[str]) -> str:
 LINE_EVERY = 30.0
 """Time between two lines of a campaign without a terminal [s]."""
 FEWEST = 10
-"""Fewest cases of which a rate is said."""
+"""Fewest cases from which a rate is shown."""
 
 
 class CampaignProgress:
     """How far a campaign is, on the standard error. Use it in a `with` statement.
 
-    `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows.
+    `kept` rows are in the store already, and `total` is the number of tasks, None if it is not known. `skipped` tasks
+    had a row already; of the others `statuses` and `outcomes` count how they ended, and `warned` what was warned of.
     """
 
     def __init__(self, store: Path, kept: int, total: int | None) -> None:
-        self.store, self.total = store, total
+        self.total, self.skipped = total, 0
+        self.statuses: Counter[str] = Counter()
+        self.outcomes: Counter[str] = Counter()
+        self.warned = WarningCounter()
         self.started = self.spoken = time.monotonic()
         self.first: tuple[int, float] | None = None
         if kept:
@@ -139,24 +151,31 @@ class CampaignProgress:
         form = (PLAIN if total is None else OF_ALL).replace("<{remaining}", "")  # which counts the start of workers
         self.bar = shown_bar("campaign", "cases", total, delay=1, bar_format=form)
 
-    def show(self, skipped: int, finished: int, failed: int) -> None:
-        """Show how many tasks had a row already, how many have got one, and how many of these have failed."""
-        now, parts = time.monotonic(), list[str]()
+    @property
+    def finished(self) -> int:
+        """How many tasks have got a row."""
+        return self.statuses.total()
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Count rows, and show how many tasks have one, and how many of these have failed."""
+        self.statuses.update(row["status"] for row in rows)
+        self.outcomes.update(str(row["outcome"]) for row in rows if row.get("outcome") is not None)
+        now, finished, parts = time.monotonic(), self.finished, list[str]()
         if finished and self.first is None:
             self.first = finished, now
         if rate := self._rate(finished, now):
             parts.append(f"{rate:.3g} cases/s")
             if self.total is not None:
-                parts.append(f"{(self.total - skipped - finished) / rate:.0f} s left")
-        if failed:
-            parts.append(f"{failed} failed")
+                parts.append(f"{(self.total - self.skipped - finished) / rate:.0f} s left")
+        if self.statuses["failed"]:
+            parts.append(f"{self.statuses['failed']} failed")
         if not self.bar.disable:
             self.bar.set_postfix_str(", ".join(parts), refresh=False)
-            self.bar.update(skipped + finished - self.bar.n)
+            self.bar.update(self.skipped + finished - self.bar.n)
         elif now - self.spoken >= LINE_EVERY:
             self.spoken = now
             of = "" if self.total is None else f" of {self.total}"
-            self._say(", ".join([f"{skipped + finished}{of} cases", *parts]))
+            self._say(", ".join([f"{self.skipped + finished}{of} cases", *parts]))
 
     def _rate(self, finished: int, now: float) -> float:
         """Cases in a second since the first that ended, as workers start for some time; 0 for fewer than FEWEST."""
@@ -164,15 +183,13 @@ class CampaignProgress:
             return 0.0
         return (finished - self.first[0]) / (now - self.first[1])
 
-    def close(
-        self, skipped: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], warned: Sequence[str]
-    ) -> None:
-        """Say what was warned of, how many tasks had a row, how the others ended, how long that took, and how many are
-        left."""
+    def close(self) -> None:
+        """Print the warnings by their kinds, and the last line of the campaign."""
         self.bar.close()
-        for line in warned:
+        for line in self.warned.lines():
             self._say(line)
-        self._say(closing(skipped, statuses, outcomes, time.monotonic() - self.started, self.total))
+        seconds = time.monotonic() - self.started
+        self._say(closing(self.skipped, self.statuses, self.outcomes, seconds, self.total))
 
     def _say(self, text: str) -> None:
         print(f"campaign: {text}", file=sys.stderr, flush=True)

@@ -235,7 +235,7 @@ class Store:
         return int(self._ask("SELECT count(*) FROM cases")[1][0][0])
 
     def _verified(self) -> Iterator[Row]:
-        """The rows in the order in which they were asked, each verified by its checksum."""
+        """The rows in the order of their tasks, each verified by its checksum."""
         names, rows = self._ask("SELECT * FROM cases ORDER BY position, key")
         for values in rows:
             row = dict(zip(names, values, strict=True))
@@ -244,7 +244,7 @@ class Store:
             yield row
 
     def rows(self, **where: object) -> list[Row]:
-        """The rows in the order in which they were asked, all or those whose columns have the values given.
+        """The rows in the order of their tasks, all or those whose columns have the values given.
 
         Raises:
             ValueError: for an unknown column, a value that no column can hold, or a damaged file.

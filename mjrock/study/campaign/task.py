@@ -1,22 +1,23 @@
-"""What a campaign runs: tasks, what tells them apart, the rows that they return, and the version that made them."""
+"""Tasks of a campaign, grids of them, the keys by which they are kept apart, and the rows that they return."""
 
 from __future__ import annotations
 
 import dataclasses
 import hashlib
+import math
 import time
 import zlib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, cast, overload
 
 import mujoco
 import numpy as np
 
 from ..._version import __version__
-from ...quantities import spelt
+from ...quantities import is_iterable, shown, spelt
 
 Value = str | int | float | None
 
@@ -67,7 +68,7 @@ def fingerprint(*contents: object) -> str:
 
 
 def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
-    """Hand on the content of a value, as pieces of bytes that tell it from any other."""
+    """Add the content of a value as pieces of bytes, which are the same for equal contents alone."""
     if isinstance(value, np.generic):
         _hand_on(value.item(), add)
     elif value is None or isinstance(value, bool | str):
@@ -102,7 +103,7 @@ def _compared(kind: type) -> tuple[str, ...]:
 
 
 VERSION = f"mjrock {__version__}, MuJoCo {mujoco.__version__}"
-"""What made a row; another version makes other rows."""
+"""The programs that made a row; its task has another key with other versions."""
 
 Row = dict[str, Any]
 
@@ -110,7 +111,8 @@ Row = dict[str, Any]
 class Task(Protocol):
     """What a campaign runs: a frozen dataclass that can be pickled, whose content is its key.
 
-    `labels` tell the user which case it was, and are not part of its content; `COLUMNS` names what the call returns.
+    `labels` are columns by which the user recognizes the case, and are not part of its content; `COLUMNS` names what
+    the call returns.
     """
 
     @property
@@ -119,7 +121,7 @@ class Task(Protocol):
 
     @property
     def labels(self) -> Mapping[str, object]:
-        """Columns that tell the user which task it was."""
+        """Columns by which the user recognizes the task."""
 
     def __call__(self, history: Path | None = None) -> Row:
         """Do it, keep a time history in the file if one is given, and return the columns."""
@@ -168,7 +170,7 @@ def column_names(task: Task) -> tuple[str, ...]:
     """The columns of a task beside those of every row.
 
     A label may have the name of a column whose value it repeats, such as `solver`; it counts once. Any other two names
-    that are the same clash, and stay in the answer for the store to complain about.
+    that are the same clash, and stay in the answer: `Store.add_columns` refuses them.
     """
     labels = task.labels
     repeated = {n for n in labels if n in task.COLUMNS and getattr(task, n, None) == labels[n]}
@@ -189,7 +191,8 @@ def carry_out(task: Task, history: Path | None) -> Row:
     return row | {"seconds": time.perf_counter() - started}
 
 
-def _named(what: str, value: object) -> Any:
+def _named(what: str, value: object) -> Value:
+    """A value as a table holds it; a ValueError that names it for one that no table holds."""
     try:
         return table_value(value)
     except ValueError as error:
@@ -203,5 +206,99 @@ def failed_row(error: BaseException) -> Row:
 
 
 def carry_out_all(tasks: Sequence[tuple[Task, Path | None]]) -> list[Row]:
-    """What a worker does."""
+    """The rows of tasks with the files of their histories, in another process."""
     return [carry_out(task, history) for task, history in tasks]
+
+
+class Grid(Sequence[Task]):
+    """Every combination of the axes as a task. Each is built only when it is asked for, and labelled with its axes.
+
+    A label is the value itself if that is text, a number or None; a NumPy number counts as the Python number. For any
+    other value it is its `name`, or its `repr`.
+
+    Args:
+        build: makes the task of a point, `build(slenderness=7, scale=0.5)`.
+        axes: the values of each axis; the last one varies fastest.
+
+    Raises:
+        TypeError: for a build that is not a function, or values that cannot be gone through.
+        ValueError: if an axis has no values, or more than memory holds.
+    """
+
+    def __init__(self, build: Callable[..., Task], **axes: Iterable[object]) -> None:
+        if not callable(build):
+            raise TypeError(f"build = {shown(build)} is not a function that makes the task of a point")
+        self.build = build
+        self.axes = {name: _listed(name, values) for name, values in axes.items()}
+
+    def __repr__(self) -> str:
+        axes = ", ".join(f"{name} ({len(values)})" for name, values in self.axes.items())
+        return f"<Grid of {len(self)} cases: {axes}>"
+
+    def __len__(self) -> int:
+        """How many points there are."""
+        return math.prod(map(len, self.axes.values()))
+
+    def __iter__(self) -> Iterator[Task]:
+        """The tasks in order. A point that `build` fails to make becomes a task that fails with the same message."""
+        for i in range(len(self)):
+            try:
+                yield self[i]
+            except (Exception, SystemExit) as error:
+                yield Refused.because(error, self._labels(self._point(i)))
+
+    @overload
+    def __getitem__(self, index: int) -> Task: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Task]: ...
+
+    def __getitem__(self, index: int | slice) -> Task | list[Task]:
+        """The task of one point, or a list of them for a slice."""
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        point = self._point(range(len(self))[index])
+        try:
+            task = self.build(**point)
+        except ValueError as error:
+            at = ", ".join(f"{name} = {value}" for name, value in self._labels(point).items())
+            raise ValueError(f"{error} (at {at})") from error
+        return labelled(task, self._labels(point))
+
+    def _point(self, index: int) -> dict[str, object]:
+        places = np.unravel_index(index, [len(values) for values in self.axes.values()])
+        return {name: values[int(i)] for (name, values), i in zip(self.axes.items(), places, strict=True)}
+
+    @staticmethod
+    def _labels(point: Mapping[str, object]) -> dict[str, object]:
+        return {name: axis_label(value) for name, value in point.items()}
+
+
+def _listed(name: str, values: object) -> list[object]:
+    """The values of an axis; a TypeError or ValueError with its name if there are none."""
+    if not (isinstance(values, str) or is_iterable(values)):
+        raise TypeError(f"the axis {name} = {shown(values)} is not a row of values")
+    try:
+        listed = list(values)
+    except MemoryError:
+        raise ValueError(f"the axis {name} = {shown(values)} has more values than memory holds") from None
+    if not listed:
+        raise ValueError(f"the axis {name} has no values")
+    return listed
+
+
+def labelled(task: Task, labels: Mapping[str, object]) -> Task:
+    """The task with these labels; its own count where both have one of a name. TypeError for what is not a task."""
+    if not hasattr(task, "labels"):
+        raise TypeError(f"build gives {shown(task)}, which is not a task of a campaign, such as an Analysis")
+    labels = dict(labels) | dict(task.labels)
+    if hasattr(task, "labelled"):
+        return cast(Task, task.labelled(labels))
+    return cast(Task, replace(cast(Any, task), labels=labels))
+
+
+def axis_label(value: object) -> object:
+    """The label of the value of an axis, see `Grid`."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    return value if value is None or isinstance(value, str | int | float) else getattr(value, "name", spelt(value))

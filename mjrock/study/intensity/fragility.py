@@ -1,9 +1,12 @@
-"""Fragility: the share of walls that an intensity overturns, as a lognormal curve with its confidence band."""
+"""Fragility: the share of walls that an intensity overturns, as a lognormal curve with its confidence band.
+
+It is fitted to runs that overturned or did not, or to the intensities that overturn a wall under each record.
+"""
 
 from __future__ import annotations
 
 import math
-import warnings
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -17,18 +20,25 @@ from ...quantities import (
     Array,
     Flags,
     Integers,
+    is_iterable,
     require_path,
     require_plain,
+    require_real,
     require_reals,
+    require_row,
     require_whole,
     require_within,
+    short_repr,
     shown,
+    warn_of,
 )
+from ...result.ending import Outcome
+from ..campaign.task import Row
 
 FEWEST_GROUPS = 5
 """Fewest groups that are resampled."""
 MOST_WITHOUT = 0.05
-"""Share of resamples without a curve from which the user is told [-]."""
+"""Share of resamples without a curve that is warned of [-]."""
 MOST_VALUES = 4_000_000
 """Most values of resamples that are fitted at once."""
 NEWTON_STEPS = 100
@@ -41,13 +51,15 @@ COVERAGE = (
 """How often the intervals hold the truth (`scripts/studies/fragility_coverage.py`)."""
 SPREAD = 0.9
 """Confidence at which the dispersions of a band have the interval of the dispersion."""
+OUTCOMES = frozenset(outcome.value for outcome in Outcome)
+"""The outcomes that a row can have."""
 
 
 @dataclass(frozen=True)
 class Fragility(Drawn):
     """P(overturning | intensity) = Phi(ln(intensity / median) / dispersion).
 
-    Intervals and band take the runs as independent, unless the fit was told their groups.
+    Intervals and band take the runs as independent, unless the fit has their groups.
 
     Args:
         median: intensity at which half of the walls overturn, in the unit of the intensities that were fitted.
@@ -206,7 +218,7 @@ def fit_fragility(
     """The lognormal curve of greatest likelihood for runs that overturned or did not.
 
     It is a probit model of the logarithm of the intensity, solved by Newton's method. Runs under one record at several
-    intensities, or in both polarities, are not independent. Told which record each run belongs to, the fit draws whole
+    intensities, or in both polarities, are not independent. Given the record of each run, the fit draws whole
     records with replacement and repeats itself for every draw. The curve stays the same, its intervals get wider, with
     few records once more, as Student's distribution does. Of 90 % intervals from 5, 8, 20 and 40 simulated records in
     both polarities at 13 intensities 89, 91, 90 and 90 % hold the median, 95, 95, 91 and 89 % the dispersion, and 86 to
@@ -236,29 +248,22 @@ def fit_fragility(
     fit = _likeliest(x, fell)
     low, high = fit.tried
     if not low <= fit.median <= high:
-        warnings.warn(
+        warn_of(
             f"the median {fit.median:.4g} is extrapolated: the intensities tried are {low:.4g} to {high:.4g}; run "
-            "intensities around it",
-            stacklevel=2,
+            "intensities around it"
         )
     if groups is None:
         return fit
-    labels = labels_of(groups)
-    if labels.shape != x.shape:
-        raise ValueError(
-            f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
-        )
-    names, group = group_numbers(labels)
+    names, group = group_numbers(labels_for(groups, len(x)))
     draws = drawn(names, resamples, seed)
     count, at_once = len(draws), max(1, MOST_VALUES // len(x))
     fits = [resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
     curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(number for _, number in fits)
     curves.setflags(write=False)
     if without > MOST_WITHOUT * count:
-        warnings.warn(
+        warn_of(
             f"{without} of {count} resamples of {names} groups gave no curve, only a step; a penalised fit stands "
-            "for them, and the band is wide: run intensities between those tried, or more records",
-            stacklevel=2,
+            "for them, and the band is wide: run intensities between those tried, or more records"
         )
     return replace(fit, groups=names, resamples=curves, without_curve=without)
 
@@ -269,9 +274,9 @@ def _likeliest(x: Array, fell: Flags) -> Fragility:
     ((level, slope),) = probit(log_x, fell, np.ones((1, len(x))))
     if slope <= 0:
         raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
-    information = curvature(log_x, fell, level, slope)
+    h = _derivatives(np.where(fell, 1.0, -1.0) * (level + slope * log_x))[1]
     towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
-    covariance = np.linalg.inv(towards.T @ information @ towards)
+    covariance = np.linalg.inv(towards.T @ _information(h, log_x) @ towards)
     return Fragility(
         median=math.exp(-level / slope),
         dispersion=float(1 / slope),
@@ -310,21 +315,18 @@ def drawn(groups: int, resamples: int, seed: int) -> Integers:
 
 
 def labels_for(groups: ArrayLike | None, count: int) -> NDArray[np.generic]:
-    """What each of so many values belongs to, see `labels_of`; None takes each as a group of its own."""
-    labels = np.arange(count) if groups is None else labels_of(groups)
-    if labels.shape != (count,):
-        raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
-    return labels
-
-
-def labels_of(groups: ArrayLike) -> NDArray[np.generic]:
-    """What each run belongs to; TypeError or ValueError unless they are all text or all numbers, without NaN."""
+    """The group of each of so many values; None takes each as a group of its own. TypeError or ValueError unless they
+    are all text or all numbers, without NaN."""
+    if groups is None:
+        return np.arange(count)
     takes = "the name or the number of the group of each run"
     labels = require_plain("groups", groups, takes, "biufU")
     if labels.dtype.kind == "U" and not all(isinstance(label, str) for label in np.asarray(groups, dtype=object).flat):
         raise TypeError(f"groups = {shown(groups)} holds text and numbers; it takes {takes}, all of one kind")
     if labels.dtype.kind == "f" and np.isnan(labels).any():
         raise ValueError(f"groups holds nan; it takes {takes}")
+    if labels.shape != (count,):
+        raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
     return labels
 
 
@@ -395,8 +397,7 @@ def probit(log_x: Array, fell: Flags, weights: Array) -> Array:
         ratio, slant = _derivatives(sign * (fits[:, :1] + fits[:, 1:] * u))
         g, h = weights * sign * ratio, weights * slant
         gradient = np.stack([g.sum(axis=1), g @ u], axis=1)
-        hessian = np.stack([h.sum(axis=1), h @ u, h @ u, h @ (u * u)], axis=1).reshape(-1, 2, 2)
-        step = np.linalg.solve(hessian, gradient[..., None])[..., 0]
+        step = np.linalg.solve(_information(h, u), gradient[..., None])[..., 0]
         size = np.abs(step).max(axis=1, keepdims=True)
         fits += step / np.maximum(1.0, size)  # far from the summit the full step may overshoot
         if size.max() < 1e-10 * (1 + np.abs(fits).max()):
@@ -410,10 +411,14 @@ def _derivatives(z: Array) -> tuple[Array, Array]:
     return ratio, ratio * (z + ratio)
 
 
-def curvature(log_x: Array, fell: Flags, level: float, slope: float) -> Array:
-    """Minus the second derivatives of the likelihood over level and slope, shape (2, 2)."""
-    h = _derivatives(np.where(fell, 1.0, -1.0) * (level + slope * log_x))[1]
-    return np.array([[h.sum(), h @ log_x], [h @ log_x, h @ (log_x * log_x)]])
+def _information(h: Array, u: Array) -> Array:
+    """Minus the second derivatives of the likelihood over level and slope, shape (..., 2, 2).
+
+    Args:
+        h: minus the second derivative of the likelihood of each run over its score, shape (..., n).
+        u: logarithm of the intensity of each run, shape (n,).
+    """
+    return np.stack([h.sum(axis=-1), h @ u, h @ u, h @ (u * u)], axis=-1).reshape(*h.shape[:-1], 2, 2)
 
 
 def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
@@ -431,8 +436,7 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
         share, density = ndtr(eta), np.exp(-0.5 * eta * eta) / math.sqrt(2 * math.pi)
         spread = share * ndtr(-eta)
         w = weights * density**2 / spread
-        information = np.stack([w.sum(axis=1), w @ u, w @ u, w @ (u * u)], axis=1).reshape(-1, 2, 2)
-        inverse = np.linalg.pinv(information, hermitian=True)  # one record drawn again and again says nothing
+        inverse = np.linalg.pinv(_information(w, u), hermitian=True)  # that of one record alone is singular
         leverage = w * np.einsum("ni,mij,nj->mn", design, inverse, design)
         score = weights * (fell - share) * density / spread - 0.5 * leverage * eta
         step = np.einsum("mij,mj->mi", inverse, np.stack([score.sum(axis=1), score @ u], axis=1))
@@ -477,3 +481,156 @@ def _log(values: Array) -> Array:
     """Logarithms; zero has that of minus infinity."""
     with np.errstate(divide="ignore"):
         return np.asarray(np.log(values))
+
+
+def lost(rows: Iterable[Row]) -> Flags:
+    """Whether each run of a campaign lost its wall, for `fit_fragility`; shape (n,).
+
+    A wall is lost if it overturned. One with ties is lost too if the time ended after it had leaned by alpha or more:
+    ties alone held it, and a wall that leans on ties that yield does not survive. So is one that leaned inwards by
+    alpha or more, over its side stop. A wall that still rocks stands. Masonry is lost if a block has fallen.
+
+    Args:
+        rows: rows of walls or of masonry, as `Store.rows` gives them.
+
+    Raises:
+        ValueError: for a row without a result, or one of another task.
+    """
+    if isinstance(rows, Mapping) or not is_iterable(rows):
+        raise TypeError(f"rows = {shown(rows)} are not rows of a campaign")
+    found = []
+    for i, row in enumerate(rows):
+        if not isinstance(row, Mapping):
+            raise TypeError(f"rows[{i}] = {shown(row)} is not a row of a campaign")
+        outcome, peak = row.get("outcome"), row.get("peak_over_alpha")
+        if peak is None and outcome in OUTCOMES and isinstance(row.get("fallen"), int):
+            found.append(row["fallen"] > 0)
+            continue
+        if not isinstance(outcome, str) or outcome not in OUTCOMES or peak is None:
+            raise ValueError(
+                f"rows[{i}] has outcome = {shown(outcome)} and peak_over_alpha = {shown(peak)}: no result of a "
+                "wall or of masonry"
+            )
+        peak, inwards = (
+            require_real(f"rows[{i}], {name}", row.get(name) or 0.0)
+            for name in ("peak_over_alpha", "inwards_over_alpha")
+        )
+        tied = any(str(name).startswith("tie_") and value is not None for name, value in row.items())
+        leans = tied and outcome == Outcome.TIME_ENDED.value and peak >= 1.0
+        found.append(outcome == Outcome.OVERTURNED.value or leans or inwards >= 1.0)
+    return np.array(found, dtype=bool)
+
+
+def fit_capacities(
+    capacities: ArrayLike, groups: ArrayLike | None = None, *, resamples: int = 1000, seed: int = 0
+) -> Fragility:
+    """The lognormal fragility curve of capacities, the intensity that overturns a wall under each record.
+
+    Median and dispersion are those of the logarithms. The intervals are those of `fit_fragility`: records are drawn
+    again and again. Every capacity has to be known; `IncrementalAnalysis.fragility` takes records that overturn the
+    wall at no scale.
+
+    Args:
+        capacities: in any measure of intensity, positive, shape (n,).
+        groups: what each belongs to, such as its record where both polarities are given; at least 5 different ones.
+            None takes each as a record of its own.
+        resamples: how many times the records are drawn, 20 to 100000.
+        seed: of the draws, a whole number from 0 to 2**53.
+
+    Raises:
+        TypeError, ValueError: for a capacity that is not finite and positive, equal ones, or fewer than 5 groups.
+
+    Source: Porter, Kennedy and Bachman (2007), Creating fragility functions for performance-based earthquake
+    engineering, Earthquake Spectra 23(2), method A; the standard deviation with n - 1.
+    """
+    log_c = _logarithms("capacities", capacities)
+    names, group = group_numbers(labels_for(groups, len(log_c)))
+    if not log_c.std() > 0:
+        raise ValueError("capacities are all equal; a fragility curve needs a spread")
+    weights = drawn(names, resamples, seed)[:, group].astype(float)
+    total = weights.sum(axis=1)
+    means = weights @ log_c / total
+    squares = np.maximum((weights * (log_c - means[:, None]) ** 2).sum(axis=1) / (total - 1), 0.0)
+    flat = squares == 0
+    found = np.stack([np.exp(means), np.sqrt(np.where(flat, squares[~flat].min(initial=1.0), squares))], axis=1)
+    found.setflags(write=False)
+    s, n = float(log_c.std(ddof=1)), len(log_c)
+    return Fragility(
+        median=math.exp(log_c.mean()),
+        dispersion=s,
+        covariance=((s * s / n, 0.0), (0.0, 0.5 / (n - 1))),
+        count=n,
+        groups=names,
+        resamples=found,
+        tried=(math.exp(log_c.min()), math.exp(log_c.max())),
+        without_curve=int(flat.sum()),
+    )
+
+
+@dataclass(frozen=True)
+class PairedRatio:
+    """The ratio of two capacities under the same records.
+
+    Args:
+        ratio: the geometric mean of the ratios [-].
+        low, high: its confidence interval [-].
+        least, most: the smallest and the largest ratio of a pair [-].
+        pairs: how many pairs there are.
+        groups: how many records they belong to.
+        confidence: of the interval [-].
+    """
+
+    ratio: float
+    low: float
+    high: float
+    least: float
+    most: float
+    pairs: int
+    groups: int
+    confidence: float
+
+    __repr__ = short_repr
+
+    def __str__(self) -> str:
+        return (
+            f"{self.ratio:.2f}, {self.confidence:.0%} interval {self.low:.2f} to {self.high:.2f}, single pairs "
+            f"{self.least:.2f} to {self.most:.2f} ({self.pairs} pairs, {self.groups} records)"
+        )
+
+
+def paired_ratio(
+    capacities: ArrayLike, over: ArrayLike, groups: ArrayLike | None = None, *, confidence: float = 0.9
+) -> PairedRatio:
+    """How many times as large capacities are as others of the same records, such as with ties over without.
+
+    The logarithms of the ratios are averaged over each record first, and their mean has Student's interval.
+
+    Args:
+        capacities, over: numerator and denominator, pair by pair, positive, shape (n,).
+        groups: what each pair belongs to, such as its record where both polarities are given; at least 2 different
+            ones. None takes each as a record of its own.
+        confidence: of the interval, 0 to 1.
+
+    Raises:
+        TypeError, ValueError: for values that are not finite and positive, shapes that differ, or fewer than 2 groups.
+    """
+    log_c, log_o = _logarithms("capacities", capacities), _logarithms("over", over)
+    if log_c.shape != log_o.shape:
+        raise ValueError(f"over has {len(log_o)} values and capacities {len(log_c)}; they have to be pairs")
+    confidence = require_within("confidence", confidence, 0.0, 1.0)
+    names, group = group_numbers(labels_for(groups, len(log_c)), 2)
+    ratios = log_c - log_o
+    means = np.bincount(group, ratios) / np.bincount(group)
+    reach = float(stdtrit(names - 1, 0.5 + 0.5 * confidence)) * means.std(ddof=1) / math.sqrt(names)
+    ends = means.mean() + reach * np.array([0.0, -1.0, 1.0])
+    ratio, low, high, least, most = np.exp([*ends, ratios.min(), ratios.max()]).tolist()
+    return PairedRatio(ratio, low, high, least, most, len(ratios), names, confidence)
+
+
+def _logarithms(name: str, values: ArrayLike) -> Array:
+    """Logarithms of positive numbers."""
+    made = require_row(name, values, "capacity")
+    bad = np.flatnonzero(~(made > 0))
+    if bad.size:
+        raise ValueError(f"{name}[{bad[0]}] = {made[bad[0]]:g} is outside the valid range, which is above 0")
+    return np.log(made)

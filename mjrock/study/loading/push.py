@@ -10,7 +10,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,13 +20,13 @@ from ...distinct.explicit import solve_explicit
 from ...notebook import Drawn
 from ...problem.masonry.actuator import LARGEST_STROKE, Actuator
 from ...problem.masonry.case import MasonryCase
-from ...problem.masonry.effects import laden
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effect import Effect
-from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown
+from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown, warn_of
+from ...result.problem import required_start
 from ...result.response import End, Response, State
-from ...result.start import required_start
 from .limit_analysis import horizontal
+from .pushover import falls_to_zero
 
 PIECES, POINTS, SAMPLES = 100, 4, 5
 """Pieces of a push, points of the curve in each, and samples of a point."""
@@ -104,11 +104,7 @@ class Push(Drawn):
     @property
     def d_0(self) -> float:
         """Displacement beyond the peak at which nothing is borne any more [m]; NaN where the curve ends before it."""
-        after = self._peak_at + int(np.argmax(self.force[self._peak_at :] <= 0))
-        if self.force[after] > 0:
-            return math.nan
-        (d, e), (borne, none) = self.displacement[after - 1 : after + 1], self.force[after - 1 : after + 1]
-        return float(d + (e - d) * borne / (borne - none))
+        return falls_to_zero(self.displacement[self._peak_at :], self.force[self._peak_at :])
 
     @property
     def inertia_share(self) -> float:
@@ -181,27 +177,26 @@ def push(
     require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST_STROKE, LARGEST_STROKE, "m")
     if turns.any():
         require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST_STROKE, "m")
-    given = _required(masonry, effects, start)
-    options = {"mass_damping": mass_damping, "local_damping": local_damping}
+    case = _required(masonry, effects, start)
+    pushed = case, start, mass_damping, local_damping
     if isinstance(driver, Actuator) and angle is None:
-        jack = _damped(driver, _driven_mass(driver, masonry, given))
-        return _pushed(Driven(masonry, given, options, start, jack, turns), allowed, falls_to)
+        return _pushed(Driven(*pushed, _damped(driver, _driven_mass(driver, case)), turns), allowed, falls_to)
     if isinstance(driver, Actuator):
         raise ValueError(f"angle = {shown(angle)} is for a direction; an Actuator has one of its own")
-    actuator = _of_all(masonry, given, horizontal(masonry, driver, angle, "driver"))
+    actuator = _of_all(case, horizontal(masonry, driver, angle, "driver"))
     if len(turns) != 1 or turns[0] <= 0:
         raise ValueError(f"to = {shown(to)}: a direction goes with one displacement above 0, an Actuator with others")
-    return _pushed(Forced(masonry, given, options, start, actuator, float(turns[0])), allowed, falls_to)
+    return _pushed(Forced(*pushed, actuator, float(turns[0])), allowed, falls_to)
 
 
-def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> tuple[Effect, ...]:
-    """The effects with the numbers of their blocks, where they and a start are what steps take."""
+def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> MasonryCase:
+    """The masonry with the effects that stay, where steps take them and the start."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Implausible)
         case = MasonryCase(masonry, 1.0, effects=effects)  # type: ignore[arg-type]
     if start is not None:
         required_start(start, case)
-    return case.effects
+    return case
 
 
 class Piece(NamedTuple):
@@ -229,19 +224,42 @@ def means(values: Array) -> Array:
     return np.asarray(between.reshape(POINTS, SAMPLES).mean(axis=1))
 
 
+def free_masses(case: MasonryCase) -> Array:
+    """Mass of each block that is not fixed, with the masses added to it [kg], shape (free,)."""
+    return case.masses[list(case.masonry.free)]
+
+
+def weight_of(case: MasonryCase) -> float:
+    """Weight of the free blocks and of the masses added to them [N]."""
+    return GRAVITY * float(free_masses(case).sum())
+
+
+def of_centroid(case: MasonryCase, motion: Array, way: Array) -> Array:
+    """Displacement [m] or velocity [m/s] of the common centroid of the free blocks along a unit vector, shape (n,).
+
+    Args:
+        case: the masonry and its effects.
+        motion: poses or velocities of the free blocks, shape (n, free, nq).
+        way: the unit vector, shape (d,).
+    """
+    mass = free_masses(case)
+    return np.asarray((motion[..., : len(way)] @ way) @ mass / mass.sum())
+
+
 @dataclass
-class Load:
+class Pushing:
     """An actuator that goes on slowly.
 
     Args:
-        masonry, effects, options, start: see `push`.
+        case: the masonry and the effects that stay.
+        start, mass_damping, local_damping: see `push`.
         actuator: its own history plays no part.
     """
 
-    masonry: Masonry
-    effects: tuple[Effect, ...]
-    options: dict[str, Any]
+    case: MasonryCase
     start: State | End | None
+    mass_damping: float
+    local_damping: float
     actuator: Actuator
     level: float = field(default=0.0, init=False)
     gained: float = field(default=0.0, init=False)
@@ -258,7 +276,7 @@ class Load:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Implausible)  # the motion is that of a piece
             driven = replace(self.actuator, displacement=(t, path))
-            case = MasonryCase(self.masonry, t[-1], effects=(*self.effects, driven))
+            case = replace(self.case, duration=t[-1], effects=(*self.case.effects, driven))
             warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
             warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
             answer = self._answer(case)
@@ -278,7 +296,14 @@ class Load:
         """
         spacing = case.duration / (POINTS * SAMPLES)
         try:
-            return solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
+            return solve_explicit(
+                case,
+                output_step=spacing,
+                ledger=True,
+                start=self.start,
+                mass_damping=self.mass_damping,
+                local_damping=self.local_damping,
+            )
         except RuntimeError as broken:
             what = str(broken).partition("; take ")[0]
             raise RuntimeError(
@@ -309,7 +334,7 @@ class Load:
     def _slowed(self, answer: Response) -> Array:
         """What damping in proportion to mass has taken at the samples of a piece [J]."""
         assert answer.ledger is not None
-        power = 2 * self.options["mass_damping"] * answer.ledger.kinetic
+        power = 2 * self.mass_damping * answer.ledger.kinetic
         return np.append(0.0, np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(answer.t)))
 
     def accept(self, piece: Piece) -> None:
@@ -333,7 +358,7 @@ class Load:
 
 
 @dataclass
-class Driven(Load):
+class Driven(Pushing):
     """An actuator that goes from one displacement to the next.
 
     Args:
@@ -358,10 +383,10 @@ class Driven(Load):
 
     def inertia(self, answer: Response, gone: Array) -> Array:
         """The rate of momentum along the direction, with the part of it that is damped away."""
-        mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
-        momentum = (answer.velocity[:, :, : len(way)] @ way) @ mass
+        way = self.actuator.way
+        momentum = (answer.velocity[:, :, : len(way)] @ way) @ free_masses(self.case)
         grown = np.diff(momentum[::SAMPLES]) / np.diff(answer.t[::SAMPLES])
-        return np.asarray(grown + self.options["mass_damping"] * means(momentum))
+        return np.asarray(grown + self.mass_damping * means(momentum))
 
     def accept(self, piece: Piece) -> None:
         """Go on to the level after that."""
@@ -374,7 +399,7 @@ class Driven(Load):
 
 
 @dataclass
-class Forced(Load):
+class Forced(Pushing):
     """A horizontal force on every block in proportion to its weight, which drives their common centroid.
 
     Args:
@@ -385,10 +410,9 @@ class Forced(Load):
     unit = "-"
 
     def __post_init__(self) -> None:
-        self.weight = weight_of(self.masonry, self.effects)
+        self.weight = weight_of(self.case)
         self.least = min(LEAST * self.weight / self.actuator.stiffness, self.to / PIECES)
-        self.mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
-        going = 0.0 if self.start is None else float(self.mass @ (self.start[1][:, : len(way)] @ way) / self.mass.sum())
+        going = 0.0 if self.start is None else float(of_centroid(self.case, self.start[1], self.actuator.way))
         self.speed, self.stretch, self.blows = max(going, 0.0), math.nan, 0
         self.step = max(self.least, self.speed * FIRST)
 
@@ -427,8 +451,7 @@ class Forced(Load):
 
     def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
         """From how far the centroid has moved. One that carries on counts from where the blocks are."""
-        way = self.actuator.way
-        moved = (answer.pose[:, :, : len(way)] @ way) @ self.mass / self.mass.sum()
+        moved = of_centroid(self.case, answer.pose, self.actuator.way)
         if math.isnan(self.stretch):
             self.stretch = float(force[0]) / self.actuator.stiffness
             if self.start is not None:
@@ -468,7 +491,7 @@ class Forced(Load):
         return f"nothing gives way to {HIGHEST:g}" if piece.force[-1] >= HIGHEST else ""
 
 
-def _pushed(load: Load, allowed: float, falls_to: float) -> Push:
+def _pushed(load: Pushing, allowed: float, falls_to: float) -> Push:
     """The pieces of a push until one ends it."""
     points, ended, duration = list[tuple[Array, ...]](), "", FIRST
     with Bar("push", "pieces") as bar:
@@ -500,30 +523,25 @@ def warn_if_fast(push: Push, weight: float) -> None:
     off = float(np.abs(beside).max() / np.ptp(push.energy)) if np.ptp(push.energy) > 0 else 0.0
     if off > OFF or push.inertia_share > STRIKING:
         at = 1e3 * push.displacement[np.abs(push.inertia).argmax()]
-        warnings.warn(
+        warn_of(
             f"the push was not slow: forces of inertia are {push.inertia_share:.1%} of the peak, most at {at:.4g} mm, "
             f"and the work under the curve is up to {off:.1%} beside the energy gained. Blocks that fall or strike "
-            "each other take part in no slow push: end it before they do, or lower inertia",
-            stacklevel=3,
+            "each other take part in no slow push: end it before they do, or lower inertia"
         )
 
 
-def weight_of(masonry: Masonry, effects: tuple[Effect, ...]) -> float:
-    """Weight of the free blocks and of the masses added to them [N]."""
-    return GRAVITY * float(laden(masonry, effects)[0][list(masonry.free)].sum())
-
-
-def _of_all(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Actuator:
+def _of_all(case: MasonryCase, way: Array) -> Actuator:
     """What drives all blocks along a unit vector."""
+    masonry, weight = case.masonry, weight_of(case)
     heights = np.concatenate([part.corners[:, -1] for i in masonry.free for part in masonry.blocks[i].parts])
-    weight = weight_of(masonry, effects)
     return _damped(Actuator(None, None, way, None, STIFF * weight / float(np.ptp(heights))), weight / GRAVITY)
 
 
-def _driven_mass(actuator: Actuator, masonry: Masonry, effects: tuple[Effect, ...]) -> float:
+def _driven_mass(actuator: Actuator, case: MasonryCase) -> float:
     """Mass of what an actuator drives [kg]."""
+    masonry = case.masonry
     if actuator.block is None:
-        return weight_of(masonry, effects) / GRAVITY
+        return weight_of(case) / GRAVITY
     block = masonry.names.index(actuator.block) if isinstance(actuator.block, str) else actuator.block
     return masonry.blocks[block].mass
 

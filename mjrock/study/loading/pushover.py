@@ -17,7 +17,7 @@ from ...notebook import Drawn
 from ...problem.damping.contacts import Contacts, Uplift
 from ...problem.masonry.case import require_wall
 from ...problem.wall.case import Case
-from ...problem.wall.ties_on_wall import pulled, yielded
+from ...problem.wall.restoring_moment import pulled, yielded
 from ...quantities import GRAVITY, ON_ITS_FACE, Array, Flags, Integers, require_increasing, require_kind, require_whole
 from ...scene.potential import Potential
 from ...scene.scene import Scene
@@ -217,7 +217,7 @@ def pushover(
         multiplier = held.force / case.wall.weight
         moment = held.force * held.height
         start = float(multiplier[held.lifted.argmax()]) if held.lifted.any() else math.nan
-    end = _end(path, multiplier)
+    end = falls_to_zero(path, multiplier, math.inf)
     wanted = np.isin(path, asked) if rotations is not None else path < end
     peak = float(multiplier[path < end].max())
     path, multiplier, moment = path[wanted], multiplier[wanted], moment[wanted]
@@ -239,7 +239,7 @@ def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:
 def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
     """Rotations from rest to beyond overturning [rad], denser about the uplift and where a tie changes."""
     fine = np.linspace(0.0, ON_ITS_FACE, 20_001)
-    limit = min(MARGIN * _end(fine, _rigid(case, fine)[0]), ON_ITS_FACE)
+    limit = min(MARGIN * falls_to_zero(fine, _rigid(case, fine)[0], math.inf), ON_ITS_FACE)
     parts = [np.linspace(rest, limit, points if not uplift else points // 2)]
     if uplift:
         near = min(max(uplift, 1e-9), limit)
@@ -256,11 +256,17 @@ def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
     return path[(path >= rest) & (path <= limit)]
 
 
-def _end(rotation: Array, multiplier: Array) -> float:
-    """The rotation at which the multiplier first falls to zero [rad], linear between the points; infinite if none."""
-    falls = np.flatnonzero((multiplier[:-1] > 0) & (multiplier[1:] <= 0))
+def falls_to_zero(at: Array, borne: Array, never: float = math.nan) -> float:
+    """Where along a curve what is borne first falls to zero from above it, linear between the points.
+
+    Args:
+        at: displacements or rotations, shape (n,).
+        borne: what is borne there, shape (n,).
+        never: what is returned of a curve that does not fall to zero.
+    """
+    falls = np.flatnonzero((borne[:-1] > 0) & (borne[1:] <= 0))
     if not falls.size:
-        return math.inf
+        return never
     i = falls[0]
-    share = multiplier[i] / (multiplier[i] - multiplier[i + 1])
-    return float(rotation[i] + share * (rotation[i + 1] - rotation[i]))
+    share = borne[i] / (borne[i] - borne[i + 1])
+    return float(at[i] + share * (at[i + 1] - at[i]))

@@ -2,22 +2,36 @@
 
 For each combination of wall, stiffness and release, and for each restitution that is asked for, a `Match` finds the
 damping ratio: first two-sided for the base, then one-sided for the side with the damping of the base presumed. The
-matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.forms`, see
-`mjrock.study.matching.regression`.
+matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.law`, see `regress`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Unpack
 
 import numpy as np
+from scipy.optimize import OptimizeResult, least_squares
 
-from ...problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
-from ...problem.damping.law import HIGHEST_XI, LEAST_XI, DampingLaw
+from ...problem.damping.law import (
+    HIGHEST_XI,
+    LEAST_XI,
+    REACH_MARGIN,
+    BedLaw,
+    CornerLaw,
+    DampingLaw,
+    Form,
+    Groups,
+    PowerLaw,
+    SideLaw,
+)
 from ...problem.damping.restitution import Restitution
 from ...quantities import (
+    Array,
+    Flags,
     Within,
     keep,
     keep_declared,
@@ -29,8 +43,15 @@ from ...quantities import (
 )
 from ..campaign.campaign import CampaignOptions, completed
 from ..campaign.task import VERSION, Row
-from .match import AMPLITUDE_RANGE, K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, Match, combinations
-from .regression import Regression, regress
+from .match import (
+    K_N_RANGE,
+    R_RANGE,
+    SLENDERNESS_RANGE,
+    Combination,
+    GivenWall,
+    Match,
+    combinations,
+)
 
 
 @dataclass(frozen=True)
@@ -41,7 +62,7 @@ class Plan:
         base_count, side_count: combinations for the base and for the side, 1 to 100000.
         losses: base losses -ln e_2s in multiples of Eq. 2's; e is varied independently of the slenderness.
         side_losses: the same, for which the side is matched.
-        sides: restitutions |e_side| asked of the side.
+        sides: restitutions |e_side| that the side is matched to.
         seed: of the combinations, 0 to 2147483648.
         k_n: interface stiffnesses that are covered [N/m3].
         amplitude: releases theta_0/alpha that are covered [-]. Low ones stand for later rebounds.
@@ -75,13 +96,7 @@ class Plan:
     def base_tasks(self, points: int, measure: str = "restitution", accuracy: float = 1e-4) -> list[Match]:
         """Two-sided matches; `measure` and `accuracy` are those of `Match`."""
         return [
-            Match(
-                combination,
-                Restitution(_housner(combination) ** share, -0.5),
-                points,
-                measure=measure,
-                accuracy=accuracy,
-            )
+            Match(combination, Restitution(_housner(combination) ** share, -0.5), points, None, measure, accuracy)
             for combination in combinations(self.base_count, self.seed, self.k_n, self.amplitude)
             for share in self.losses
         ]
@@ -99,16 +114,8 @@ class Plan:
                 e_base = _housner(combination)
             for side in self.sides:
                 e = Restitution(e_base, -side)
-                tasks.append(
-                    Match(
-                        combination,
-                        e,
-                        points,
-                        presumed_damping(combination, e, base),
-                        measure=measure,
-                        accuracy=accuracy,
-                    )
-                )
+                xi_base = presumed_damping(combination, e, base)
+                tasks.append(Match(combination, e, points, xi_base, measure, accuracy))
         return tasks
 
 
@@ -191,10 +198,115 @@ def calibrate(
     return Calibration(law, base, side, base_tasks, base_rows, side_tasks, side_rows)
 
 
-def sweep(start: Combination) -> list[tuple[str, Combination]]:
-    """Combinations that differ from `start` in one parameter, at five values through its range of Table 1."""
-    swept: list[tuple[str, Combination]] = []
-    ranges = {"R": R_RANGE, "slenderness": SLENDERNESS_RANGE, "k_base": K_N_RANGE, "k_side": K_N_RANGE}
-    for name, (low, high) in (ranges | {"amplitude": AMPLITUDE_RANGE}).items():
-        swept += [(name, replace(start, **{name: float(value)})) for value in np.geomspace(low, high, 5)]
-    return swept
+STARTS: dict[type, tuple[float, ...]] = {
+    PowerLaw: (0.1, -1.0, 0.1),
+    CornerLaw: (2.6, 1.8, 0.4, 0.2, -0.5, 10.0),
+    BedLaw: (0.16, 7.5, 1.2, 0.55),
+    SideLaw: (0.25, -1.5, -0.5, 2.0, 0.4, 9.0),
+}
+"""Where the fit of a form starts."""
+FOLDS = 10
+"""Into how many parts combinations are split to be held out."""
+
+
+@dataclass(frozen=True)
+class Regression:
+    """A form that is fitted to matched pairs.
+
+    Args:
+        form: the fitted form, with its R2.
+        errors: standard errors of its coefficients by name.
+        xi, predicted: matched damping ratios and those of the form [-], shape (n,).
+        groups: the groups of the pairs, arrays of shape (n,).
+        combinations: what they were matched on, n of them.
+        loss: the loss of the pairs [-], shape (n,).
+        logarithmic: R2 of ln xi.
+        held_out: R2 of xi where each pair is predicted by a fit that has not seen its combination.
+    """
+
+    form: Form
+    errors: Mapping[str, float]
+    xi: Array
+    predicted: Array
+    groups: Groups
+    combinations: list[Combination | GivenWall]
+    loss: Array
+    logarithmic: float
+    held_out: float
+
+
+def r_squared(predicted: Array, xi: Array) -> float:
+    """The coefficient of determination [-]."""
+    return float(1 - np.sum((predicted - xi) ** 2) / np.sum((xi - xi.mean()) ** 2))
+
+
+def coefficients(form: type) -> list[str]:
+    """Names of the coefficients of a form."""
+    return [name.name for name in fields(form) if name.name != "r_squared"]
+
+
+def well_matched(row: Row) -> bool:
+    """Whether a row was reached, and for the base not within REACH_MARGIN of an end of the reachable range."""
+    if not row["reached"] or row["match"] == "side" or row["measure"] == "rms":
+        return bool(row["reached"])
+    width = REACH_MARGIN * (row["highest"] - row["lowest"])
+    return bool(row["lowest"] + width <= row["found"] <= row["highest"] - width)
+
+
+def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row]) -> Regression:
+    """Fit a form to the matches that were reached, by least squares on ln xi, robust (soft L1) beyond 10 %.
+
+    Predictions are held within the bounds of the search. The pairs of one combination are held out together in the
+    cross-validation.
+
+    Args:
+        form: `CornerLaw` or `BedLaw` for the base, `SideLaw` for the side, the paper's `PowerLaw` for either.
+        tasks, rows: the matches, and the rows that `completed` returned.
+
+    Raises:
+        ValueError: if fewer pairs were reached than the form has coefficients to fit.
+    """
+    reached = [(task, row) for task, row in zip(tasks, rows, strict=True) if well_matched(row)]
+    names = coefficients(form)
+    if len(reached) < 2 * len(names):
+        raise ValueError(
+            f"{len(reached)} matched pairs are too few for the {len(names)} coefficients of {form.__name__}"
+        )
+    groups = Groups.stack([task.groups for task, _ in reached])
+    loss = np.array([task.loss for task, _ in reached])
+    xi = np.array([row["xi"] for _, row in reached])
+    combinations = [task.combination for task, _ in reached]
+    place = {combination: i for i, combination in enumerate(dict.fromkeys(combinations))}
+    fold = np.array([place[combination] % FOLDS for combination in combinations])
+    start = np.array(STARTS[form])
+    bounds = (1e-12, math.inf) if form is PowerLaw else tasks[0].bounds  # the paper's form has none
+
+    def predict(values: Array) -> Array:
+        fitted: Form = form(*values, r_squared=math.nan)
+        return np.asarray(np.clip(fitted.xi(groups, loss), *bounds))
+
+    def fit(kept: Flags, begin: Array) -> OptimizeResult:
+        def residuals(values: Array) -> Array:
+            return np.asarray(np.log(predict(values) / xi)[kept])
+
+        return least_squares(residuals, begin, x_scale=np.abs(start), loss="soft_l1", f_scale=0.1)
+
+    everything = fit(np.ones(len(xi), dtype=bool), start)
+    predicted = predict(everything.x)
+    unseen = np.empty_like(xi)
+    for part in range(FOLDS):
+        if (fold == part).any():
+            unseen[fold == part] = predict(fit(fold != part, everything.x).x)[fold == part]
+    variance = 2 * everything.cost / (len(xi) - len(names))
+    spread = np.sqrt(np.diag(np.linalg.pinv(everything.jac.T @ everything.jac)) * variance)
+    return Regression(
+        form=form(*everything.x.tolist(), r_squared=r_squared(predicted, xi)),
+        errors=dict(zip(names, spread.tolist(), strict=True)),
+        xi=xi,
+        predicted=predicted,
+        groups=groups,
+        combinations=combinations,
+        loss=loss,
+        logarithmic=r_squared(np.log(predicted), np.log(xi)),
+        held_out=r_squared(unseen, xi),
+    )

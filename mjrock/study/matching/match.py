@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -14,8 +14,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from ...engine.simulation import simulate
 from ...problem.damping.contacts import Contacts
-from ...problem.damping.forms import Groups
-from ...problem.damping.law import DENSITY, HIGHEST_XI, LEAST_XI
+from ...problem.damping.law import DENSITY, HIGHEST_XI, LEAST_XI, Groups
 from ...problem.damping.restitution import Restitution
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
@@ -70,6 +69,24 @@ REFERENCE = Combination()
 """The reference values of Table 1."""
 
 
+@dataclass(frozen=True)
+class GivenWall:
+    """A given wall on its interfaces, in place of a `Combination` of Table 1.
+
+    Args:
+        wall: the wall.
+        k_base, k_side: interface stiffness [N/m3].
+        amplitude: theta_0/alpha of the release [-].
+        side_stop: the side that the wall is matched against.
+    """
+
+    wall: Block
+    k_base: float
+    k_side: float
+    amplitude: float
+    side_stop: bool | SideStop = True
+
+
 def combinations(
     count: int, seed: int, k_n: tuple[float, float] = K_N_RANGE, amplitude: tuple[float, float] = AMPLITUDE_RANGE
 ) -> list[Combination]:
@@ -100,7 +117,7 @@ class Match:
 
     Args:
         combination: the wall and its interfaces.
-        e: what is asked for: `e.base` two-sided, `e.lumped` one-sided.
+        e: the restitution to match: `e.base` two-sided, `e.lumped` one-sided.
         points: contact lines a face.
         xi_base: None to match the base two-sided; the damping ratio of the base to match the side one-sided.
         measure: "restitution", |e| of the first rebound, matched to the digit on the branch of high damping; or "rms",
@@ -111,7 +128,7 @@ class Match:
 
     COLUMNS: ClassVar[tuple[str, ...]] = ("reached", "xi", "found", "lowest", "highest", "rms", "runs")
 
-    combination: Combination
+    combination: Combination | GivenWall
     e: Restitution
     points: int = 2
     xi_base: float | None = None
@@ -127,19 +144,28 @@ class Match:
             keep(self, xi_base=require_within("damping ratio of the base xi_base", self.xi_base, 0.0, 1.0))
 
     @property
+    def face(self) -> str:
+        """Whether the "base" or the "side" is matched."""
+        return "base" if self.xi_base is None else "side"
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The damping ratios that are searched [-]."""
+        return BASE_BOUNDS if self.xi_base is None else SIDE_BOUNDS
+
+    @property
     def target(self) -> float:
-        """The restitution of the rebound that is asked for, |e| [-]."""
+        """The restitution of the rebound that is to be matched, |e| [-]."""
         return self.e.base if self.xi_base is None else abs(self.e.lumped)
 
     @property
     def labels(self) -> Mapping[str, object]:
         """What is matched on what."""
-        combination = self.combination
         return {
-            "match": "base" if self.xi_base is None else "side",
+            "match": self.face,
             "points": self.points,
             "measure": self.measure,
-            **{name.name: getattr(combination, name.name) for name in fields(combination)},
+            **vars(self.combination),
             "e_base": self.e.base,
             "e_side": self.e.side,
             "xi_base": self.xi_base,
@@ -193,11 +219,10 @@ class Match:
 
     def __call__(self, history: Path | None = None) -> Row:
         """Search, and return the columns."""
-        bounds = BASE_BOUNDS if self.xi_base is None else SIDE_BOUNDS
         if self.measure == "rms":
-            least = least_difference(self.difference, bounds)
-            return least.row | {"found": self.restitution(least.xi), "rms": least.value}
-        return highest_branch(self.restitution, self.target, bounds, whole=self.xi_base is None).row
+            least = least_difference(self.difference, self.bounds)
+            return least.row | {"found": self.restitution(least.xi), "rms": least.found}
+        return highest_branch(self.restitution, self.target, self.bounds, whole=self.xi_base is None).row
 
 
 @dataclass(frozen=True)
@@ -207,14 +232,14 @@ class Closest:
     Args:
         reached: whether the target is met inside the bounds.
         xi: the damping ratio [-], the closest one where it is not.
-        value: what is measured there.
+        found: what is measured there.
         lowest, highest: the range of the measure on the branch that was searched.
         runs: how many simulations it took.
     """
 
     reached: bool
     xi: float
-    value: float
+    found: float
     lowest: float
     highest: float
     runs: int
@@ -222,15 +247,7 @@ class Closest:
     @property
     def row(self) -> Row:
         """As columns of a campaign."""
-        return {
-            "reached": int(self.reached),
-            "xi": self.xi,
-            "found": self.value,
-            "lowest": self.lowest,
-            "highest": self.highest,
-            "rms": None,
-            "runs": self.runs,
-        }
+        return vars(self) | {"reached": int(self.reached), "rms": None}
 
 
 def highest_branch(

@@ -7,12 +7,53 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from ....quantities import Array, Integers, short_repr
-from .shape import Flat, Shape
+from ....geometry.hull import Convex, Side
+from ....quantities import Array, Flags, Integers, short_repr
+
+
+class Shape(Protocol):
+    """What joints, solvers and pictures need of a block, convex or not: `Polygon`, `Polyhedron` or `Compound`."""
+
+    @property
+    def name(self) -> str | None:
+        """What it is called, or None."""
+
+    @property
+    def fixed(self) -> bool:
+        """Whether it belongs to the ground."""
+
+    @property
+    def corners(self) -> Array:
+        """Its corners [m], shape (n, d)."""
+
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """The convex parts that it is made of, all of one kind."""
+
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """Its surface, in plane pieces."""
+
+    @property
+    def solids(self) -> tuple[Convex, ...]:
+        """Its convex parts in space, of a block of the plane prisms over its length."""
+
+    @property
+    def inside(self) -> tuple[Flags, ...]:
+        """Of each of these, which faces nothing meets: those within the block, and the ends of prisms, (faces,)."""
+
+
+class Flat(Shape, Protocol):
+    """A block of the plane."""
+
+    @property
+    def length(self) -> float:
+        """Its length out of the plane [m]."""
+
 
 SHORTEST_JOINT = 10.0
 """Length of the shortest joint, over the tolerance [-]. Blocks that share less than this touch at a corner only."""

@@ -12,9 +12,8 @@ import numpy as np
 from ....geometry import convex
 from ....geometry.hull import Convex, Side
 from ....quantities import Array, Integers, frozen, short_repr
-from .joints import LEVEL, SHORTEST_JOINT, names_of, neighbours, require_apart, unlike_named
+from .joints import LEVEL, SHORTEST_JOINT, Shape, names_of, neighbours, require_apart, unlike_named
 from .polyhedron import Vertices
-from .shape import Shape
 
 OPPOSITE = -1 + 1e-3
 """Largest cosine of the angle between the normals of two faces that make a joint [-]."""

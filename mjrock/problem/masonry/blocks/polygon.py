@@ -182,11 +182,15 @@ def required_vertices(vertices: ArrayLike | Sequence[Sequence[float]], least: in
     points = require_reals("vertices", vertices, f"an array of real numbers of the shape {shape}")
     if points.ndim != 2 or points.shape[1] != axes or not least <= len(points) <= MOST_VERTICES:
         raise ValueError(f"vertices has the shape {points.shape}; {shape} is needed")
-    if not (np.abs(points) <= FARTHEST_VERTEX).all():  # a NaN is not
-        raise ValueError(
-            f"vertices holds a coordinate outside the valid range {-FARTHEST_VERTEX:g} to {FARTHEST_VERTEX:g} m"
-        )
+    require_near(points)
     return points
+
+
+def require_near(points: Array) -> None:
+    """Raise a ValueError unless all coordinates of vertices lie within FARTHEST_VERTEX [m]."""
+    if not (np.abs(points) <= FARTHEST_VERTEX).all():  # a NaN is not
+        low, high = -FARTHEST_VERTEX, FARTHEST_VERTEX
+        raise ValueError(f"vertices holds a coordinate outside the valid range {low:g} to {high:g} m")
 
 
 def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:

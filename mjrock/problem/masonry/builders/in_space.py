@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
-from ...wall.horizontal_bending import HorizontalBending
+from ...wall.bending import HorizontalBending
 from ...wall.section import Opening
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
-from itertools import pairwise
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from operator import index
 from typing import Annotated, NamedTuple
 
@@ -13,11 +12,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....geometry.graph import connected_parts
-from ....geometry.hull import THINNEST, Hull, bulk_of, hull_of
+from ....geometry.hull import THINNEST, Hull, bulk_of, face_edges, hull_of, triangles_of
 from ....geometry.parts import convex_parts
-from ....quantities import Array, Within, named, require_flag, require_reals, require_text, shown, warn_of
+from ....quantities import (
+    Array,
+    Within,
+    named,
+    require_flag,
+    require_one_of,
+    require_reals,
+    require_text,
+    shown,
+    warn_of,
+)
 from ..blocks.compound import Compound, SolidBlock
-from ..blocks.polygon import FARTHEST_VERTEX, MOST_VERTICES
+from ..blocks.polygon import MOST_VERTICES, require_near
 from ..blocks.polyhedron import Polyhedron
 from ..builders.in_plane import MOST_BODIES
 
@@ -54,8 +63,8 @@ class Mesh(NamedTuple):
         name: of the mesh in its file.
         vertices: [m], shape (n, 3).
         faces: numbers of the vertices of each, in order around it.
-        fixed: whether the file says that it is a support.
-        density: what the file says [kg/m3], or None.
+        fixed: whether the file marks it as a support.
+        density: that of the file [kg/m3], or None.
     """
 
     name: str
@@ -65,20 +74,29 @@ class Mesh(NamedTuple):
     density: float | None = None
 
 
-class Given(NamedTuple):
-    """What a caller says of a file, see `Masonry.from_obj`."""
+@contextmanager
+def about(what: str, errors: tuple[type[Exception], ...] = (ValueError,)) -> Iterator[None]:
+    """An error that is raised within becomes a ValueError that names a file or body first."""
+    try:
+        yield
+    except errors as error:
+        raise ValueError(f"{what}: {error}") from None
 
-    fixed: Sequence[str]
-    ground: bool
-    scale: float | None
-    unit: str | None
-    up: str | None
+
+class Given(NamedTuple):
+    """The arguments that describe a file, see `Masonry.from_obj`."""
+
+    fixed: Sequence[str] = ()
+    ground: bool = False
+    scale: float | None = None
+    unit: str | None = None
+    up: str | None = None
     convex: str | None = None
 
     def checked(self) -> Given:
         """Itself; a TypeError or ValueError names what is wrong."""
         if self.convex is not None:
-            _one_of("convex", self.convex, CONVEX)
+            require_one_of("convex", self.convex, CONVEX)
         _ = self.matrix()
         return self._replace(fixed=names_of_list("fixed", self.fixed), ground=require_flag("ground", self.ground))
 
@@ -96,15 +114,8 @@ class Given(NamedTuple):
         if self.unit is not None:
             if self.scale is not None:
                 raise ValueError(f"unit = {shown(self.unit)} and scale = {self.scale:g} are both given; give one")
-            scale = LENGTH_UNITS[_one_of("unit", self.unit, LENGTH_UNITS)]
-        return scale * np.array(UPWARDS[_one_of("up", usual if self.up is None else self.up, UPWARDS)])
-
-
-def _one_of(name: str, value: str, known: Collection[str]) -> str:
-    """A name; a ValueError lists those that are known if it is another."""
-    if not isinstance(value, str) or value not in known:
-        raise ValueError(f"{name} = {shown(value)} is none of {', '.join(known)}")
-    return value
+            scale = LENGTH_UNITS[require_one_of("unit", self.unit, LENGTH_UNITS)]
+        return scale * np.array(UPWARDS[require_one_of("up", usual if self.up is None else self.up, UPWARDS)])
 
 
 def names_of_list(what: str, given: Sequence[str]) -> Sequence[str]:
@@ -156,8 +167,8 @@ def mesh_bodies(mesh: Mesh) -> list[Mesh]:
     """The closed bodies of a mesh, and plane plates that are open.
 
     Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
-    touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
-    is divided.
+    touch are separate where they are written one after the other. Closed parts that have no vertex in common are
+    separate bodies.
 
     Raises:
         ValueError: for a body that is open and no plate, or for too many.
@@ -232,11 +243,6 @@ def is_plate(body: Mesh) -> bool:
     return bool(len(about) < 4 or thick <= THINNEST * np.ptp(about, axis=0).max())
 
 
-def face_edges(face: tuple[int, ...]) -> list[tuple[int, int]]:
-    """The edges of a face, in its order."""
-    return list(zip(face, (*face[1:], face[0]), strict=True))
-
-
 def oriented(body: Mesh) -> Mesh:
     """A closed body with all its faces counterclockwise from outside, whichever way they turn."""
     faces = list(body.faces)
@@ -260,12 +266,8 @@ def oriented(body: Mesh) -> Mesh:
 
 def enclosed_by(body: Mesh) -> float:
     """Volume that the faces of a closed body enclose, negative where they are clockwise as seen from outside [m3]."""
-    return float(np.linalg.det(triangles_of(body) - body.vertices.mean(axis=0)).sum()) / 6
-
-
-def triangles_of(body: Mesh) -> Array:
-    """The triangles of the faces of a body with their first vertices [m], shape (n, 3, 3)."""
-    return np.asarray(body.vertices[[(face[0], i, j) for face in body.faces for i, j in pairwise(face[1:])]])
+    triangles = body.vertices[triangles_of(body.faces)]
+    return float(np.linalg.det(triangles - body.vertices.mean(axis=0)).sum()) / 6
 
 
 class Bound(NamedTuple):
@@ -279,10 +281,8 @@ class Bound(NamedTuple):
     @classmethod
     def of(cls, body: Mesh) -> Bound:
         """A ValueError names a body whose vertices bound none."""
-        try:
+        with about(f"body {body.name}"):
             hull = hull_of(body.vertices)
-        except ValueError as error:
-            raise ValueError(f"body {body.name}: vertices {error}") from None
         body = oriented(body)
         return cls(body, hull, enclosed_by(body), bulk_of(body.vertices[list(hull.corners)], hull.faces).volume)
 
@@ -293,20 +293,23 @@ class Bound(NamedTuple):
 
     @property
     def is_convex(self) -> bool:
-        """Whether the faces enclose what the hull does, and each of their triangles lies on a face of the hull."""
+        """Whether the faces enclose the volume of the hull, and each of their triangles lies on a face of the hull."""
         if abs(self.enclosed / self.of_hull - 1) > SAME_VOLUME:
             return False
         places, extent = self.body.vertices, float(np.ptp(self.body.vertices, axis=0).max())
         on = places[[self.hull.corners[face[0]] for face in self.hull.faces]]
         offsets = (on * self.hull.normals).sum(axis=1)
-        off = (np.abs(ring @ self.hull.normals.T - offsets).max(axis=0).min() for ring in triangles_of(self.body))
+        off = (
+            np.abs(ring @ self.hull.normals.T - offsets).max(axis=0).min()
+            for ring in places[triangles_of(self.body.faces)]
+        )
         return bool(max(off) <= SAME_PLANE * extent)
 
 
 def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[SolidBlock]:
     """The blocks of meshes of a file; names that several have are numbered.
 
-    The density is that of meshes whose file says none [kg/m3]. Fixed are the names given, and what a file calls a
+    The density is that of meshes whose file has none [kg/m3]. Bodies are fixed that are named, or are marked as a
     support.
 
     Raises:
@@ -327,11 +330,8 @@ def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[Soli
             raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(names[:10])}")
     bodies = [body._replace(fixed=body.fixed or body.name in fixed) for body in bodies]
     for body in bodies:
-        if not (np.abs(body.vertices) <= FARTHEST_VERTEX).all():  # a NaN is not
-            raise ValueError(
-                f"body {body.name}: vertices holds a coordinate outside the valid range {-FARTHEST_VERTEX:g} to "
-                f"{FARTHEST_VERTEX:g} m"
-            )
+        with about(f"body {body.name}"):
+            require_near(body.vertices)
     middle = np.concatenate([body.vertices for body in bodies]).mean(axis=0)
     bounds = [Bound.of(_support(body, middle)) for body in bodies]
     dented = sorted((bound for bound in bounds if not bound.is_convex), key=lambda bound: -bound.added)
@@ -346,9 +346,7 @@ def _support(body: Mesh, middle: Array) -> Mesh:
     if not is_plate(body) or not _open_edges(body):
         return body
     if not body.fixed:
-        raise ValueError(
-            f"body {body.name} is open: it is a plane plate; name it in fixed, and it is the face of a support"
-        )
+        raise ValueError(f"body {body.name} is open: it is a plane plate; name it in fixed to make a support")
     about = body.vertices.mean(axis=0)
     normal = np.linalg.svd(body.vertices - about)[2][-1]
     away = -np.sign(normal @ (middle - about)) or 1.0
@@ -376,12 +374,10 @@ def _say_dented(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | 
 def _whole(bound: Bound, density: float) -> Polyhedron:
     """The hull of a body as a block."""
     body, corners = bound.body, bound.body.vertices[list(bound.hull.corners)]
-    if len(corners) > MOST_VERTICES:
-        raise ValueError(f"body {body.name}: its hull has {len(corners)} corners; a block has at most {MOST_VERTICES}")
-    try:
+    with about(f"body {body.name}", (ValueError, TypeError)):
+        if len(corners) > MOST_VERTICES:
+            raise ValueError(f"its hull has {len(corners)} corners; a block has at most {MOST_VERTICES}")
         return Polyhedron(corners, density if body.density is None else body.density, body.fixed, body.name)
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"body {body.name}: {error}") from None
 
 
 def _cut(bound: Bound, density: float) -> SolidBlock:

@@ -1,7 +1,7 @@
 """The JSON of COMPAS: a model or problem of compas_dem, and an assembly of compas_assembly.
 
 Both name the class of a part in `dtype` and keep it in `data`, as the serialisation of COMPAS 2 does. What reads a file
-raises a ValueError with the path and what is wrong.
+raises a ValueError with what is wrong.
 """
 
 from __future__ import annotations
@@ -17,6 +17,9 @@ import numpy as np
 from ..blocks.polyhedron import Polyhedron
 from .bodies import Mesh, block_name
 from .meshes import file_text
+
+Part = dict[str, Any]
+"""A part of a file, as JSON has it."""
 
 
 def guid_of(kind: str, name: object) -> str:
@@ -36,11 +39,10 @@ def read_compas(path: Path) -> list[Mesh]:
         content = _inside(content["model"]) if "model" in content else content  # a problem up to compas_dem 0.5 has it
         pairs = _parts(content)
     except (json.JSONDecodeError, RecursionError) as error:
-        raise ValueError(f"path = {path} is not JSON, or is cut short: {error}") from None
+        raise ValueError(f"it is not JSON, or is cut short: {error}") from None
     except (KeyError, TypeError, AttributeError):
         raise ValueError(
-            f"path = {path} is not a COMPAS model: it has no data.elements, no data.graph as an assembly has, and is "
-            "no list of meshes"
+            "it is not a COMPAS model: it has no data.elements, no data.graph as an assembly, and is no list of meshes"
         ) from None
     materials = content.get("materials") or {} if isinstance(content, dict) else {}
     meshes = []
@@ -48,15 +50,13 @@ def read_compas(path: Path) -> list[Mesh]:
         try:
             meshes.append(_block(_inside(part), key, materials))
         except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
-            raise ValueError(
-                f"path = {path}: the element {key} is not a block with a mesh: {type(error).__name__} {error}"
-            ) from None
+            raise ValueError(f"the element {key} is not a block with a mesh: {type(error).__name__} {error}") from None
     if not meshes:
-        raise ValueError(f"path = {path} is a COMPAS model without elements")
+        raise ValueError("it is a COMPAS model without elements")
     return meshes
 
 
-def _inside(thing: Any) -> Any:
+def _inside(thing: object) -> Any:
     """What a part of a file holds: under `data` since COMPAS 2, under `value` before, and at times in a list of one."""
     while True:
         if isinstance(thing, list) and len(thing) == 1:
@@ -67,11 +67,11 @@ def _inside(thing: Any) -> Any:
             return thing
 
 
-def _parts(content: Any) -> list[tuple[object, Any]]:
+def _parts(content: Part | list[Part]) -> list[tuple[object, Part]]:
     """The blocks of a model, an assembly or a list with their keys, or the only one.
 
-    Assemblies are graphs whose nodes hold the blocks. Those of COMPAS 0 are blocks beside a network, which says what
-    is a support.
+    Assemblies are graphs whose nodes hold the blocks. Those of COMPAS 0 are blocks beside a network, which has the
+    supports.
     """
     if isinstance(content, list):
         if not all(isinstance(_inside(part), dict) for part in content):
@@ -90,7 +90,7 @@ def _parts(content: Any) -> list[tuple[object, Any]]:
     return list((_inside(content["graph"]) if "graph" in content else content)["node"].items())
 
 
-def _block(part: dict[str, Any], key: object, materials: dict[str, Any]) -> Mesh:
+def _block(part: Part, key: object, materials: Part) -> Mesh:
     """A block: an element of a model, a node of an assembly, or a mesh."""
     held = next((name for name in ("geometry", "shape", "block") if name in part), None)
     shape = _inside(part if held is None else part[held])

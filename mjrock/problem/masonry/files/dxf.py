@@ -1,4 +1,4 @@
-"""Drawings in DXF: closed polylines are the outlines of blocks, and layers say what these are."""
+"""Drawings in DXF: closed polylines are the outlines of blocks, and layers give their kind."""
 
 from __future__ import annotations
 
@@ -6,23 +6,29 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 
 import numpy as np
 
 from ....geometry.hull import prism
-from ....quantities import Array, named, shown, warn_of
+from ....quantities import Array, P, Result, named, shown, warn_of
 from ..blocks.compound import Compound, FlatBlock, SolidBlock
 from ..blocks.polygon import InwardsError, Polygon
 from ..builders.in_plane import MOST_BODIES
-from .bodies import Given, Mesh, block_name, blocks_of
+from .bodies import Given, Mesh, about, block_name, blocks_of
 from .meshes import bytes_of
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+    from ezdxf.entities.dxfentity import DXFEntity
+    from ezdxf.entities.insert import Insert
+    from ezdxf.entities.lwpolyline import LWPolyline
+    from ezdxf.entities.polyline import Polyline
 
 CLOSED_WITHIN = 1e-9
 """Distance of the ends of a polyline that count as one, over its extent [-]."""
 MOST_INSERTED = 10 * MOST_BODIES
 """Most lines, texts and whatever else that the blocks of a drawing may insert; they take some ten seconds."""
-OUTLINES = ("LWPOLYLINE", "POLYLINE")
 DEEPEST = 50
 """Most levels of inserted blocks within each other."""
 NO_DRAWING = {
@@ -61,8 +67,8 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
 
     Raises:
         ImportError: if ezdxf is missing.
-        ValueError: with the path, for what is no drawing or is damaged, for inserted blocks that hold each other or are
-            too many, for a polyline that is open or has arcs, for a layer that holds nothing, and where no polyline is.
+        ValueError: for what is no drawing or is damaged, for inserted blocks that hold each other or are too many, for
+            a polyline that is open or has arcs, for a layer that holds nothing, and where no polyline is.
 
     Warns:
         UserWarning: of what the library repairs while it reads the drawing, and of areas that are left out.
@@ -72,49 +78,46 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
         from ezdxf.enums import InsertUnits
     except ImportError as error:
         raise ImportError(f"{error}; ezdxf reads drawings: pip install ezdxf") from error
-    for start, what in NO_DRAWING.items():
-        if bytes_of(path).startswith(start):
-            raise ValueError(f"path = {path} is {what}, and no drawing in DXF; save it as text in DXF")
-    document, auditor = _sound(path, recover.readfile, str(path))
+    content = bytes_of(path)
+    if found_kinds := [what for start, what in NO_DRAWING.items() if content.startswith(start)]:
+        raise ValueError(f"it is {found_kinds[0]}, and no drawing in DXF; save it as text in DXF")
+    document, auditor = _sound(recover.readfile, str(path))
     unit = None
     if document.units:
-        unit = _sound(path, lambda: units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters))
+        unit = _sound(lambda: units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters))
     space = document.modelspace()
-    try:
-        _sound(path, _require_few, document, space)
-    except InsertError as error:
-        raise ValueError(f"path = {path}: {error}") from None
-    entities = _sound(path, lambda: list(_inserted(space)))
+    _sound(_require_few, document, space)
+    entities = _sound(lambda: list(_inserted(space)))
     found = {entity.dxf.layer: None for entity in entities}
     for layer in layers or ():
         if layer not in found:
-            raise ValueError(f"layers = {layer!r} holds nothing in {path}; the layers are {named(list(found))}")
-    outlines, others = _outlines(path, [each for each in entities if layers is None or each.dxf.layer in layers])
-    _warn_of_repairs(path, [*auditor.errors, *auditor.fixes])
+            raise ValueError(f"layers = {layer!r} holds nothing; the layers are {named(list(found))}")
+    outlines, others = _outlines([each for each in entities if layers is None or each.dxf.layer in layers])
+    if repairs := [*auditor.errors, *auditor.fixes]:
+        said = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
+        warn_of(f"path = {path} is damaged, and was repaired while it was read: {said}")
     if left := {kind: count for kind, count in others.items() if kind in AREAS}:
         warn_of(f"path = {path}: only closed polylines are read; left out are {_counted(left)}")
     return DxfDrawing(outlines, unit)
 
 
-def _outlines(path: Path, entities: Sequence[Any]) -> tuple[list[Outline], Counter[str]]:
+def _outlines(entities: Sequence[DXFEntity]) -> tuple[list[Outline], Counter[str]]:
     """The outlines among things of a drawing, and how many there are of each other kind."""
     outlines, counts, others = [], Counter[str](), Counter[str]()
     for entity in entities:
-        if entity.dxftype() not in OUTLINES:
+        if not _is_polyline(entity):
             others[entity.dxftype()] += 1
             continue
         layer = entity.dxf.layer
         try:
-            corners = _sound(path, _corners, entity)
-        except OutlineError as error:
-            raise ValueError(
-                f"path = {path}, layer {layer}: {error}; or give the layers that hold blocks by layers="
-            ) from None
+            corners = _sound(_corners, entity)
+        except DrawingError as error:
+            raise ValueError(f"layer {layer}: {error}; or give the layers that hold blocks by layers=") from None
         outlines.append(Outline(f"{block_name(layer, 'layer')}_{counts[layer]}", layer, corners))
         counts[layer] += 1
     if not outlines:
         join = "; join its lines to closed polylines" if others["LINE"] > 2 else ""
-        raise ValueError(f"path = {path} has no closed polyline; there is {_counted(others) or 'nothing'}{join}")
+        raise ValueError(f"it has no closed polyline; there is {_counted(others) or 'nothing'}{join}")
     return outlines, others
 
 
@@ -123,30 +126,29 @@ def _counted(kinds: Mapping[str, int]) -> str:
     return ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
 
 
-class OutlineError(ValueError):
-    """A polyline that is no outline of a block."""
+class DrawingError(ValueError):
+    """A polyline that is no outline of a block, or inserted blocks that hold each other or are too many."""
 
 
-class InsertError(ValueError):
-    """Inserted blocks that hold each other, or are too many."""
-
-
-def _sound(path: Path, call: Callable[..., Any], *arguments: Any) -> Any:
-    """What a call into the library of drawings returns; a ValueError with the path for whatever it raises."""
+def _sound(call: Callable[P, Result], *given: P.args, **options: P.kwargs) -> Result:
+    """What a call into the library of drawings returns; a ValueError for whatever it raises."""
     try:
-        return call(*arguments)
-    except (OutlineError, InsertError):
+        return call(*given, **options)
+    except DrawingError:
         raise
     except Exception as error:  # a damaged file ends in IndexError, AttributeError, AssertionError and others there
         said = " ".join(str(error).split())[:200] or type(error).__name__
-        raise ValueError(f"path = {path} is not a drawing in DXF, or is damaged: {said}") from None
+        raise ValueError(f"it is not a drawing in DXF, or is damaged: {said}") from None
 
 
-def _warn_of_repairs(path: Path, repairs: Sequence[Any]) -> None:
-    """Warn of a drawing that was repaired while it was read."""
-    if repairs:
-        said = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
-        warn_of(f"path = {path} is damaged, and was repaired while it was read: {said}")
+def _is_polyline(entity: DXFEntity) -> TypeGuard[LWPolyline | Polyline]:
+    """Whether a thing of a drawing is a polyline, which may be the outline of a block."""
+    return entity.dxftype() in ("LWPOLYLINE", "POLYLINE")
+
+
+def _is_insert(entity: DXFEntity) -> TypeGuard[Insert]:
+    """Whether a thing of a drawing is an inserted block."""
+    return entity.dxftype() == "INSERT"
 
 
 class Held(NamedTuple):
@@ -156,68 +158,68 @@ class Held(NamedTuple):
     inserted: int = 0
 
 
-def _require_few(document: Any, space: Iterable[Any]) -> None:
-    """Raise `InsertError` for blocks that insert each other, or that are too many, before they are inserted."""
+def _require_few(document: Drawing, space: Iterable[DXFEntity]) -> None:
+    """Raise a `DrawingError` for blocks that insert each other, or that are too many, before they are inserted."""
     counts: dict[str, Held] = {}
 
-    def held(entities: Iterable[Any], within: tuple[str, ...]) -> Held:
+    def held(entities: Iterable[DXFEntity], within: tuple[str, ...]) -> Held:
         outlines = inserted = 0
         for entity in entities:
-            if entity.dxftype() == "INSERT":
+            if _is_insert(entity):
                 times, one = max(1, entity.mcount), block(entity.dxf.name, within)
                 outlines, inserted = outlines + times * one.outlines, inserted + times * one.inserted
             else:
-                outlines += entity.dxftype() in OUTLINES
+                outlines += _is_polyline(entity)
                 inserted += bool(within)
         return Held(outlines, inserted)
 
     def block(name: str, within: tuple[str, ...]) -> Held:
         if name in within:
-            raise InsertError(f"the blocks {named(within[within.index(name) :])} insert each other")
+            raise DrawingError(f"the blocks {named(within[within.index(name) :])} insert each other")
         if len(within) >= DEEPEST:
-            raise InsertError(f"blocks are inserted in each other on more than {DEEPEST} levels, from {within[0]} on")
+            raise DrawingError(f"blocks are inserted in each other on more than {DEEPEST} levels, from {within[0]} on")
         if name not in counts:
             counts[name] = held(document.blocks.get(name) or (), (*within, name))
         return counts[name]
 
     found = held(space, ())
-    for count, what, most in zip(
-        found, ("outlines", "things that are inserted"), (MOST_BODIES, MOST_INSERTED), strict=True
+    for count, what, most in (
+        (found.outlines, "outlines", MOST_BODIES),
+        (found.inserted, "things that are inserted", MOST_INSERTED),
     ):
         if count > most:
-            raise InsertError(f"there are {count:.3g} {what}, and at most {most} are taken")
+            raise DrawingError(f"there are {count:.3g} {what}, and at most {most} are taken")
 
 
-def _inserted(entities: Iterable[Any]) -> Iterator[Any]:
+def _inserted(entities: Iterable[DXFEntity]) -> Iterator[DXFEntity]:
     """Entities with those of inserted blocks, where they are inserted."""
     for entity in entities:
-        if entity.dxftype() != "INSERT":
+        if not _is_insert(entity):
             yield entity
             continue
         if entity.dxf.zscale == 0.0:  # as some programs write it into plane drawings, and the library cannot turn it
             entity.dxf.zscale = 1.0
-        if entity.mcount > 1:
-            yield from _inserted(entity.multi_insert())
-        else:
-            yield from _inserted(entity.virtual_entities())
+        yield from _inserted(entity.multi_insert() if entity.mcount > 1 else entity.virtual_entities())
 
 
-def _corners(polyline: Any) -> Array:
+def _corners(polyline: LWPolyline | Polyline) -> Array:
     """Corners of a closed polyline in the axes of the drawing, shape (n, 3)."""
-    light = polyline.dxftype() == "LWPOLYLINE"
-    if not light and not (polyline.is_2d_polyline or polyline.is_3d_polyline):
-        raise OutlineError("a polyline is a mesh, and no outline")
-    places = np.array([tuple(at) for at in (polyline.vertices_in_wcs() if light else polyline.points_in_wcs())])
+    from ezdxf.entities.polyline import Polyline
+
+    if isinstance(polyline, Polyline) and not (polyline.is_2d_polyline or polyline.is_3d_polyline):
+        raise DrawingError("a polyline is a mesh, and no outline")
+    corners = polyline.points_in_wcs() if isinstance(polyline, Polyline) else polyline.vertices_in_wcs()
+    places = np.array([tuple(at) for at in corners])
     at = f"the polyline that begins at {places[0, 0]:g}, {places[0, 1]:g}" if len(places) else "a polyline"
     extent = float(np.ptp(places, axis=0).max()) if len(places) else 0.0
     if len(places) > 1 and np.abs(places[0] - places[-1]).max() <= CLOSED_WITHIN * extent:
         places = places[:-1]
     elif not polyline.is_closed:
-        raise OutlineError(f"{at} is open: close it")
+        raise DrawingError(f"{at} is open: close it")
     if polyline.has_arc:
-        raise OutlineError(f"{at} has arcs: draw them as short straight edges")
+        raise DrawingError(f"{at} has arcs: draw them as short straight edges")
     if len(places) < 3:
-        raise OutlineError(f"{at} has {len(places)} corners, and needs three or more")
+        raise DrawingError(f"{at} has {len(places)} corners, and needs three or more")
     return places
 
 
@@ -226,7 +228,7 @@ def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfL
 
     Args:
         drawing: the outlines and their unit.
-        given: what the caller says of the file; layers, and names of blocks, are fixed.
+        given: the arguments that describe the file; layers, and names of blocks, are fixed.
         density: [kg/m3].
         length: out of the plane [m].
 
@@ -257,17 +259,16 @@ def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfL
         if np.ptp(corners[:, 1]) > CLOSED_WITHIN * np.ptp(corners, axis=0).max():
             raise ValueError(f"{begins}: it is not in the plane of the drawing; up='z' takes one in the plane x, z")
         ring = corners[:, [0, 2]]
-        try:
-            polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
-        except InwardsError as error:
-            if given.convex is None:
-                raise ValueError(f"{begins}: {error}; convex='parts' cuts it, and convex='hull' fills it") from None
-            places, faces = prism(ring, 1.0)
-            dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
-        except (ValueError, TypeError) as error:
-            raise ValueError(f"{begins}: {error}") from None
+        with about(begins, (ValueError, TypeError)):
+            try:
+                polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
+            except InwardsError as error:
+                if given.convex is None:
+                    raise ValueError(f"{error}; convex='parts' cuts it, and convex='hull' fills it") from None
+                places, faces = prism(ring, 1.0)
+                dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
     meshes = [mesh for mesh, _ in dented.values()]
-    for block in blocks_of(meshes, 2000.0, Given((), False, None, None, None, given.convex)) if meshes else ():
+    for block in blocks_of(meshes, 2000.0, Given(convex=given.convex)) if meshes else ():
         polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])
     return [polygons[outline.name] for outline in drawing.outlines]
 

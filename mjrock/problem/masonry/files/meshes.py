@@ -1,14 +1,13 @@
 """Files of meshes: Wavefront OBJ, STL and PLY.
 
-What reads a file raises a ValueError with the path, the line where there is one, and what is wrong.
+What reads a file raises a ValueError with the line, where there is one, and what is wrong.
 """
 
 from __future__ import annotations
 
 import struct
 from collections import Counter
-from collections.abc import Callable, Sequence
-from itertools import takewhile
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,10 +23,10 @@ MOST_BYTES = 500_000_000
 def bytes_of(path: Path) -> bytes:
     """What a file holds, which is not empty and at most 500 MB."""
     if not path.is_file():
-        raise ValueError(f"path = {path} is not a file")
+        raise ValueError("it is not a file")
     size = path.stat().st_size
     if not 0 < size <= MOST_BYTES:
-        raise ValueError(f"path = {path} has {size} bytes; the valid range is 1 to {MOST_BYTES}")
+        raise ValueError(f"it has {size} bytes; the valid range is 1 to {MOST_BYTES}")
     return path.read_bytes()
 
 
@@ -36,7 +35,7 @@ def file_text(path: Path) -> str:
     try:
         return bytes_of(path).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(f"path = {path} is not text: it holds bytes that are not UTF-8") from None
+        raise ValueError("it is not text: it holds bytes that are not UTF-8") from None
 
 
 def read_obj(path: Path) -> list[Mesh]:
@@ -60,11 +59,9 @@ def read_obj(path: Path) -> list[Mesh]:
             elif kind == "g":
                 group = rest.strip()
         except ValueError:
-            raise ValueError(
-                f"path = {path}, line {count}: {line[:60]!r} is not a vertex or face of an OBJ file"
-            ) from None
+            raise ValueError(f"line {count}: {line[:60]!r} is not a vertex or face of an OBJ file") from None
     if not faces:
-        raise ValueError(f"path = {path} has no faces: it is not an OBJ file, or is cut short")
+        raise ValueError("it has no faces: it is not an OBJ file, or is cut short")
     things = Counter(thing for thing, _ in faces)
     places, meshes = np.array(vertices), []
     for i, ((thing, group), ring) in enumerate(faces.items()):
@@ -82,7 +79,7 @@ def read_stl(path: Path) -> list[Mesh]:
         return [_facets("body", records["v"].reshape(-1, 3).astype(float))]
     if content.lstrip()[:5].lower() != b"solid" or b"facet" not in content:
         needed = f"; its head promises {facets} facets, {84 + 50 * facets} bytes" if 0 <= facets < 10**7 else ""
-        raise ValueError(f"path = {path} is not an STL file, or is cut short: it has {len(content)} bytes{needed}")
+        raise ValueError(f"it is not an STL file, or is cut short: it has {len(content)} bytes{needed}")
     meshes: list[Mesh] = []
     name, is_open = "body", False
     corners: list[tuple[float, float, float]] = []
@@ -95,14 +92,14 @@ def read_stl(path: Path) -> list[Mesh]:
             try:
                 corners.append(_triple(words[1:]))
             except ValueError:
-                raise ValueError(f"path = {path}, line {count}: {line[:60]!r} is not a vertex of an STL file") from None
+                raise ValueError(f"line {count}: {line[:60]!r} is not a vertex of an STL file") from None
         elif kind in ("endfacet", "endsolid") and len(corners) % 3:
-            raise ValueError(f"path = {path}, line {count}: a facet of an STL file has three vertices")
+            raise ValueError(f"line {count}: a facet of an STL file has three vertices")
         elif kind == "endsolid":
             meshes.append(_facets(name, np.reshape(corners, (-1, 3))))
             is_open = False
     if is_open or not meshes:
-        raise ValueError(f"path = {path} is cut short: the solid {name} does not end")
+        raise ValueError(f"it is cut short: the solid {name} does not end")
     return meshes
 
 
@@ -121,43 +118,43 @@ def read_ply(path: Path) -> list[Mesh]:
     head, end, body = content.partition(b"end_header")
     lines = [line.split() for line in head.decode("latin-1").splitlines()]
     if not end or not lines or lines[0] != ["ply"]:
-        raise ValueError(f"path = {path} is not a PLY file, or is cut short: it has no header from ply to end_header")
+        raise ValueError("it is not a PLY file, or is cut short: it has no header from ply to end_header")
     try:
         order = PLY_ORDER[next(line[1] for line in lines if line[:1] == ["format"])]
         take = _words(body) if not order else _numbers(body[body.index(b"\n") + 1 :], order)
-        rows: dict[str, list[dict[str, list[float]]]] = {}
-        for line in lines:
-            if line[:1] == ["element"]:
-                name, count, kinds = line[1], int(line[2]), list[tuple[str, list[str]]]()
-                if not 0 <= count <= len(content):
-                    raise ValueError(f"{count} of {name} in {len(content)} bytes")
-                rows[name], kinds = [], [(p[-1], p[1:-1]) for p in _properties(lines, name)]
-                for _ in range(count):
-                    rows[name].append({each: _value(take, kind) for each, kind in kinds})
+        elements = _elements(lines)
+        if (most := max(count for count, _ in elements.values())) > len(content):
+            raise ValueError(f"{most} rows in {len(content)} bytes")
+        rows = {name: [_row(take, kinds) for _ in range(count)] for name, (count, kinds) in elements.items()}
         places = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]])
         key = "vertex_indices" if "vertex_indices" in rows["face"][0] else "vertex_index"
         faces = [tuple(map(int, row[key])) for row in rows["face"]]
         if not all(len(face) > 2 and min(face) >= 0 and max(face) < len(places) for face in faces):
             raise ValueError("a face is not three or more of the vertices")
     except (KeyError, IndexError, ValueError, TypeError, OverflowError, StopIteration, struct.error) as error:
-        raise ValueError(
-            f"path = {path} is not a PLY file of vertices and faces, or is cut short: {type(error).__name__} {error}"
-        ) from None
+        raise ValueError(f"it is not a PLY file of faces, or is cut short: {type(error).__name__} {error}") from None
     return [Mesh("body", places, faces)]
 
 
-def _properties(lines: Sequence[list[str]], element: str) -> list[list[str]]:
-    """The lines of the properties of an element of a PLY file."""
-    start = next(i for i, line in enumerate(lines) if line[:2] == ["element", element])
-    rest = (line for line in lines[start + 1 :] if line[:1] != ["comment"])
-    return list(takewhile(lambda line: line[:1] == ["property"], rest))
+def _elements(lines: Sequence[list[str]]) -> dict[str, tuple[int, dict[str, list[str]]]]:
+    """How many rows each element of a PLY file has, and the types of its properties by their names."""
+    elements: dict[str, tuple[int, dict[str, list[str]]]] = {}
+    name = ""
+    for line in lines:
+        if line[:1] == ["element"]:
+            name = line[1]
+            elements[name] = int(line[2]), {}
+        elif line[:1] == ["property"]:
+            elements[name][1][line[-1]] = line[1:-1]
+    return elements
 
 
-def _value(take: Callable[[str], float], kind: Sequence[str]) -> list[float]:
-    """A property of a row of a PLY file: one number, or a list with its length before it."""
-    if kind[0] != "list":
-        return [take(kind[0])]
-    return [take(kind[2]) for _ in range(int(take(kind[1])))]
+def _row(take: Callable[[str], float], kinds: Mapping[str, list[str]]) -> dict[str, list[float]]:
+    """A row of a PLY file: of each property one number, or a list with its length before it."""
+    row = {}
+    for name, (kind, *of_list) in kinds.items():
+        row[name] = [take(of_list[1]) for _ in range(int(take(of_list[0])))] if of_list else [take(kind)]
+    return row
 
 
 def _words(body: bytes) -> Callable[[str], float]:
@@ -191,14 +188,11 @@ def _triple(words: Sequence[str]) -> tuple[float, float, float]:
 
 
 def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
-    """Blocks as the text of an OBJ file, one object each. A ValueError says which name it cannot hold."""
+    """Blocks as the text of an OBJ file, one object each. A ValueError names a block whose name it cannot hold."""
     lines, before = ["# metres, z upwards"], 1
     for block, name in zip(blocks, names, strict=True):
         if "#" in name or name.endswith("\\") or name.strip() != name:
-            raise ValueError(
-                f"the block {name!r} has a # in its name, a backslash at its end or a blank at one of its ends, which "
-                "an OBJ file does not hold"
-            )
+            raise ValueError(f"the block {name!r} has a # in its name, a backslash at its end or a blank at an end")
         lines.append(f"o {name}")
         lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in block.vertices]
         lines += ["f " + " ".join(str(before + i) for i in face) for face in block.faces]

@@ -1,18 +1,22 @@
-"""Properties of joints as they are given, one for all or a function of the joint, and the table of them."""
+"""Properties of joints as they are given, by the keywords of masonry and all its builders, and the table of them."""
 
 from __future__ import annotations
 
+import difflib
+import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, TypeVar
+from functools import wraps
+from typing import Any, NamedTuple, TypedDict, TypeVar
 
 import numpy as np
 
-from ....quantities import Array, Integers, Within, declared, require_kind, shown
+from ....quantities import Array, Integers, Within, declared, require_kind, shown, within_ranges
+from ...damping.contacts import AnyLaw
 from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 from .bond import Bond
-from .dry import Dry, Mortar, Properties
+from .dry import AnyPairs, Dry, Mortar, Properties
 
 AnyJoint = Joint | SpaceJoint
 T = TypeVar("T")
@@ -244,3 +248,66 @@ def _bonds(given: OfBond, joints: Sequence[AnyJoint]) -> tuple[Bond | None, ...]
         require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, type(None))
         found.append(None if bond is None or bond.is_dry else bond)
     return tuple(found)
+
+
+Class = TypeVar("Class", bound=type)
+
+
+class OtherOptions(TypedDict, total=False):
+    """Keywords of `Masonry` beside `k_n`, see `JointOptions`."""
+
+    joints: AnyJoints | None
+    friction: OfJoint | None
+    xi: OfJoint | None
+    k_s: OfJoint | None
+    frequency: OfJoint | None
+    points: OfCount | None
+    bond: OfBond
+    law: AnyLaw | str | None
+    tolerance: float
+    pairs: AnyPairs
+
+
+class JointOptions(OtherOptions, total=False):
+    """Keywords of `Masonry` that its builders hand on: `joints`, or the properties of joints one by one, and the rest.
+
+    What they mean is said at `Masonry`. None takes the usual one.
+    """
+
+    k_n: OfJoint | None
+
+
+def one_by_one(options: JointOptions) -> Properties:
+    """The keywords with the properties of joints one by one in the place of `joints`."""
+    given = Properties(options)
+    properties = {name: given.pop(name, None) for name in PROPERTIES}
+    return properties_of(given.pop("joints", None), properties) | given
+
+
+def keywords_checked(kind: Class) -> Class:
+    """A class whose constructors refuse a keyword that they do not take, with the nearest one that they do."""
+    for name, member in list(vars(kind).items()):
+        if name == "__init__":
+            setattr(kind, name, _checked(member, kind.__name__))
+        elif isinstance(member, classmethod) and not name.startswith("_"):
+            setattr(kind, name, classmethod(_checked(member.__func__, f"{kind.__name__}.{name}")))
+    return kind
+
+
+def _checked(function: Callable[..., object], said: str) -> Callable[..., object]:
+    parameters = list(inspect.signature(function).parameters.values())[1:]
+    known = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD]
+    if len(known) < len(parameters):
+        known += [name for name in JointOptions.__annotations__ if name not in known]
+
+    run = within_ranges(function)
+
+    @wraps(function)
+    def called(*given: object, **options: object) -> object:
+        for each in sorted(options.keys() - set(known)):
+            near = difflib.get_close_matches(each, known, 2)
+            remedy = f"did you mean {' or '.join(near)}?" if near else f"the valid keywords are {', '.join(known)}"
+            raise TypeError(f"{said} does not take {each}; {remedy}")
+        return run(*given, **options)
+
+    return called

@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -129,7 +129,7 @@ class Programme:
         numbers = len(sizes), count
         return cls(matrix, grip, down, pushed, edges[:, leader], leader, *numbers, method(masonry))
 
-    def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> Any:
+    def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> scipy.optimize.OptimizeResult:
         """The forces and the multiplier that cost least, the multiplier at `price`, with no force where `none_at`."""
         upper = np.full(len(cost) + 1, np.inf)
         if none_at is not None:

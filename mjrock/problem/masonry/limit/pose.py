@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....geometry.convex import within
-from ....geometry.frames import PLANE, SPACE
 from ....geometry.poses import at_rest, rotations
 from ....quantities import Array, Flags, Integers, keep, require_array
 from ...wall.effect import Anchored, Effect
@@ -40,7 +39,7 @@ def pose_of_all(masonry: Masonry, pose: ArrayLike) -> Array:
     Raises:
         TypeError, ValueError: for another shape, or quaternions that are not of unit length.
     """
-    blocks, freedom = len(masonry.blocks), SPACE if masonry.in_space else PLANE
+    blocks, freedom = len(masonry.blocks), masonry.freedom
     moved = at_rest(blocks, freedom).reshape(blocks, freedom.nq)
     some = list(range(blocks)) if np.shape(pose) == moved.shape else list(masonry.free)
     moved[some] = require_array("pose", pose, moved[some].shape)

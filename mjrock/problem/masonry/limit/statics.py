@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -109,7 +109,7 @@ def nudged(masonry: Masonry, applied: Array | float = 0.0) -> tuple[tuple[str, .
         The names of the blocks, and whether more friction would keep them; None of blocks that stand the nudge any way.
     """
     weight = weight_of(masonry).reshape(len(masonry.free), -1)
-    for axis in range(2 if masonry.in_space else 1):
+    for axis in range(masonry.freedom.translations - 1):
         for way in (NUDGE, -NUDGE):
             push = np.zeros_like(weight)
             push[:, axis] = way * weight.sum(axis=1)
@@ -141,15 +141,15 @@ def moving(masonry: Masonry, velocities: Array) -> tuple[str, ...]:
 
 def weight_of(masonry: Masonry) -> Array:
     """The weight of each free block as a generalised force, shape (unknowns,) [N, N m]."""
-    down = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
-    down[:, 2 if masonry.in_space else 1] = [-GRAVITY * masonry.blocks[i].mass for i in masonry.free]
+    down = np.zeros((len(masonry.free), masonry.freedom.nv))
+    down[:, masonry.freedom.translations - 1] = [-GRAVITY * masonry.blocks[i].mass for i in masonry.free]
     return down.ravel()
 
 
 def sizes_of(masonry: Masonry) -> Array:
     """What moments of each unknown are divided by to compare with forces: 1, and the size of the block [m]."""
-    forces, parts = (3, 3) if masonry.in_space else (2, 1)
-    return np.array([(*[1.0] * forces, *[masonry.blocks[i].size] * parts) for i in masonry.free]).ravel()
+    d, nv = masonry.freedom.translations, masonry.freedom.nv
+    return np.array([(*[1.0] * d, *[masonry.blocks[i].size] * (nv - d)) for i in masonry.free]).ravel()
 
 
 def method(masonry: Masonry) -> str:
@@ -183,7 +183,7 @@ def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[c
     lines, ways = masonry.lines, across or masonry.lines.across
     directions = np.stack([-lines.normal, *(sign * way for way in ways for sign in (1.0, -1.0))])
     if not any(masonry.bonds):
-        return csc_array((len(masonry.free) * (6 if masonry.in_space else 3), 0)), np.zeros(0), directions[:0]
+        return csc_array((len(masonry.free) * masonry.freedom.nv, 0)), np.zeros(0), directions[:0]
     area = masonry.areas_of(lines.k, lines.joint)
     pull, along = (area * strengths(masonry.bonds, name)[lines.joint] for name in ("tension", "cohesion"))
     columns = vstack([rates(masonry.blocks, lines, way) for way in directions]).T
@@ -205,7 +205,7 @@ def _balanced(
     friction: Array,
     dear: Array | None = None,
     ties: Pulls | None = None,
-) -> Any:
+) -> scipy.optimize.OptimizeResult:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
     The unknowns are the forces along the edges of the cone of each line, then what is missing. With `dear`, a wider
@@ -250,6 +250,6 @@ def _lacking(masonry: Masonry, forces: Array) -> Flags:
     return np.asarray((of_part >= min(UNBALANCED, of_part.max()))[part])
 
 
-def _stands(answer: Any) -> bool:
+def _stands(answer: scipy.optimize.OptimizeResult) -> bool:
     """Whether nothing of the weight is missing, or the programme found no answer."""
     return bool(answer.status != 0 or answer.fun <= UNBALANCED)

@@ -1,13 +1,14 @@
-"""Checks of the arguments of pictures, which go by their names: `ax` is an Axes in each of them, `title` a text."""
+"""Checks of the arguments of pictures by their names: `ax` is an Axes in each, `title` a text. Figures of panels."""
 
 from __future__ import annotations
 
 import functools
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
+from typing import Concatenate, ParamSpec, Protocol, TypeVar, cast, overload
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from ..problem.wall.case import Case
@@ -15,7 +16,6 @@ from ..quantities import (
     Array,
     require_kind,
     require_reals,
-    require_row,
     require_text,
     require_whole,
     require_within,
@@ -23,10 +23,10 @@ from ..quantities import (
 )
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
-from .figures import Picture
+from .style import Drawing, Picture, several, wrapped
 
 P = ParamSpec("P")
-Drawer = TypeVar("Drawer", bound=Callable[..., Any])
+Drawer = TypeVar("Drawer", bound=Callable[..., object])
 Check = Callable[[str, object], object]
 """Raises a TypeError or ValueError with the name and the value of an invalid argument."""
 MOST_COLUMNS = 50
@@ -38,23 +38,15 @@ def kind(*kinds: type) -> Check:
     return lambda name, value: require_kind(name, value, *kinds)
 
 
-def row(name: str, value: object) -> None:
-    """A row of at least one real number."""
-    given = require_reals(name, value, "a row of at least one real number")
-    if given.ndim != 1 or not given.size:
-        raise ValueError(f"{name} has the shape {given.shape}; a row of at least one real number is needed")
+def shaped(axes: int, needed: str) -> Check:
+    """A check for real numbers along so many axes, at least one number."""
 
+    def checked(name: str, value: object) -> None:
+        given = require_reals(name, value, needed)
+        if given.ndim != axes or not given.size:
+            raise ValueError(f"{name} has the shape {given.shape}; {needed} is needed")
 
-def finite_row(name: str, value: object) -> None:
-    """A row of at least one finite number."""
-    require_row(name, value, "number")
-
-
-def table(name: str, value: object) -> None:
-    """Real numbers in rows and columns."""
-    given = require_reals(name, value, "real numbers in rows and columns")
-    if given.ndim != 2 or not given.size:
-        raise ValueError(f"{name} has the shape {given.shape}; rows and columns of real numbers are needed")
+    return checked
 
 
 def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
@@ -125,11 +117,6 @@ def drawing(name: str, value: object) -> None:
         raise TypeError(f"{name} = {shown(value)} is not a function that draws on an Axes")
 
 
-def number(name: str, value: object) -> None:
-    """A finite number."""
-    require_within(name, value, -1e9, 1e9)
-
-
 CHECKS: dict[str, Check] = {
     "ax": kind(Axes),
     "case": kind(Case),
@@ -138,13 +125,13 @@ CHECKS: dict[str, Check] = {
     "draw": drawing,
     "drawings": listed(pair(require_text, drawing)),
     "fit": kind(Fragility),
-    "intensity": row,
+    "intensity": shaped(1, "a row of at least one real number"),
     "labels": listed(require_text),
     "panels": listed(pair(require_text, listed(of_wall))),
-    "peaks": table,
+    "peaks": shaped(2, "a table of real numbers in rows and columns"),
     "responses": listed(of_wall),
     "title": require_text,
-    "until": number,
+    "until": lambda name, value: require_within(name, value, -1e9, 1e9),
 }
 """The check of each argument that means the same in every picture."""
 
@@ -170,11 +157,13 @@ class Checked(Protocol):
 
 
 def own_axes(about: object) -> Axes:
-    """An Axes in a figure of its own, of three dimensions for masonry in space and results of it."""
+    """An Axes in a figure of its own, which a notebook shows; of three dimensions for masonry in space and its runs."""
     about = getattr(about, "case", about)
     deep = getattr(getattr(about, "masonry", about), "in_space", False)
     figure = Picture(figsize=(6.4, 4.8) if deep else (5.2, 3.6), layout="constrained")
-    return figure.sole_axes("3d" if deep else None)
+    ax = figure.add_subplot(projection="3d" if deep else None)
+    vars(ax)["_repr_png_"] = figure._repr_png_
+    return ax
 
 
 def picture(**own: Check) -> Checked:
@@ -183,12 +172,12 @@ def picture(**own: Check) -> Checked:
     One that draws on an Axes makes a figure where it is not given one.
     """
 
-    def decorated(draw: Any) -> Any:
+    def decorated(draw: Callable[..., object]) -> Callable[..., object]:
         signature = inspect.signature(draw)
         on_axes = next(iter(signature.parameters)) == "ax"
 
         @functools.wraps(draw)
-        def checked(*given: Any, ax: Axes | None = None, **options: Any) -> Any:
+        def checked(*given: object, ax: Axes | None = None, **options: object) -> object:
             if ax is not None:
                 given = (ax, *given)
             elif on_axes and not (given and isinstance(given[0], Axes)):
@@ -201,4 +190,21 @@ def picture(**own: Check) -> Checked:
 
         return checked
 
-    return decorated
+    return cast(Checked, decorated)
+
+
+@picture()
+def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
+    """A figure with one Axes, drawn by `draw`."""
+    figure = Picture(figsize=size, layout="constrained")
+    draw(figure.subplots())
+    return figure
+
+
+@picture()
+def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
+    """Several drawings, each on an Axes of its own under its title."""
+    figure, axes = several(len(drawings), columns, (4.4, 3.4))
+    for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
+        draw(ax).set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
+    return figure

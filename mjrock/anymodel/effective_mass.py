@@ -1,8 +1,8 @@
-"""What a contact feels of a model: masses, springs, dampers, dry friction, and the weight that presses on it.
+"""The effective mass of a contact in a model, with the springs, dampers, dry friction and weight that act on it.
 
 A unit impulse at the contact changes the velocity of its point by W, 3 x 3: the normal n first, then two tangents t.
-A point that does not slip feels 1/m = W_nn - W_nt W_tt^-1 W_tn, a point without friction 1/m = W_nn. Where friction mu
-cannot hold the point, it slips, with mu times the impulse of the normal against it.
+For a point that does not slip 1/m = W_nn - W_nt W_tt^-1 W_tn, for a point without friction 1/m = W_nn. Where friction
+mu cannot hold the point, it slips, with mu times the impulse of the normal against it.
 
 An equality constraint moves with the contact too. Its row yields by its regularisation R at once, and returns with its
 own frequency. One that is faster than the contact is rigid. A slower one adds the inertia of its row.
@@ -161,11 +161,11 @@ EQUALITY = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 
 @dataclass(frozen=True)
 class EffectiveMass:
-    """What a contact feels.
+    """The effective mass of a contact, and what else acts on it.
 
     Args:
         mass: effective mass of the whole contact [kg]; infinity if the geoms cannot approach each other.
-        slides: whether the model lets the point approach only while it slides.
+        slides: whether the point can approach only while it slides.
         motion: velocity of the joints for a unit speed of parting [1/m or 1], shape (nv,).
         gravity: acceleration with which gravity brings the geoms together where nothing else holds them [m/s2].
         yielding: numbers of the equality constraints that yield in a contact.
@@ -180,7 +180,7 @@ class EffectiveMass:
     limits: tuple[int, ...]
 
 
-def felt(
+def effective_mass(
     pair: GeomPair,
     held: PoseConstraints,
     away: Array,
@@ -190,7 +190,7 @@ def felt(
     frequency: float | None = None,
     k: float | None = None,
 ) -> EffectiveMass:
-    """What a contact feels in a pose.
+    """The effective mass of a contact in a pose, and what else acts on it.
 
     Args:
         pair: the geoms.
@@ -249,7 +249,7 @@ def _together(parts: Array) -> float:
 
 
 class PoseConstraints:
-    """The constraints of a model in its pose but for contacts, and what the joints feel of gravity.
+    """The constraints of a model in its pose but for contacts, and the force of gravity on the joints.
 
     Attributes:
         row, number: which row of the engine each is, and of which equality, joint or tendon.

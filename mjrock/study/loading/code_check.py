@@ -1,58 +1,69 @@
-"""The check of a local mechanism on its push-over curve, after the Italian commentary C8.7.1.2.1, clause by clause.
+"""The checks of a local mechanism after the Italian commentary C8.7.1.2.1, clause by clause.
 
-The clauses are those of Circolare 21 gennaio 2019 n. 7. The mechanism is the single rigid block of a case, which stands
-on the ground or on a floor whose spectrum or motion is the demand, or a wall that bends between two floors or side
-walls.
+The clauses are those of Circolare 21 gennaio 2019 n. 7. `mechanism_check` is the check on a push-over curve. The
+mechanism is the single rigid block of a case, which stands on the ground or on a floor whose spectrum or motion is the
+demand, or a wall that bends between two floors or side walls. `dynamic_check` is that by nonlinear dynamic analysis.
 """
 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from pathlib import Path
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from ...files import aligned
 from ...notebook import html_of
-from ...problem.ground.code_spectrum import SpectrumOfCode
 from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST_PERIOD
-from ...problem.ground.spectrum import response_spectrum
-from ...problem.masonry.case import require_wall
-from ...problem.wall.bending import VerticalBending
+from ...problem.ground.spectrum import SpectrumOfCode, response_spectrum
+from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
+from ...problem.wall.bending import HorizontalBending, VerticalBending
+from ...problem.wall.block import Block
 from ...problem.wall.case import Case
-from ...problem.wall.corner import Corner
-from ...problem.wall.horizontal_bending import HorizontalBending
-from ...problem.wall.ties_on_wall import moment_at_strength
+from ...problem.wall.restoring_moment import moment_at_strength
+from ...problem.wall.wedge import Corner
 from ...quantities import (
     GRAVITY,
     Array,
     Implausible,
+    is_iterable,
     ratio_said,
+    require_kind,
     require_real,
     require_within,
+    share_said,
     short_repr,
     shown,
+    spelt,
     takes,
+    warn_of,
 )
+from ...result.response import Response
+from ..analysis import Analysis
+from ..campaign.campaign import results
+from .push import Push, of_centroid
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
 """Displacement capacity over that at which the curve ends [-], C8.7.1.2.1.6."""
 PERIOD = {"SLV": 1.68 * math.pi, "SLC": 1.56 * math.pi}
-"""Factor of the equivalent period [-], equations C8.7.1.10 and C8.7.1.11."""
+"""Factor of the equivalent period [-], by the equation of the limit state."""
+EQUATION = {"SLV": "C8.7.1.10", "SLC": "C8.7.1.11"}
+"""The equation of that period."""
 DAMPING = {"SLV": 0.08, "SLC": 0.10}
 """Equivalent damping ratio [-], C8.7.1.2.1.8."""
 BEHAVIOUR = 2.0
 """Behaviour factor q of the linear check [-], C8.7.1.2.1.7."""
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
-
 SHORT = 0.05
 """Period from which on the spectrum of a record is looked at where T_0 is not known [s]."""
+MIN_RECORDS = 8
+"""Records that are more than those of the global response, of which NTC 2018, 7.3.5, takes the mean from seven on."""
 
 Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
@@ -62,7 +73,7 @@ class Step(NamedTuple):
     """One step of a check.
 
     Args:
-        key: which it is, see `SAID`.
+        key: which it is, see `CHECK_STEPS`.
         value: in the unit.
         clause: where it stands in the Circolare; none of a ratio.
         unit: of the value.
@@ -76,27 +87,31 @@ class Step(NamedTuple):
     of: str = ""
 
 
-SAID = {
-    "alpha_0": ("multiplier alpha_0", 4),
-    "participation": ("participating mass e*", 4),
-    "confidence_factor": ("confidence factor FC", 2),
-    "a_0": ("a_0 = alpha_0 g / (e* FC), SLD", 4),
-    "linear": ("linear SLV, q a_0 with q = 2", 4),
-    "alpha_tied": ("alpha_0, ties at their strength", 4),
-    "linear_tied": ("linear SLV, ties at their strength", 4),
-    "peak": ("peak of the demand, a_g S or a_Z", 4),
-    "linear_ratio": ("capacity over demand SLV, linear", 2),
-    "elastic_period": ("elastic branch up to the curve, T_0", 3),
-    "d_0": ("d_0", 4),
-    "yields": ("{of} yields at d", 4),
-    "breaks": ("{of} breaks at d", 4),
-    "capacity": ("d_{of} = {share:.1f} d_0", 4),
-    "period": ("T_{of}", 3),
-    "demand": ("demand, xi = {damping:.0%}", 4),
-    "ratio": ("capacity over demand {of}", 2),
-    "ground_ratio": ("a_g,SLV / a_g, at least a_g,SLD / a_g", 2),
+CHECK_STEPS = {
+    "alpha_0": ("multiplier alpha_0", 4, "", "C8.7.1.1"),
+    "participation": ("participating mass e*", 4, "", "C8.7.1.5"),
+    "confidence_factor": ("confidence factor FC", 2, "", "C8.7.1.2.1.3"),
+    "a_0": ("a_0 = alpha_0 g / (e* FC), SLD", 4, "g", "C8.7.1.8"),
+    "linear": ("linear SLV, q a_0 with q = 2", 4, "g", "C8.7.1.2.1.7"),
+    "alpha_tied": ("alpha_0, ties at their strength", 4, "", "C8.7.1.1"),
+    "linear_tied": ("linear SLV, ties at their strength", 4, "g", "C8.7.1.2.1.7"),
+    "peak": ("peak of the demand, a_g S or a_Z", 4, "g", "C8.7.1.2.1.7"),
+    "linear_ratio": ("capacity over demand SLV, linear", 2, "", ""),
+    "elastic_period": ("elastic branch up to the curve, T_0", 3, "s", "C8.7.1.6"),
+    "d_0": ("d_0", 4, "m", "C8.7.1.4"),
+    "yields": ("{of} yields at d", 4, "m", ""),
+    "breaks": ("{of} breaks at d", 4, "m", ""),
+    "capacity": ("d_{of} = {share:.1f} d_0", 4, "m", "C8.7.1.2.1.6"),
+    "period": ("T_{of}", 3, "s", ""),
+    "demand": ("demand, xi = {damping:.0%}", 4, "m", "C8.7.1.2.1.8"),
+    "ratio": ("capacity over demand {of}", 2, "", ""),
+    "ground_ratio": ("a_g,SLV / a_g, at least a_g,SLD / a_g", 2, "", "C8.7.1.2.1.8"),
 }
-"""What a table says of each step, and its decimals."""
+"""The text of each step in a table, its decimals, its unit and its clause. The key of a step of the whole mechanism is
+the name of its attribute of `MechanismCheck`, that of a limit state the name of its attribute of `LimitState`."""
+OF_MECHANISM = tuple(CHECK_STEPS)[: 1 + tuple(CHECK_STEPS).index("d_0")]
+OF_LIMIT_STATE = "capacity", "period", "demand", "ratio"
+"""The keys of the steps of a mechanism, and of those of a limit state."""
 
 
 class Verdict(NamedTuple):
@@ -142,13 +157,9 @@ class Verdict(NamedTuple):
 def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     """Conditions as rows of a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
     rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
-    rows += [
-        (
-            *(one.what, one.limit_state, f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_said(one.ratio)),
-            *(one.said, one.clause),
-        )
-        for one in verdicts
-    ]
+    for one in verdicts:
+        numbers = f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_said(one.ratio)
+        rows.append((one.what, one.limit_state, *numbers, one.said, one.clause))
     return rows
 
 
@@ -164,7 +175,7 @@ class LimitState:
     Args:
         capacity: spectral displacement that the mechanism may reach [m].
         period: equivalent period [s].
-        demand: spectral displacement that the ground motion asks for [m].
+        demand: spectral displacement that the ground motion demands [m].
     """
 
     capacity: float
@@ -229,10 +240,7 @@ class MechanismCheck:
     def linear_ratio(self) -> float | None:
         """Capacity over demand of the linear check of the SLV [-], with the ties at their strength; None where the peak
         acceleration of the demand is not known."""
-        if self.peak is None:
-            return None
-        capacity = self.linear if self.linear_tied is None else self.linear_tied
-        return capacity / self.peak if self.peak > 0 else math.inf
+        return None if self.peak is None else self.verdicts[0].ratio
 
     @property
     def ground_ratio(self) -> float:
@@ -265,34 +273,20 @@ class MechanismCheck:
     @property
     def steps(self) -> tuple[Step, ...]:
         """Every step with its clause, in the order of the check."""
-        found = [
-            Step("alpha_0", self.alpha_0, "C8.7.1.1"),
-            Step("participation", self.participation, "C8.7.1.5"),
-            Step("confidence_factor", self.confidence_factor, "C8.7.1.2.1.3"),
-            Step("a_0", self.a_0 / GRAVITY, "C8.7.1.8", "g"),
-            Step("linear", self.linear / GRAVITY, "C8.7.1.2.1.7", "g"),
-        ]
-        if self.alpha_tied is not None and self.linear_tied is not None:
-            found.append(Step("alpha_tied", self.alpha_tied, "C8.7.1.1"))
-            found.append(Step("linear_tied", self.linear_tied / GRAVITY, "C8.7.1.2.1.7", "g"))
-        if self.peak is not None and self.linear_ratio is not None:
-            found.append(Step("peak", self.peak / GRAVITY, "C8.7.1.2.1.7", "g"))
-            found.append(Step("linear_ratio", self.linear_ratio))
-        if self.elastic_period is not None:
-            found.append(Step("elastic_period", self.elastic_period, "C8.7.1.6", "s"))
-        found.append(Step("d_0", self.d_0, "C8.7.1.4", "m"))
-        found += [Step("yields", d, "", "m", tie) for tie, d in self.yielding.items()]
-        found += [Step("breaks", d, "", "m", tie) for tie, d in self.breaking.items()]
+        found = [(key, "", getattr(self, key)) for key in OF_MECHANISM]
+        found += [("yields", tie, d) for tie, d in self.yielding.items()]
+        found += [("breaks", tie, d) for tie, d in self.breaking.items()]
         for name, state in self.states.items():
-            found += [
-                Step("capacity", state.capacity, "C8.7.1.2.1.6", "m", name),
-                Step("period", state.period, "C8.7.1.10" if name == "SLV" else "C8.7.1.11", "s", name),
-                Step("demand", state.demand, "C8.7.1.2.1.8", "m", name),
-                Step("ratio", state.ratio, "", "", name),
-            ]
+            found += [(key, name, getattr(state, key)) for key in OF_LIMIT_STATE]
         if self.ground_ratio > self.states["SLV"].ratio:
-            found.append(Step("ground_ratio", self.ground_ratio, "C8.7.1.2.1.8"))
-        return tuple(found)
+            found.append(("ground_ratio", "", self.ground_ratio))
+        steps = []
+        for key, of, value in found:
+            if value is not None:
+                *_, unit, clause = CHECK_STEPS[key]
+                value = value / GRAVITY if unit == "g" else value
+                steps.append(Step(key, value, EQUATION[of] if key == "period" else clause, unit, of))
+        return tuple(steps)
 
     def broken_before(self, limit_state: str) -> list[str]:
         """Names of the ties that have broken at the capacity of a limit state."""
@@ -313,7 +307,7 @@ class MechanismCheck:
         said |= {"linear_ratio": linear[0].said if linear else "", "ground_ratio": f"{slv.said}, C8.7.1.2.1.8"}
         rows = []
         for step in self.steps:
-            what, digits = SAID[step.key]
+            what, digits, *_ = CHECK_STEPS[step.key]
             what = what.format(of=step.of, share=SHARE.get(step.of, 0.0), damping=DAMPING.get(step.of, 0.0))
             note = said.get(f"{step.key} {step.of}".strip(), step.clause)
             if step.key == "ratio" and (gone := self.broken_before(step.of)):
@@ -388,7 +382,7 @@ def mechanism_check(
     for name, share in SHARE.items():
         capacity = share * d_0
         period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
-        states[name] = LimitState(capacity, period, _asked(demands[name], period, DAMPING[name], T_0 or SHORT))
+        states[name] = LimitState(capacity, period, _demanded(demands[name], period, DAMPING[name], T_0 or SHORT))
     alpha_0, ties = float(found.multiplier[0]), (found.yielding, found.breaking)
     return MechanismCheck(alpha_0, found.tied, found.participation, factor, d, a, d_0, states, peak, *ties, T_0)
 
@@ -420,7 +414,7 @@ def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
 
 
 def _of_wall(case: Case) -> _Mechanism:
-    """A wall that overturns, with its ties. A ValueError says if they hold it for good."""
+    """A wall that overturns, with its ties; ValueError if they hold it for good."""
     require_wall("case", case, "collapse_multiplier")
     curve = pushover(case)
     if not math.isfinite(curve.end):
@@ -448,11 +442,10 @@ def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[s
         if breaking.get(name, math.inf) > capacity
     ]
     if holding and capacity > alone:
-        warnings.warn(
+        warn_of(
             f"d_SLC = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
             f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
             Implausible,
-            stacklevel=4,
         )
 
 
@@ -476,8 +469,8 @@ def _masses(case: Case) -> tuple[Array, Array]:
     return GRAVITY * np.array(weights), np.array(heights)
 
 
-def _asked(demand: Demand, period: float, damping: float, shortest: float) -> float:
-    """The displacement that is asked for at a period [m], by a record the largest from the shortest period on [s]."""
+def _demanded(demand: Demand, period: float, damping: float, shortest: float) -> float:
+    """The displacement that a demand has at a period [m], of a record the largest from the shortest period on [s]."""
     if isinstance(demand, GroundMotion):
         periods = np.geomspace(max(min(shortest, period), SHORTEST_PERIOD), max(period, SHORTEST_PERIOD), PERIODS)
         return float(response_spectrum(demand, periods, damping).Sd.max())
@@ -488,3 +481,279 @@ def _asked(demand: Demand, period: float, damping: float, shortest: float) -> fl
     except (TypeError, ValueError) as error:
         raise type(error)(f"demand = {shown(demand)} gives no displacement for T, xi: {error}") from None
     return require_within("demand(T, xi)", asked, 0.0, 1e3, "m")
+
+
+class RunMaximum(NamedTuple):
+    """One run of the check.
+
+    Args:
+        name: of its horizontal motion.
+        record: number of its record, the same in both polarities.
+        turned: whether its motion is that of the first run of its record, reversed.
+        solver: which solver ran it.
+        d: largest displacement of the centroid [m], infinite for a wall that has overturned.
+    """
+
+    name: str
+    record: int
+    turned: bool
+    solver: str
+    d: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DynamicCheck:
+    """The verdict of nonlinear dynamic analysis.
+
+    Args:
+        limit_state: "SLV" or "SLC".
+        d_0: displacement of the centroid at which nothing brings the wall back [m].
+        runs: the largest displacement of each run.
+        restitution: |e| of all impacts of the responses [-], shape (n,); none is known of masonry and of rows of a
+            campaign.
+        natural: whether the records are natural ones; None if it is not known.
+    """
+
+    limit_state: str
+    d_0: float
+    runs: tuple[RunMaximum, ...]
+    restitution: tuple[float, ...]
+    natural: bool | None
+
+    @property
+    def records(self) -> int:
+        """How many records the runs have."""
+        return max(run.record for run in self.runs) + 1
+
+    @property
+    def in_one_polarity(self) -> int:
+        """How many of the records were run in one polarity alone."""
+        return 2 * self.records - len({(run.record, run.turned) for run in self.runs})
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """What C8.7.1.2.1.9 demands and the runs lack, in words."""
+        count, lacking = self.records, list[str]()
+        if count < MIN_RECORDS:
+            more = f"and more than the {MIN_RECORDS - 1} of the global response (NTC 2018, 7.3.5) count"
+            lacking.append(f"{count} records, {more}")
+        if self.in_one_polarity:
+            lacking.append(f"{self.in_one_polarity} of {count} records in one polarity alone")
+        if not self.natural:
+            made = "are artificial" if self.natural is False else "are not said to be"
+            lacking.append(f"natural records, and these {made}")
+        return tuple(lacking)
+
+    @property
+    def worse(self) -> tuple[float, ...]:
+        """The larger maximum of both polarities of each record [m], infinite beyond d_0."""
+        numbers = dict.fromkeys(run.record for run in self.runs)
+        return tuple(max(run.d for run in self.runs if run.record == number) for number in numbers)
+
+    @property
+    def mean(self) -> float:
+        """Mean of the maxima of the records, in the worse polarity of each [m]."""
+        return float(np.mean(self.worse))
+
+    @property
+    def exceeded(self) -> tuple[str, ...]:
+        """Names of the runs beyond d_0."""
+        return tuple(run.name for run in self.runs if run.d > self.d_0)
+
+    @property
+    def capacity(self) -> float:
+        """The displacement that the mean may reach, 0.4 d_0 at the SLV and 0.6 d_0 at the SLC [m]."""
+        return SHARE[self.limit_state] * self.d_0
+
+    @property
+    def holds(self) -> bool:
+        """Whether no run exceeds d_0 and the mean of the maxima stays within the capacity."""
+        return all(verdict.holds for verdict in self.verdicts)
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """The two conditions."""
+        largest = max(run.d for run in self.runs)
+        return (
+            Verdict("dynamic, largest run", self.limit_state, largest, self.d_0, "m", "C8.7.1.2.1.9"),
+            Verdict("dynamic, mean of maxima", self.limit_state, self.mean, self.capacity, "m", "C8.7.1.2.1.9"),
+        )
+
+    def table(self, kinematic: MechanismCheck | None = None) -> str:
+        """The runs, the restitution of their impacts, what is lacking and the verdicts, as text.
+
+        Args:
+            kinematic: a check of the same wall, whose verdicts then stand above.
+        """
+        require_kind("kinematic", kinematic, MechanismCheck, type(None))
+        lines = [f"{run.solver}, {run.name}: {run.d:.4f} m, {share_said(run.d / self.d_0)} d_0" for run in self.runs]
+        if self.restitution:
+            low, middle, high = np.percentile(self.restitution, [5, 50, 95])
+            said = f"{middle:.3f} in the median, {low:.3f} to {high:.3f} in nine of ten"
+            lines.append(f"restitution |e| of {len(self.restitution)} impacts: {said}")
+        lines += [f"lacking: {what}" for what in self.lacking]
+        before = () if kinematic is None else kinematic.verdicts
+        return "\n".join([*lines, verdicts_of((*before, *self.verdicts))])
+
+    def _repr_html_(self) -> str:
+        runs = [(one.name, f"{one.d:.4f}", share_said(one.d / self.d_0)) for one in self.runs]
+        head = ("run", "displacement [m]", "of d_0")
+        return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
+
+    def __repr__(self) -> str:
+        said = "HOLDS" if self.holds else "FAILS"
+        return (
+            f"<DynamicCheck {self.limit_state} {said}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
+            f"{len(self.exceeded)} of {len(self.runs)} runs beyond d_0 = {self.d_0:.4g} m>"
+        )
+
+
+def dynamic_check(
+    runs: Sequence[Response] | Sequence[Analysis],
+    limit_state: str = "SLV",
+    *,
+    curve: Push | None = None,
+    store: str | Path | None = None,
+    natural: bool | None = None,
+) -> DynamicCheck:
+    """The check of a wall or of masonry by nonlinear dynamic analysis, by Circolare 2019 n. 7, C8.7.1.2.1.9.
+
+    The limit state holds if no run exceeds d_0, and if the mean of the largest displacements is at most 0.4 d_0 at the
+    SLV and 0.6 d_0 at the SLC (C8.7.1.2.1.6). d_0 is the displacement of the centroid at which weight, loads and
+    thrusts bring the wall back no more. Ties act in the runs, and do not raise d_0, of which the clause counts only
+    what is known to hold up to collapse. The worse of both polarities of a record enters the mean, which is on the
+    safe side of the clause.
+
+    Of masonry of many blocks d_0 is that of its `push` along a direction, of the common centroid of its free blocks,
+    and the maxima are those of the same centroid along that direction. Leave ties out of the push, and give it what
+    else is constant. A run from which a block has fallen exceeds d_0. Masonry that may go either way is checked with
+    the push either way.
+
+    The clause demands more records than the global response, natural ones that fit the spectrum together, and a
+    restitution of mechanism and slenderness. A warning names what the runs lack of it. Whether they fit the spectrum is
+    for the user, see `RecordSet.mean_over`.
+
+    Args:
+        runs: responses of one wall or masonry with the same effects, of any solver, or of a wall the `Analysis` tasks
+            of a campaign.
+        limit_state: "SLV" or "SLC", whose spectrum the records fit.
+        curve: of masonry, its push along the direction that is checked, until nothing is borne any more.
+        store: the file of the campaign, for tasks.
+        natural: whether the records are natural ones. None if it is not known.
+
+    Returns:
+        The `DynamicCheck`, with `holds` and `table()`.
+
+    Raises:
+        TypeError, ValueError: for runs of unlike walls or effects or without ground motion, masonry without a curve or
+            with one that ends too early, or tasks without a row.
+
+    Warns:
+        Implausible: for what the clause demands and the runs lack.
+    """
+    if not isinstance(limit_state, str) or limit_state not in SHARE:
+        raise ValueError(f"limit_state = {spelt(limit_state)} is not one of {', '.join(SHARE)}")
+    require_kind("natural", natural, bool, type(None))
+    require_kind("curve", curve, Push, type(None))
+    if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):
+        raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
+    cases = _cases_of(given, curve)
+    motions = [case.motion for case in cases if case.motion is not None]
+    responses = [run for run in given if isinstance(run, Response)]
+    if responses and store is not None:
+        raise ValueError("store is for the tasks of a campaign, and runs are responses; leave it out")
+    if curve is None:
+        case = cast(Case, cases[0])
+        d_0, maxima = d_0_of(case), [displaced(case.wall, one * case.wall.alpha) for one in _peaks(given, store)]
+    else:
+        d_0, maxima = curve.d_0, [_along(run, cast(MasonryCase, run.case), curve.way) for run in responses]
+    found = tuple(
+        RunMaximum(motion.name, *signal, run.solver, d)
+        for motion, signal, run, d in zip(motions, signals_of(cases), given, maxima, strict=True)
+    )
+    impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
+    known = tuple(e for e in impacts if not math.isnan(e))
+    check = DynamicCheck(limit_state, d_0, found, known, natural)
+    if check.lacking:
+        warn_of(f"C8.7.1.2.1.9 asks for more: {'; '.join(check.lacking)}", Implausible)
+    return check
+
+
+def d_0_of(case: Case) -> float:
+    """Displacement of the centroid of a wall at which nothing but its ties brings it back [m]."""
+    outer, inner = case.restoring
+    return displaced(case.wall, max(outer.alpha if case.side_stop else min(outer.alpha, inner.alpha), 0.0))
+
+
+def displaced(wall: Block, rotation: float) -> float:
+    """Displacement of the centroid at a rotation [m], infinite for a wall that has overturned."""
+    return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
+
+
+def _along(run: Response, case: MasonryCase, way: Array) -> float:
+    """Largest displacement of the centroid of the free blocks along a direction [m], infinite where a block fell."""
+    return math.inf if run.fallen else max(float(of_centroid(case, run.pose, way).max()), 0.0)
+
+
+def _cases_of(runs: Sequence[Response | Analysis], curve: Push | None) -> list[AnyCase]:
+    """The cases of runs of one kind, which are of one wall or masonry with the same effects."""
+    first = runs[0].case
+    if curve is not None:
+        _require_whole(curve)
+    for i, run in enumerate(runs):
+        require_kind(f"runs[{i}]", run, Response if isinstance(runs[0], Response) else Analysis)
+        case = run.case
+        if curve is None:
+            require_wall(f"runs[{i}]", case, "curve, its push along the direction that is checked")
+        elif case.built != curve.answer.case.built:
+            raise ValueError(f"runs[{i}] is not of the masonry of curve")
+        if case.motion is None:
+            raise ValueError(f"runs[{i}] has no horizontal ground motion, of which the clause takes the maxima")
+        if any(getattr(case, name, None) != getattr(first, name, None) for name in ("built", "side_stop", "effects")):
+            raise ValueError(f"runs[{i}] has another wall, side stop, masonry or other effects than runs[0]")
+    return [run.case for run in runs]
+
+
+def _require_whole(curve: Push) -> None:
+    """Refuse a curve that has no d_0."""
+    if curve.unit != "-":
+        raise ValueError("curve is that of an Actuator; push along a direction, which moves all blocks")
+    if math.isnan(curve.d_0):
+        raise ValueError(
+            f"curve ends at {curve.displacement[-1]:.4g} m, where {curve.force[-1] / curve.peak:.0%} of its peak is "
+            "borne; push on until nothing is"
+        )
+
+
+def _peaks(runs: Sequence[Response | Analysis], store: str | Path | None) -> list[float]:
+    """The largest rotation of each run over alpha [-], infinite for a wall that has overturned."""
+    responses = [run for run in runs if isinstance(run, Response)]
+    if responses:
+        return [run.peak_over_alpha for run in responses]
+    if store is None:
+        raise ValueError("runs are tasks of a campaign; give its file as store")
+    rows = results([run for run in runs if isinstance(run, Analysis)], store)
+    done = [float(row["peak_over_alpha"]) for row in rows if row is not None and row["status"] == "done"]
+    if len(done) < len(rows):
+        raise ValueError(f"{len(rows) - len(done)} of {len(rows)} tasks have no row that is done in {store}; run them")
+    return done
+
+
+def _of_one_record(one: AnyCase, other: AnyCase) -> bool:
+    """Whether two cases have one record, in either polarity of each horizontal component."""
+    return one.vertical == other.vertical and all(
+        now == then or (then is not None and now in then.polarities)
+        for now, then in ((other.motion, one.motion), (other.transverse, one.transverse))
+    )
+
+
+def signals_of(cases: Sequence[AnyCase]) -> list[tuple[int, bool]]:
+    """The number of the record of each case, and whether its motion is that of the first such case, reversed."""
+    firsts: list[AnyCase] = []
+    signals = []
+    for case in cases:
+        number = next((i for i, first in enumerate(firsts) if _of_one_record(first, case)), len(firsts))
+        if number == len(firsts):
+            firsts.append(case)
+        signals.append((number, case.motion != firsts[number].motion))
+    return signals

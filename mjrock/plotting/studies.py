@@ -1,0 +1,319 @@
+"""Pictures of studies: records and spectra, intensity and fragility, pushes, and the sensitivity to settings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import cycle
+from typing import get_args
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from ..problem.ground.motion import GroundMotion
+from ..problem.ground.record_sets import RecordSet
+from ..problem.ground.spectrum import SpectrumOfCode, response_spectrum
+from ..quantities import GRAVITY, named, require_kind, require_row, require_text
+from ..study.intensity.fragility import Fragility
+from ..study.loading.push import Push
+from ..study.loading.pushover import PushoverCurve
+from ..study.sensitivity import Sensitivity, setting_text
+from .picture import equal_rows, kind, listed, mapping, picture
+from .style import BLUE, ORANGE, OWN, PALETTE, STYLES, folded, power_of_ten
+
+PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
+
+
+def of_records(name: str, value: object) -> None:
+    """At least one motion, or a set of at least one record."""
+    listed(kind(GroundMotion))(name, value.horizontal if isinstance(value, RecordSet) else value)
+
+
+def one_or_more(name: str, value: object) -> None:
+    """A motion, at least one of them, or a set of records."""
+    of_records(name, [value] if isinstance(value, GroundMotion) else value)
+
+
+def finite_row(name: str, value: object) -> None:
+    """A row of at least one finite number."""
+    require_row(name, value, "number")
+
+
+@picture(motions=one_or_more)
+def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure:
+    """Acceleration, velocity and displacement of the ground over time, with the peaks and where each motion ends.
+
+    It is the first thing to look at of a file. Several motions are drawn over each other, so that it shows what
+    `corrected` does: `record([motion, motion.corrected("linear")])`. Of a set of records it has the horizontal ones.
+    """
+    given = [motions] if isinstance(motions, GroundMotion) else motions
+    given = given.horizontal if isinstance(given, RecordSet) else given
+    figure = Figure(figsize=(6.4, 5.4 + 0.4 * len(given)), layout="constrained")
+    axes = figure.subplots(3, sharex=True)
+    for i, motion in enumerate(given):
+        t = motion.dt * np.arange(len(motion.accel))
+        histories = (motion.accel, motion.velocities, motion.displacements)
+        for ax, history, unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
+            said = f"{motion.name[:90]}: " if ax is axes[0] else f"ends at {history[-1]:.2g}, "
+            peak = float(np.abs(history).max())
+            label = f"{said}peak {peak:.3g}{f' {unit}' if ax is axes[0] else ''}"
+            ax.plot(t, history, color=PALETTE[i % len(PALETTE)], linewidth=0.8, label=label)
+    for ax, label in zip(axes, ("acceleration [m/s²]", "velocity [m/s]", "displacement [m]"), strict=True):
+        ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
+        ax.set_ylabel(label)
+        ax.yaxis.set_label_coords(-0.1, 0.5)
+        columns = {"ncols": 1 if ax is axes[0] else 3, "columnspacing": 1.0, "handlelength": 1.0}
+        ax.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.0, **columns)
+    axes[2].set(xlabel="time $t$ [s]", xlim=(0, max(motion.duration for motion in given)))
+    return figure
+
+
+@picture(motions=of_records, periods=finite_row, target=kind(*get_args(SpectrumOfCode)))
+def spectra(
+    ax: Axes,
+    motions: Sequence[GroundMotion] | RecordSet,
+    periods: ArrayLike,
+    target: SpectrumOfCode | None = None,
+    damping: float = 0.05,
+) -> Axes:
+    """Pseudo-acceleration of each motion over the period, with their mean and the spectrum that they are scaled to.
+
+    Of a set of records it draws the horizontal components.
+    """
+    T = np.asarray(periods, dtype=float)
+    motions = motions.horizontal if isinstance(motions, RecordSet) else motions
+    found = np.array([response_spectrum(motion, T, damping).Sa for motion in motions]) / GRAVITY
+    for i, line in enumerate(found):
+        ax.plot(T, line, color="0.7", linewidth=0.7, label="records" if i == 0 else None)
+    ax.plot(T, found.mean(axis=0), color=BLUE, linewidth=2.0, label=f"mean of {len(found)}")
+    if target is not None:
+        ax.plot(T, target(T, damping) / GRAVITY, color=ORANGE, linewidth=2.0, linestyle="--", label="target")
+    ax.set(xlim=(T.min(), T.max()), ylim=(0, None), xlabel="period $T$ [s]")
+    ax.set_ylabel(f"pseudo-acceleration $S_a$, {damping:.0%} damping [g]")
+    ax.legend(frameon=False, fontsize=8)
+    return ax
+
+
+@picture()
+def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, top: float | None = None) -> Axes:
+    """Incremental dynamic analysis: peak rotation against intensity, a line a motion, with its 16, 50, 84 % fractiles.
+
+    `peaks` are multiples of alpha, shape (motions, intensities). Infinity stands for overturning, drawn at `top`. None
+    is 1.2, or above the largest peak of a wall that stands: one on ties may stand beyond alpha.
+    """
+    levels, values = np.asarray(intensity, dtype=float), np.asarray(peaks, dtype=float)
+    if values.shape[1] != len(levels):
+        raise ValueError(
+            f"peaks has the shape {values.shape}; a column for each of {len(levels)} intensities is needed"
+        )
+    if top is None:
+        top = max(1.2, 1.15 * float(values[np.isfinite(values)].max(initial=0.0)))
+    shown = np.minimum(values, top)
+    mark = "" if levels.size > 1 else "o"  # a line of one point is none
+    ax.plot(levels, shown.T, color="0.75", linewidth=0.6, marker=mark)
+    fractiles = np.minimum(np.percentile(values, [16, 50, 84], axis=0, method="nearest"), top)
+    for line, style, label in zip(fractiles, (":", "-", "--"), ("16 %", "median", "84 %"), strict=True):
+        ax.plot(levels, line, color=BLUE, linewidth=1.8, linestyle=style, marker=mark, label=label)
+    ax.axhline(1, color="0.3", linewidth=0.6)
+    ax.axhline(top, color="0.3", linewidth=0.6, linestyle=":")
+    ax.text(0.01 * levels.max(), top, "overturned", fontsize=8, va="top", color="0.3")
+    ax.set(xlim=(0, levels.max()), ylim=(0, 1.03 * top))
+    ax.legend(frameon=False, fontsize=8, loc="center left")
+    ax.set_title(STYLES.get(solver, {}).get("label", solver), fontsize=10)
+    ax.set(xlabel="peak ground acceleration [g]", ylabel=PEAK)
+    return ax
+
+
+@picture()
+def fragility(
+    ax: Axes,
+    fit: Fragility,
+    levels: ArrayLike | None = None,
+    shares: ArrayLike | None = None,
+    solver: str | None = None,
+    marker: str = "o",
+    unit: str = "g",
+) -> Axes:
+    """A fragility curve with its 90 % band, and the share overturned at each level; `ax.legend()` shows the labels.
+
+    Args:
+        ax: where to draw.
+        fit: the curve, of `fit_fragility` or `fit_capacities`.
+        levels: intensities that were run, in the unit of the fit, shape (n,); None draws the curve alone.
+        shares: share of the runs that overturned at each, shape (n,).
+        solver: name of the curve; those of `STYLES` have their own colours, any other the next one.
+        marker: of the shares, as matplotlib names it.
+        unit: of the accelerations, for axis and label.
+
+    Raises:
+        TypeError: unless the solver is a text.
+        ValueError: for levels and shares of different lengths, or one without the other.
+    """
+    require_kind("solver", solver, str, type(None))
+    if (levels is None) != (shares is None):
+        raise ValueError("levels and shares go together: give both, or neither")
+    style = STYLES.get(solver or "", {})
+    colour = style.get("color", PALETTE[len(ax.collections) % len(PALETTE)])  # a band each
+    name = f"{folded(style.get('label', solver))}: " if solver else ""
+    label = f"{name}{fit.median:.2f} {unit}, {fit.dispersion:.2f}"
+    top = max(2 * fit.median, fit.tried[1] if math.isfinite(fit.tried[1]) else 0.0)
+    points = found = np.empty(0)
+    if levels is not None and shares is not None:
+        points, found = equal_rows(levels=levels, shares=shares)
+        top = float(points.max())
+    x = np.linspace(0.02 * top, top, 300)
+    low, high = fit.band(x)
+    right = ax.get_xlim()[1] if ax.collections else 0.0
+    ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
+    curve = None if points.size else label
+    ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8, label=curve)
+    if points.size:
+        ax.plot(points, found, marker=marker, linestyle="", color=colour, markersize=5, label=label)
+    ax.set_xlim(0, max(1.02 * top, right))
+    ax.set(ylim=(-0.02, 1.02), xlabel=f"peak ground acceleration [{unit}]", ylabel="share of walls overturned [-]")
+    return ax
+
+
+Closed = Mapping[str, tuple[ArrayLike, ArrayLike]]
+"""Rotations [rad] and the values of a closed form at them, by the name of its curve."""
+
+
+@picture(curves=mapping(kind(PushoverCurve)))
+def pushover(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
+    """Multiplier against rotation, a line a curve, with closed forms as points, and where ties yield and break."""
+    _drawn(ax, {name: (curve.rotation, curve.multiplier) for name, curve in curves.items()}, closed or {})
+    _marked(ax, curves)
+    ax.set_ylabel(r"multiplier $\lambda$ [-]")
+    return ax
+
+
+@picture(curves=mapping(kind(PushoverCurve)))
+def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
+    """Restoring moment against rotation, as in Figure 1(c) of the paper; closed forms [N m] as points.
+
+    The moment of a rigid wall rises at no rotation.
+    """
+    lines = {}
+    for name, curve in curves.items():
+        rotation, moment = curve.rotation, curve.moment / 1e3
+        if curve.contacts is None:
+            rotation, moment = np.append(0.0, rotation), np.append(0.0, moment)
+        lines[name] = rotation, moment
+    points = {name: (at, np.asarray(values, dtype=float) / 1e3) for name, (at, values) in (closed or {}).items()}
+    _drawn(ax, lines, points)
+    ax.set_ylabel("restoring moment $M$ [kN m]")
+    return ax
+
+
+@picture(curves=mapping(kind(Push)))
+def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> Axes:
+    """Force against displacement of slow pushes, a line a push, to and fro too; closed forms [m, N] as points."""
+    factor = 1e-3 if all(curve.unit == "N" for curve in curves.values()) else 1.0
+    lines = {name: (1e3 * curve.displacement, factor * curve.force) for name, curve in curves.items()}
+    points = {
+        name: (1e3 * np.asarray(at, dtype=float), factor * np.asarray(values, dtype=float))
+        for name, (at, values) in (closed or {}).items()
+    }
+    _drawn(ax, lines, points)
+    ax.set(xlim=(None, None), ylim=(None, None), xlabel="displacement [mm]")
+    ax.set_ylabel("force [kN]" if factor < 1 else r"multiplier $\lambda$ [-]")
+    return ax
+
+
+def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
+    """A triangle where ties of a curve yield and a cross where they break, those at one rotation with one text.
+
+    Texts of ties that yield stand above their place, and texts of ties that break below.
+    """
+    for line, curve in zip(list(ax.get_lines()), curves.values(), strict=False):
+        kinds = (("yield", "v", (4, 4)), ("break", "x", (4, -10)))
+        for (what, marker, beside), reached in zip(kinds, curve.ties, strict=True):
+            together: dict[float, list[str]] = {}
+            for name, rotation in reached.items():
+                together.setdefault(rotation, []).append(name)
+            for rotation, names in together.items():
+                near = int(np.searchsorted(curve.rotation, rotation))
+                at = rotation, float(curve.multiplier[max(near - 2, 0) : near + 1].max())  # before it falls
+                ax.plot(*at, marker, color=line.get_color(), markersize=6, zorder=5)
+                ax.set_ylim(top=max(ax.get_ylim()[1], 1.08 * at[1]))  # room for the text
+                said = f"{named(names)} {what}{'' if len(names) > 1 else 's'}"
+                ax.annotate(said, at, beside, textcoords="offset points", fontsize=8, color=line.get_color(), zorder=6)
+
+
+def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
+    for (name, (x, y)), style in zip(lines.items(), cycle(OWN), strict=False):
+        ax.plot(x, y, label=folded(name), **style)
+    for i, (name, at) in enumerate(points.items()):
+        x, y = equal_rows(rotation=at[0], values=at[1])
+        colour = OWN[list(lines).index(name) % len(OWN)]["color"] if name in lines else "0.4"
+        label = "closed forms" if i == 0 else None
+        ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
+    if ax.get_legend_handles_labels()[1]:
+        ax.legend(frameon=False, fontsize=8)
+    ax.set(xlim=(0, None), ylim=(0, None), xlabel=r"rotation $\theta$ [rad]")
+
+
+SETTINGS = dict.fromkeys(("k_n", "k_s", "k_base", "k_side"), "N/m³") | {"thickness": "m", "height": "m", "length": "m"}
+SETTINGS |= {"density": "kg/m³", "thrust": "N", "strength": "N"}
+"""Units of settings that have the names of arguments."""
+
+
+@picture(labels=mapping(require_text, least=0))
+def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = None) -> Axes:
+    """A bar for each setting, from the lowest to the highest value where it alone changes, the widest on top.
+
+    The bar "together" is the range of all runs. The vertical line is the base. A bar that reaches the dashed line has a
+    run in which the wall overturned. Below the name of a setting stand the values that were tried.
+
+    Args:
+        ax: where to draw.
+        found: the study.
+        labels: what settings and the measure are called, such as {"k_n": "stiffness $k_n$"}; others have their names.
+    """
+    require_kind("found", found, Sensitivity)
+    said = {name: name for name in (*found.swings, found.measure)} | dict(labels or {})
+    bars = dict(found.swings)
+    if any(len(names) > 1 for names in found.changed):
+        bars["together"] = found.range
+    finite = found.values[np.isfinite(found.values)]
+    least, most = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    width = most - least or 0.1 * (abs(most) or 1.0)
+    edge = most + 0.12 * width  # where an overturned wall is drawn
+    for i, (name, ends) in enumerate(bars.items()):
+        low, high = (edge if end == math.inf else end for end in ends)
+        colour = "0.75" if name == "together" else ORANGE if name == found.governs else BLUE
+        ax.barh(i, high - low, left=low, color=colour, height=0.55)
+        for end, x, side, shift in zip(ends, (low, high), ("right", "left"), (-4, 4), strict=True):
+            text = found.written(end) if low == high else _apart(found, *ends)[end == ends[1]]
+            ax.annotate(text, (x, i), (shift, 0), textcoords="offset points", ha=side, va="center", fontsize=8)
+    if math.isfinite(found.base_value):
+        ax.axvline(found.base_value, color="0.15", linewidth=1.0)
+    if not np.isfinite(found.values).all():
+        ax.axvline(edge, color="0.15", linewidth=1.0, linestyle="--")
+    ax.set_yticks(range(len(bars)), [f"{said.get(name, name)}\n{_tried(found, name)}".strip() for name in bars])
+    ax.invert_yaxis()
+    right = 0.12 if np.isfinite(found.values).all() else 0.4  # room for the word at the end of a bar
+    ax.set_xlim(least - 0.2 * width, edge + right * width)
+    ax.set_xlabel(f"{said[found.measure]}{f' [{found.unit}]' if found.unit else ''}")
+    governs = found.governs or ""
+    ax.set_title(found.sentence.replace(f"governed by {governs}", f"governed by {said.get(governs)}"), fontsize=10)
+    return ax
+
+
+def _tried(found: Sensitivity, setting: str) -> str:
+    """The values of a setting that were tried, with the unit of the settings that have a known one."""
+    values = list(dict.fromkeys(row[setting] for row in found.rows)) if setting in found.settings else []
+    if len(values) < 2 or not all(isinstance(value, int | float) for value in values):
+        return ", ".join(setting_text(value) for value in values)
+    return f"{power_of_ten(min(values))} to {power_of_ten(max(values))} {SETTINGS.get(setting, '')}".strip()
+
+
+def _apart(found: Sensitivity, low: float, high: float) -> tuple[str, str]:
+    """Two ends of a bar as text, with so many digits that they differ."""
+    texts = found.written(low), found.written(high)
+    digits = 3
+    while texts[0] == texts[1] and digits < 9:
+        texts, digits = (f"{low:.{digits}g}", f"{high:.{digits}g}"), digits + 1
+    return texts
