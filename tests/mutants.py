@@ -237,7 +237,7 @@ EQUIVALENT = {
     **{
         f"rest.py: {line}": "the search ends at the same pose"
         for line in (
-            "scales, loose, share, least, last = diags_array(1 / size), LOOSE, 2.0, SLIPPING, np.inf",
+            "loose, share, least, last = LOOSE, 2.0, SLIPPING, np.inf",
             "loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.25 * share, least)",
             "loose, share, least = 2 * loose, 1.0, min(RAISED / least, 1.0)",
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 2e-12, 1.0",
