@@ -360,12 +360,6 @@ EQUIVALENT = {
             "validity.valid_for[block] = valid_for if valid_for > SEARCHED_TOGETHER * interval else interval",
         )
     },
-    **{
-        f"validity.py: flags, speeds = np.zeros(({flags}, count), dtype=bool), np.zeros(({speeds}, count))": (
-            "the first two rows of each are used"
-        )
-        for flags, speeds in ((4, 2), (2, 4))
-    },
     "validity.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
     "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
