@@ -98,7 +98,7 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
 def values(contact: InspectedContact, speed: float) -> list[str]:
     """The numbers of a contact as text, in the order of HEADER."""
     mass = "inf" if contact.mass == math.inf else f"{contact.mass:.4g}"
-    none = math.isnan(contact.xi)
+    losses = contact.xi, contact.restitution, contact.restitution_at(speed)
     return [
         contact.geom1,
         contact.geom2,
@@ -110,9 +110,7 @@ def values(contact: InspectedContact, speed: float) -> list[str]:
         f"{contact.inertia:.4g}",
         f"{contact.impedance:.4g}",
         str(contact.points),
-        "-" if none else f"{contact.xi:.3f}",
-        "-" if none else f"{contact.restitution:.3f}",
-        "-" if none else f"{contact.restitution_at(speed):.3f}",
+        *("-" if math.isnan(contact.xi) else f"{value:.3f}" for value in losses),
     ]
 
 

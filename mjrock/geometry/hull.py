@@ -32,7 +32,7 @@ class Hull(NamedTuple):
     """
 
     corners: tuple[int, ...]
-    faces: tuple[tuple[int, ...], ...]
+    faces: Faces
     normals: Array
     depth: Array
 
@@ -233,7 +233,7 @@ def unlike_ways(ways: Array) -> Array:
     return np.asarray(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
 
 
-def bulk_of(corners: Array, faces: tuple[tuple[int, ...], ...]) -> Bulk:
+def bulk_of(corners: Array, faces: Faces) -> Bulk:
     """Volume, centroid and second moments of a closed body of plane faces.
 
     They are sums over the tetrahedra between the triangles of the faces and the mean of the corners. A tetrahedron

@@ -11,7 +11,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from ..problem.masonry.blocks.joints import Joint
-from ..quantities import Array, Integers, shown
+from ..quantities import Array, Integers, require_one_of
 from ..result.bodies import Moving
 from ..result.response import Response
 from .bodies import FORCE, Update
@@ -62,8 +62,7 @@ def require_shown(name: str, value: object, response: Response) -> None:
         AttributeError: if the response has kept no forces.
         ValueError: for what is not one of `SHOWN`, or for cracks where no joint has a bond.
     """
-    if not isinstance(value, str) or value not in SHOWN:
-        raise ValueError(f"{name} = {shown(value)} is not one of {', '.join(SHOWN)}")
+    require_one_of(name, value, SHOWN)
     if value == "cracks" and np.isnan(response.forces.damage).all():
         raise ValueError(f"{name} = 'cracks' needs joints with a bond, and all joints are dry")
     _ = response.forces

@@ -8,7 +8,7 @@ from decimal import Decimal
 from functools import cache
 from pathlib import Path
 
-from ..quantities import ratio_said, require_kind
+from ..quantities import ratio_said, require_kind, require_one_of
 
 FILE = Path(__file__).with_name("texts.toml")
 """The texts of all languages. A further language is a further line of each."""
@@ -59,9 +59,7 @@ class Words:
 
     def __init__(self, language: str) -> None:
         require_kind("language", language, str)
-        if language not in languages():
-            raise ValueError(f"language = {language!r} is none of {', '.join(languages())}")
-        self.language = language
+        self.language = require_one_of("language", language, languages())
         self.mark = texts()["decimal_mark"][language]
 
     def __call__(self, key: str, /, **values: object) -> str:

@@ -56,7 +56,7 @@ def test_what_governs_is_kept_and_said(plate, name):
     assert tie.said.endswith(f" kN ({name})")
     assert "governed_by" not in repr(mr.Tie(6.0, 1e6))
     assert mr.Case(mr.Block(0.5, 3.5), 0.0, 1.0, effects=(tie,)).effects == (tie,)
-    with pytest.raises(ValueError, match="governed_by of the tie = 'hope' is none of bar, punching, bearing"):
+    with pytest.raises(ValueError, match="governed_by of the tie = 'hope' is not one of bar, punching, bearing"):
         mr.Tie(6.0, 1e6, governed_by="hope")
 
 

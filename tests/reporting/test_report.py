@@ -425,7 +425,7 @@ def test_a_sketch_names_values_or_arguments():
     ("changed", "complaint"),
     [
         ({"path": "facade.doc"}, "path = 'facade.doc' does not end in .html or .pdf"),
-        ({"language": "de"}, "language = 'de' is none of en, it"),
+        ({"language": "de"}, "language = 'de' is not one of en, it"),
         ({"language": 3}, "language = 3"),
         ({"responses": {"a": 3}}, r"responses\['a'\] = 3 of type int"),
         ({"responses": {}}, "responses is empty"),

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
-from ...quantities import Within, keep, require_array, require_real, require_within, within_ranges
+from ...quantities import Within, keep, require_array, require_one_of, require_real, require_within, within_ranges
 from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, LinkLaw, PointOf
 
 GOVERNING = ("bar", "punching", "bearing")
@@ -80,8 +80,8 @@ class Tie(Anchored):
             raise ValueError(
                 f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
             )
-        if self.governed_by is not None and not (isinstance(self.governed_by, str) and self.governed_by in GOVERNING):
-            raise ValueError(f"governed_by of the tie = {self.governed_by!r} is none of {', '.join(GOVERNING)}")
+        if self.governed_by is not None:
+            require_one_of("governed_by of the tie", self.governed_by, GOVERNING)
         if self.prestress and (self.slack or self.prestress >= self.strength):
             beside = f"slack = {self.slack:g} m" if self.slack else f"strength = {self.strength:g} N"
             raise ValueError(f"prestress of the tie = {self.prestress:g} N does not go with its {beside}")

@@ -33,12 +33,12 @@ from ...quantities import (
     is_iterable,
     ratio_said,
     require_kind,
+    require_one_of,
     require_real,
     require_within,
     share_said,
     short_repr,
     shown,
-    spelt,
     takes,
     warn_of,
 )
@@ -651,8 +651,7 @@ def dynamic_check(
     Warns:
         Implausible: for what the clause demands and the runs lack.
     """
-    if not isinstance(limit_state, str) or limit_state not in SHARE:
-        raise ValueError(f"limit_state = {spelt(limit_state)} is not one of {', '.join(SHARE)}")
+    require_one_of("limit_state", limit_state, SHARE)
     require_kind("natural", natural, bool, type(None))
     require_kind("curve", curve, Push, type(None))
     if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):

@@ -19,7 +19,7 @@ from ...problem.damping.restitution import Restitution
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
 from ...problem.wall.effects import SideStop
-from ...quantities import keep, require_within, spelt
+from ...quantities import keep, require_one_of, require_within
 from ...result.compare import compare
 from ...result.response import Response
 from ...theory.analytical import solve_analytical
@@ -138,8 +138,7 @@ class Match:
     side_friction: float | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.measure, str) or self.measure not in MEASURES:
-            raise ValueError(f"measure = {spelt(self.measure)} is not one of {', '.join(MEASURES)}")
+        require_one_of("measure", self.measure, MEASURES)
         if self.xi_base is not None:
             keep(self, xi_base=require_within("damping ratio of the base xi_base", self.xi_base, 0.0, 1.0))
 
