@@ -24,6 +24,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -236,7 +237,7 @@ EQUIVALENT = {
     **{
         f"rest.py: {line}": "the search ends at the same pose"
         for line in (
-            "scales, loose, share, least, last = diags_array(1 / size), LOOSE, 2.0, SLIPPING, np.inf",
+            "loose, share, least, last = LOOSE, 2.0, SLIPPING, np.inf",
             "loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.25 * share, least)",
             "loose, share, least = 2 * loose, 1.0, min(RAISED / least, 1.0)",
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 2e-12, 1.0",
@@ -374,6 +375,12 @@ def modules() -> tuple[str, ...]:
     return tuple(sorted(found))
 
 
+@cache
+def text_of(module: str) -> bytes:
+    """The text of a module as it is."""
+    return (ROOT / "mjrock" / module).read_bytes()
+
+
 class Mutant(NamedTuple):
     """A change of a module: bytes `start` to `stop` of its text are replaced."""
 
@@ -384,14 +391,14 @@ class Mutant(NamedTuple):
 
     def applied(self) -> bytes:
         """The text of the module with the change."""
-        text = (ROOT / "mjrock" / self.module).read_bytes()
+        text = text_of(self.module)
         return text[: self.start] + self.replacement + text[self.stop :]
 
     def lines(self) -> tuple[int, str, str]:
         """Number of the line, and the line before and after the change."""
-        text = (ROOT / "mjrock" / self.module).read_bytes()
-        number = text.count(b"\n", 0, self.start)
-        return number + 1, *(source.decode().splitlines()[number].strip() for source in (text, self.applied()))
+        text, changed = text_of(self.module), self.applied()
+        number, begin = text.count(b"\n", 0, self.start), text.rfind(b"\n", 0, self.start) + 1
+        return number + 1, *(source[begin:].partition(b"\n")[0].decode().strip() for source in (text, changed))
 
     def __str__(self) -> str:
         number, before, after = self.lines()
@@ -410,7 +417,7 @@ def doubled(value: float) -> float:
 
 def mutants_of(module: str) -> Iterator[Mutant]:
     """Every mutant of a module, but for indices, annotations and what an error says."""
-    text = (ROOT / "mjrock" / module).read_bytes()
+    text = text_of(module)
     starts = [0]
     for line in text.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
@@ -462,7 +469,7 @@ def survives(folder: Path, mutant: Mutant | None) -> bool:
         return all(passes(folder, jit, names) for jit, names in (*own, *ROUNDS) if names)
     finally:
         if mutant is not None:
-            target.write_bytes((ROOT / "mjrock" / mutant.module).read_bytes())
+            target.write_bytes(text_of(mutant.module))
 
 
 def passes(folder: Path, no_jit: str, names: tuple[str, ...]) -> bool:

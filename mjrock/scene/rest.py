@@ -195,7 +195,7 @@ def searched(potential: Potential, search: Search, start: Array | None) -> tuple
     """
     k, masses, freedom = potential.springs, potential.structure.masses, potential.structure.places.freedom
     size = np.sqrt(masses / np.repeat(masses[:: freedom.nv], freedom.nv))  # compares moments with forces
-    scales, loose, share, least, last = diags_array(1 / size), LOOSE, 1.0, SLIPPING, np.inf
+    loose, share, least, last = LOOSE, 1.0, SLIPPING, np.inf
     m, pose = len(potential.structure.places.k), potential.unmoved if start is None else start
     openings, slipped = potential.openings(pose), np.zeros((m, freedom.translations - 1))
     closed = touching(potential, pose) if start is None else potential.closed(openings)
@@ -214,7 +214,8 @@ def searched(potential: Potential, search: Search, start: Array | None) -> tuple
             loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
         last = left
         stiffness = sprung(rates, np.where(closed, k, LEANING * k)) + shear_stiffness(grips, share)
-        scaled = scales @ stiffness @ scales
+        scaled = times(1 / size, csr_array(stiffness))
+        scaled.data *= (1 / size)[scaled.indices]
         lent = np.full(len(size), loose * float(scaled.diagonal().max()))
         motion = scipy.sparse.linalg.splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
         pose = lowering(potential, pose, motion, sliders)

@@ -121,7 +121,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return
     out = cli.folder(args.out)
     store, cores = out / "throughput.sqlite", os.cpu_count() or 1
-    sizes = {"analytical": 2_000 if args.quick else 10_000, "MuJoCo": 20 if args.quick else 2_000}
+    sizes = {"analytical": 1_000 if args.quick else 10_000, "MuJoCo": 20 if args.quick else 2_000}
     rows: list[list[object]] = []
     undisturbed = ""
     for solver, count in sizes.items():

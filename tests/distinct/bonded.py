@@ -44,6 +44,8 @@ class Led:
         self.system.bodies["inverse_mass"], self.system.bodies["inverse_inertia"] = 0.0, 0.0
         self.books = Books.empty(self.system, 2)
         self.samples = Samples.room(2, self.system, self.books, ledger=True)
+        self.body = np.asarray(self.system.bodies)
+        self.tables = [np.asarray(table) for table in (self.system.lines, self.system.laws[0].rows)]
         d = len(self.at)
         along, normal = ((np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle)))
         self.ways = np.array([along, normal] if d == 2 else np.eye(3))
@@ -52,7 +54,7 @@ class Led:
         """Follow a path, shape (n, d): ways along the face, then the opening. Returns push and drag at each pose."""
         pushes, drags = [], []
         for place in np.asarray(path) @ self.ways:
-            self.system.bodies["velocity"][0] = (place - self.at) / self.h
+            self.body["velocity"][0] = (place - self.at) / self.h
             self.at = place
             self.move()
             push, drag = self.forces()
@@ -62,18 +64,14 @@ class Led:
 
     def move(self):
         """One step, at the end of which the forces are those of the new pose."""
-        body = self.system.bodies[0]
-        body.place[:] = self.at
+        self.body["place"][0] = self.at
         clock = Clock(1, self.h, 1, 0, 2, 10**9, np.inf, self.h, (0.0,) * len(self.at))
         advance(self.system, self.books, self.samples, clock)
 
     def forces(self):
-        lines, bonds = self.system.lines, self.system.laws[0].rows
-        push, drag = lines["push"].copy(), lines["dragged"].copy()
-        if len(bonds):
-            push, drag = push + bonds["push"], drag + bonds["dragged"]
-        total = drag.sum(axis=0)
-        return push.sum() / AREA, total[: len(self.at) - 1] / AREA
+        push = sum(table["push"].sum() for table in self.tables)
+        drag = sum(table["dragged"].sum(axis=0) for table in self.tables)
+        return push / AREA, drag[: len(self.at) - 1] / AREA
 
     @property
     def elastic(self):

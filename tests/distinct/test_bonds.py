@@ -64,7 +64,7 @@ def test_a_brittle_joint_breaks_at_once_and_takes_what_its_spring_held():
 @pytest.mark.parametrize("pressure", [0.0, 0.3e6, 1.2e6])
 @pytest.mark.parametrize("place", PLACES)
 def test_a_joint_that_is_sheared_holds_cohesion_and_friction_and_takes_its_fracture_energy(place, pressure):
-    one, slip = led(**place), np.append(softening(5e-3, 4000), 5e-3)
+    one, slip = led(**place), np.append(softening(5e-3, 3000), 5e-3)
     one.along(path_of(one, 0.0, np.linspace(0, -pressure / K_N, 5)))
     push, drag = one.along(path_of(one, slip, -pressure / K_N))
     held, rubbed = -along(drag), 0.75 * pressure
@@ -82,7 +82,7 @@ def test_a_joint_that_is_sheared_holds_cohesion_and_friction_and_takes_its_fract
 def test_friction_falls_to_a_residual_with_the_bond(place, pressure):
     """c e + (mu_r + (mu - mu_r) e) sigma with e = exp(-(c / G_II) s), from mu = 0.75 to mu_r = 0.5."""
     bond = replace(MORTAR, residual_friction=0.5)
-    one, slip = led(bond, **place), np.append(softening(5e-3, 4000), 5e-3)
+    one, slip = led(bond, **place), np.append(softening(5e-3, 2000), 5e-3)
     one.along(path_of(one, 0.0, np.linspace(0, -pressure / K_N, 5)))
     _, drag = one.along(path_of(one, slip, -pressure / K_N))
     held = -along(drag)
