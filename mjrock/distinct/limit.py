@@ -19,9 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import block_diag, coo_array, csr_array, diags_array, vstack
+from scipy.sparse import block_diag, coo_array, csr_array, vstack
 
-from ..linear import rates_of
+from ..linear import rates_of, times
 from ..problem.masonry.blocks.joints_in_space import axes_across
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
@@ -67,7 +67,7 @@ def highest(rates: csr_array, weights: Array, root: csr_array) -> float:
     acting = np.flatnonzero(weights)
     if not acting.size:
         return 0.0
-    scaled = diags_array(np.sqrt(weights[acting])) @ rates[acting] @ root
+    scaled = times(np.sqrt(weights[acting]), rates[acting]) @ root
     matrix = scaled @ scaled.T
     if len(acting) <= 20:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])

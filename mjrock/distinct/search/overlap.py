@@ -100,6 +100,8 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
         for face in range(solids.face[block], solids.face[block + 1]):
             normal, polygon = solids.normals[face], face_corners(solids, face)
             for wall in range(solids.face[other], solids.face[other + 1]):
+                if not len(polygon):
+                    break
                 beyond = (polygon - face_corners(solids, wall)[0]) @ solids.normals[wall]
                 flush = np.abs(beyond).max(initial=0.0) < FLUSH and normal @ solids.normals[wall] > 0
                 # a face that two blocks share counts once
@@ -120,6 +122,8 @@ def face_corners(solids: Solids, face: int) -> Array:
 
 def cut_off(polygon: Array, beyond: Array) -> Array:
     """What is left of a convex polygon, shape (n, 3), where its corners lie beyond a plane [m], shape (n,)."""
+    if (beyond <= 0).all():
+        return polygon
     kept = []
     for i in range(len(polygon)):
         j = i - 1
