@@ -148,21 +148,22 @@ def test_an_open_plate_is_the_face_of_a_support():
     assert [joint.area for joint in read.joints] == pytest.approx([1.0])
 
 
-def ply(meshes, order):
+def ply(meshes, order, reds=1):
     vertices = np.concatenate([vertices for vertices, _ in meshes.values()])
     before = np.cumsum([0, *(len(vertices) for vertices, _ in meshes.values())])
     faces = [[start + i for i in face] for start, (_, of) in zip(before, meshes.values(), strict=False) for face in of]
     kind = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    red = reds * "property uchar red\n"
     head = (
         f"ply\nformat {kind} 1.0\ncomment own\nelement vertex {len(vertices)}\nproperty double x\nproperty double y\n"
-        f"property double z\nproperty uchar red\nelement face {len(faces)}\nproperty list uchar int vertex_indices\n"
+        f"property double z\n{red}element face {len(faces)}\nproperty list uchar int vertex_indices\n"
         "end_header\n"
     )
     if not order:
-        rows = [f"{x!r} {y!r} {z!r} 7" for x, y, z in vertices.tolist()]
+        rows = [f"{x!r} {y!r} {z!r}{reds * ' 7'}" for x, y, z in vertices.tolist()]
         rows += [" ".join(map(str, [len(face), *face])) for face in faces]
         return (head + "\n".join(rows) + "\n").encode()
-    rows = [struct.pack(order + "dddB", *place, 7) for place in vertices.tolist()]
+    rows = [struct.pack(f"{order}ddd{reds}B", *place, *reds * [7]) for place in vertices.tolist()]
     rows += [struct.pack(f"{order}B{len(face)}i", len(face), *face) for face in faces]
     return head.encode() + b"".join(rows)
 
@@ -183,10 +184,19 @@ def test_ply_files_that_are_none(tmp_path):
         ply(bricks(), "<")[:-9], text.replace(b"element face 48", b"element face 99999999999"),
         text.replace(b"ascii", b"utf"), text.replace(b"property double z", b"property double w"), b"solid a\n",
         text.replace(b"4 0 4 6 2", b"4 0 4 6 999"), text.replace(b"4 0 4 6 2", b"2 0 4 6 2"),
+        text.replace(b"element face", b"element edge -3\nproperty int a\nelement face"),
     ):  # fmt: skip
         (tmp_path / "b.ply").write_bytes(broken)
         with pytest.raises(ValueError, match=r"b.ply: .*"):
             mr.Masonry.from_ply(tmp_path / "b.ply", ground=True)
+
+
+@pytest.mark.parametrize("order", ["", "<"])
+def test_properties_of_one_name_in_a_ply_file_have_a_place_each(tmp_path, order):
+    """The red of front and back, say."""
+    path = tmp_path / "a.ply"
+    path.write_bytes(ply(bricks(), order, reds=2))
+    assert len(mr.Masonry.from_ply(path, ground=True).joints) == 8
 
 
 def compas_mesh(mesh):

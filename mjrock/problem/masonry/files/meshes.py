@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -123,9 +123,10 @@ def read_ply(path: Path) -> list[Mesh]:
         order = PLY_ORDER[next(line[1] for line in lines if line[:1] == ["format"])]
         take = _words(body) if not order else _numbers(body[body.index(b"\n") + 1 :], order)
         elements = _elements(lines)
-        if (most := max(count for count, _ in elements.values())) > len(content):
-            raise ValueError(f"{most} rows in {len(content)} bytes")
-        rows = {name: [_row(take, kinds) for _ in range(count)] for name, (count, kinds) in elements.items()}
+        for name, (count, _) in elements.items():
+            if not 0 <= count <= len(content):
+                raise ValueError(f"{count} of {name} in {len(content)} bytes")
+        rows = {name: [_row(take, properties) for _ in range(count)] for name, (count, properties) in elements.items()}
         places = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]])
         key = "vertex_indices" if "vertex_indices" in rows["face"][0] else "vertex_index"
         faces = [tuple(map(int, row[key])) for row in rows["face"]]
@@ -136,23 +137,26 @@ def read_ply(path: Path) -> list[Mesh]:
     return [Mesh("body", places, faces)]
 
 
-def _elements(lines: Sequence[list[str]]) -> dict[str, tuple[int, dict[str, list[str]]]]:
-    """How many rows each element of a PLY file has, and the types of its properties by their names."""
-    elements: dict[str, tuple[int, dict[str, list[str]]]] = {}
+def _elements(lines: Sequence[list[str]]) -> dict[str, tuple[int, list[list[str]]]]:
+    """How many rows each element of a PLY file has, and its properties, each as its types and its name.
+
+    Two properties may have the same name. Each has its place in a row, and the last is read.
+    """
+    elements: dict[str, tuple[int, list[list[str]]]] = {}
     name = ""
     for line in lines:
         if line[:1] == ["element"]:
             name = line[1]
-            elements[name] = int(line[2]), {}
+            elements[name] = int(line[2]), []
         elif line[:1] == ["property"]:
-            elements[name][1][line[-1]] = line[1:-1]
+            elements[name][1].append(line[1:])
     return elements
 
 
-def _row(take: Callable[[str], float], kinds: Mapping[str, list[str]]) -> dict[str, list[float]]:
+def _row(take: Callable[[str], float], properties: Sequence[list[str]]) -> dict[str, list[float]]:
     """A row of a PLY file: of each property one number, or a list with its length before it."""
     row = {}
-    for name, (kind, *of_list) in kinds.items():
+    for kind, *of_list, name in properties:
         row[name] = [take(of_list[1]) for _ in range(int(take(of_list[0])))] if of_list else [take(kind)]
     return row
 
@@ -192,7 +196,10 @@ def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
     lines, before = ["# metres, z upwards"], 1
     for block, name in zip(blocks, names, strict=True):
         if "#" in name or name.endswith("\\") or name.strip() != name:
-            raise ValueError(f"the block {name!r} has a # in its name, a backslash at its end or a blank at an end")
+            raise ValueError(
+                f"the block {name!r} has a # in its name, a backslash at its end or a blank at an end, "
+                "which no OBJ file holds"
+            )
         lines.append(f"o {name}")
         lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in block.vertices]
         lines += ["f " + " ".join(str(before + i) for i in face) for face in block.faces]
