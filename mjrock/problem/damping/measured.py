@@ -145,14 +145,16 @@ def _compliance(E: Modulus, nu: Ratio) -> float:
 def _ratios(heights: object) -> tuple[Array, float]:
     """e of every bounce [-], and the mean height of the releases [m]."""
     several: Iterable[object] = [heights]
-    if isinstance(heights, list | tuple | np.ndarray) and any(map(is_iterable, heights)):
+    if isinstance(heights, list | tuple | np.ndarray) and is_iterable(heights) and any(map(is_iterable, heights)):
         several = heights
     drops = [require_row("heights", row, "height") for row in several]
     for drop in drops:
         if len(drop) < 2:
             raise ValueError(f"heights of a drop are {drop.tolist()}; a release and at least one bounce are needed")
         if drop.min() <= 0 or drop.max() > 1e6 or (np.diff(drop) > 0).any():
-            raise ValueError(f"heights = {drop.tolist()} m have to be positive, and no bounce higher than the last")
+            raise ValueError(
+                f"heights = {drop.tolist()} m have to be positive, and no bounce higher than the one before"
+            )
     ratios = np.concatenate([np.sqrt(drop[1:] / drop[:-1]) for drop in drops])
     return ratios, float(np.mean([drop[0] for drop in drops]))
 
