@@ -273,6 +273,13 @@ def test_no_cell_is_a_formula(tmp_path):
         assert {row["=note"] for row in store.rows()} == set(FORMULAS)
 
 
+def test_a_long_value_that_is_not_one_of_some_names_is_cut_short():
+    for long in ("x" * 1000, np.zeros((30, 30)), 10**400):
+        with pytest.raises(ValueError, match=r"baseline = .*\.\.\. is not one of constant, linear") as refused:
+            SHAKE.corrected(long)
+        assert len(str(refused.value)) < 150
+
+
 @pytest.mark.parametrize(("version", "old"), [("3.17.0", True), ("2.3.7", True), ("4.0.0", False), ("10.1", False)])
 def test_an_engine_that_is_too_old_says_so(version, old):
     code = f"import mujoco; mujoco.__version__ = {version!r}; import mjrock"
