@@ -64,6 +64,8 @@ def test_larger_walls_rotate_less():
     ("call", "complaint"),
     [
         (lambda: mr.response_spectrum(RECORD, [0.0]), "periods = 0 s is outside the valid range 0.01 to 100 s"),
+        (lambda: mr.response_spectrum(RECORD, "1"), r"periods = '1' of type str .* takes one value \[s\] or a row"),
+        (lambda: mr.response_spectrum(RECORD, []), r"a row of at least one value \[s\] is needed"),
         (lambda: mr.response_spectrum(RECORD, [1.0], 5), "damping = 5 is outside the valid range 0 to 0.9"),
         (lambda: mr.scaled_to_spectrum(RECORD, [1.0], [1.0, 2.0]), "target has 2 values and periods 1"),
         (lambda: mr.scaled_to_sa(mr.GroundMotion([0, 0], 0.1), 1.0, 1.0), "motion is at rest"),

@@ -45,7 +45,8 @@ def _answer(accel: Array, h: float, period: float, damping: float, reading: tupl
 
 def one_or_row(name: str, values: ArrayLike, low: float, high: float, unit: str = "") -> Array:
     """One value or a row of them, each within a range, as a row, shape (n,)."""
-    row = require_row(name, np.atleast_1d(require_reals(name, values, "one value or a row of them")), "value")
+    element = f"value [{unit}]" if unit else "value"
+    row = require_row(name, np.atleast_1d(require_reals(name, values, f"one {element} or a row of them")), element)
     for value in row.tolist():
         require_within(name, value, low, high, unit)
     return row
