@@ -177,7 +177,8 @@ def for_types_of(function: Function, *arguments: Any) -> Function:
 def _kind(value: object) -> object:
     """What numba's type of a value depends on."""
     if isinstance(value, np.ndarray):
-        return value.dtype, value.ndim, value.flags.c_contiguous, value.flags.writeable, value.flags.aligned
+        flags = value.flags
+        return value.dtype, value.ndim, flags.c_contiguous, flags.f_contiguous, flags.writeable, flags.aligned
     if isinstance(value, tuple):
         return type(value), *map(_kind, value)
     return type(value)

@@ -243,6 +243,11 @@ def total(values, factors):
     return added
 
 
+def corner(values):
+    """The last value of a plane array."""
+    return values[-1, -1]
+
+
 def test_a_loop_is_taken_once_for_arguments_of_the_same_types():
     """It is the loop itself where it is not compiled for them."""
     loop, ones = compiled.compiled(total), np.ones(3)
@@ -256,4 +261,8 @@ def test_a_loop_is_taken_once_for_arguments_of_the_same_types():
     others = np.ones(3, dtype=np.float32), np.ones(6)[::2], np.ones((3, 1))
     assert all(compiled.for_types_of(loop, other, (2.0, 1)) is loop for other in others)
     assert compiled.for_types_of(loop, ones, (2.0, 1.0)) is loop
+    plane = compiled.compiled(corner)
+    columns, parts = np.asfortranarray(np.arange(6.0).reshape(2, 3)), np.arange(24.0).reshape(4, 6)[::2, ::2]
+    assert plane(columns) == compiled.for_types_of(plane, columns)(columns) == 5.0
+    assert compiled.for_types_of(plane, parts)(parts) == 16.0
     assert compiled.for_types_of(total, ones, (2.0, 1)) is total
