@@ -161,7 +161,9 @@ def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
         instead = f"line 2 is {in_message(lines[1])}" if len(lines) > 1 else "1 line"
-        raise ValueError(f"{instead}: not the plain text of a SAC record, whose line 2 begins with count and dt")
+        raise ValueError(
+            f"{instead}: not the plain text of a SAC record: line 2 begins with the number of samples and dt"
+        )
     numbers(head[3] or "", 2)  # the other columns are not used
     return [Trace(factor_of(unit) * samples(lines, 2, int(head[1])), step(head[2], 2), {})]
 
@@ -290,7 +292,7 @@ def parse_geonet(lines: list[str]) -> list[Trace]:
     """
     heads = [i for i, line in enumerate(lines) if re.match("(Unc|C)orrected accelerogram .*GNS", line)]
     if heads[:1] != [0]:
-        raise ValueError(f"line 1 is {in_message(lines[0])}: not a GeoNet file, Corrected accelerogram, GNS Science")
+        raise ValueError(f"line 1 is {in_message(lines[0])}: not a GeoNet file, which begins Corrected accelerogram")
     return [_geonet_component(lines[:end], first) for first, end in itertools.pairwise([*heads, len(lines)])]
 
 
