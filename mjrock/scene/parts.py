@@ -321,7 +321,12 @@ class Links:
     def _keep_law(self) -> None:
         """Check and keep the laws as rows. Those numbers may be infinite that are so when they are left out."""
         given = self.law if np.size(self.law) else [LinkLaw()] * len(self.names)
-        object.__setattr__(self, "law", frozen(np.array(given, dtype=LAW)).view(np.recarray))
+        try:
+            laws = given if isinstance(given, np.recarray) else [LinkLaw(*law) for law in given]
+            rows = np.array(laws, dtype=LAW)
+        except (TypeError, ValueError, OverflowError):
+            raise TypeError(f"law of the links = {shown(given)} does not hold a LinkLaw for each") from None
+        object.__setattr__(self, "law", frozen(rows).view(np.recarray))
         if self.law.shape != (len(self.names),):
             raise ValueError(f"law of the links has the shape {self.law.shape}; {(len(self.names),)} is needed")
         for name, usual in LinkLaw._field_defaults.items():

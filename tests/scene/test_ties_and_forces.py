@@ -178,6 +178,12 @@ def test_links_that_cannot_be_are_refused(sliding, parts, complaint):
         changed(sliding, links=with_law(sliding, **parts) if parts.keys() <= set(LinkLaw._fields) else parts)
 
 
+@pytest.mark.parametrize("laws", [[2e6], ["k"], [LinkLaw("k")], [(1.0,) * 9], 2e6])
+def test_links_without_laws_are_refused(laws):
+    with pytest.raises(TypeError, match=r"law of the links = .* does not hold a LinkLaw for each"):
+        Links(("tie",), [0], [(0.0, 0.0)], [-1], [(-5.0, 1.0)], laws)
+
+
 def test_forces_that_cannot_be_are_refused(sliding):
     with pytest.raises(ValueError, match="force of the forces holds a value that is not finite"):
         pull((math.nan, 0.0), (0.0, 0.0))
