@@ -137,8 +137,9 @@ class Loop:
         kind = _kind(arguments)
         if kind not in self._compiled_for:
             types = tuple(self.dispatcher.typeof_pyval(each) for each in arguments)
-            known = self.dispatcher.overloads.get(types)
-            self._compiled_for[kind] = self if known is None else known.entry_point
+            if (known := self.dispatcher.overloads.get(types)) is None:
+                return self  # the call that follows may compile it
+            self._compiled_for[kind] = known.entry_point
         return self._compiled_for[kind]
 
     def __getattr__(self, name: str) -> Any:

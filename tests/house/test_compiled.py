@@ -260,6 +260,8 @@ def test_a_loop_is_taken_once_for_arguments_of_the_same_types():
         assert function is compiled.for_types_of(loop, np.zeros(9, dtype=kind), (1.5, 0))
     others = np.ones(3, dtype=np.float32), np.ones(6)[::2], np.ones((3, 1))
     assert all(compiled.for_types_of(loop, other, (2.0, 1)) is loop for other in others)
+    assert loop(others[0], (2.0, 1)) == 6.0
+    assert compiled.for_types_of(loop, others[0], (2.0, 1)) is not loop  # it is compiled for them since
     assert compiled.for_types_of(loop, ones, (2.0, 1.0)) is loop
     plane = compiled.compiled(corner)
     columns, parts = np.asfortranarray(np.arange(6.0).reshape(2, 3)), np.arange(24.0).reshape(4, 6)[::2, ::2]
