@@ -137,8 +137,9 @@ class Loop:
         kind = _kind(arguments)
         if kind not in self._compiled_for:
             types = tuple(self.dispatcher.typeof_pyval(each) for each in arguments)
-            known = self.dispatcher.overloads.get(types)
-            self._compiled_for[kind] = self if known is None else known.entry_point
+            if (known := self.dispatcher.overloads.get(types)) is None:
+                return self
+            self._compiled_for[kind] = known.entry_point
         return self._compiled_for[kind]
 
     def __getattr__(self, name: str) -> Any:
@@ -177,7 +178,8 @@ def for_types_of(function: Function, *arguments: Any) -> Function:
 def _kind(value: object) -> object:
     """What numba's type of a value depends on."""
     if isinstance(value, np.ndarray):
-        return value.dtype, value.ndim, value.flags.c_contiguous, value.flags.writeable, value.flags.aligned
+        flags = value.flags
+        return value.dtype, value.ndim, flags.c_contiguous, flags.f_contiguous, flags.writeable, flags.aligned
     if isinstance(value, tuple):
         return type(value), *map(_kind, value)
     return type(value)
