@@ -73,10 +73,13 @@ def spelt(value: object) -> str:
 
 def shown(value: object) -> str:
     """A value and its type on one line, short enough for a message; of None nothing but its name."""
-    if value is None:
-        return "None"
+    return "None" if value is None else f"{cut(value)} of type {type(value).__name__}"
+
+
+def cut(value: object) -> str:
+    """A value on one line, cut off after 60 characters."""
     text = " ".join(spelt(value).split())
-    return f"{text[:60]}{'...' if len(text) > 60 else ''} of type {type(value).__name__}"
+    return f"{text[:60]}{'...' if len(text) > 60 else ''}"
 
 
 def short_repr(instance: Any) -> str:
@@ -251,7 +254,7 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
 def require_one_of(name: str, value: object, known: Collection[str]) -> str:
     """Return `value`, one of the names that are known; a ValueError lists them for any other value."""
     if not isinstance(value, str) or value not in known:
-        raise ValueError(f"{name} = {spelt(value)} is not one of {', '.join(known)}")
+        raise ValueError(f"{name} = {cut(value)} is not one of {', '.join(known)}")
     return value
 
 
