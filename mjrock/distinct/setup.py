@@ -6,6 +6,7 @@ import math
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -134,29 +135,43 @@ def setup_of_wall(problem: Problem, case: Case, scene: Scene, course: Course) ->
 
 def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: Course) -> Setup:
     """Masonry at the start of its course."""
-    at_rest, drawn = standing(scene)
-    names, links = links_of(scene, case, at_rest.bodies)
+    at_rest = standing(scene)
+    names, links = links_of(scene, case, at_rest.system.bodies)
     passive = tuple(table for table in links if table.told != "actuators")
     guided = np.concatenate([table.rows["body"] for table in links if table.told == "actuators"])
-    system = copied(at_rest)._replace(ground=course.ground, links=links, guided=guided)
+    system = copied(at_rest.system)._replace(ground=course.ground, links=links, guided=guided)
     system = moved_by(system, scene, case.supports)
-    unguided = longest_step(system._replace(links=passive))
+    acts = any(len(table.rows) for table in passive)
+    unguided = longest_step(system._replace(links=passive)) if acts else at_rest.limit
     guide(system, case)
     limit = longest_step(system) if case.actuators else unguided
     impacts = Impacts.at_joints(system)
-    step = impacts.step(STEP_TAKEN * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
+    step = impacts.step(STEP_TAKEN * min(limit, max(at_rest.search.longest, SPLINTERS * min(limit, unguided))))
     share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
     of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
-    search = drawn.begun(blocks)
+    search = at_rest.search.begun(blocks)
     started(system, course.pose, course.velocity)
     apart = {"search": search, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
     return Setup(problem, scene, course, system, limit, share, **apart)  # type: ignore[arg-type]
 
 
+class AtRest(NamedTuple):
+    """What cases with the same scene share.
+
+    Args:
+        system: of masonry at rest, or as drawn where it is not settled, without links.
+        search: its blocks as they may meet.
+        limit: the longest stable step without links [s].
+    """
+
+    system: System
+    search: ContactSearch
+    limit: float
+
+
 @lru_cache(maxsize=16)
-def standing(scene: Scene) -> tuple[System, ContactSearch]:
-    """The system of masonry at rest, or as drawn where it is not settled, and its blocks as they may meet, which cases
-    with the same scene share."""
+def standing(scene: Scene) -> AtRest:
+    """Masonry before anything happens to it."""
     system = system_of(scene, ended=True)
     if scene.settled is None:
         pose, drag = scene.found
@@ -164,4 +179,4 @@ def standing(scene: Scene) -> tuple[System, ContactSearch]:
         started(system, pose)
     else:
         begin_open(system.lines, scene)
-    return system, ContactSearch(scene, system)
+    return AtRest(system, ContactSearch(scene, system), longest_step(system))

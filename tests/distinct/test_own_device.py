@@ -1,15 +1,13 @@
 """A device or a joint with a law of its own is one file: the bumper and the strap of the page on own effects."""
 
 import importlib.util
-import os
 import re
-import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+import test_own_dashpot
 
 import mjrock as mr
 from mjrock.compiled import Loop
@@ -120,12 +118,11 @@ def test_a_kind_of_one_file_has_its_force_and_its_energy(listed, in_space):
 
 @pytest.mark.slow
 def test_the_same_compiled_in_a_package_that_has_the_files(tmp_path):
-    """The lists name the kinds; nothing else is written."""
+    """The lists name the kinds; nothing else is written but what a dashpot with a law of its own takes."""
     copy = tmp_path / "mjrock"
-    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    test_own_dashpot.written(copy)
     path = copy / "distinct" / "kinds" / "lists.py"
-    text = path.read_text()
-    program = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_own_device as here\n"
+    text, program = path.read_text(), "import test_own_device as here\n"
     for example, (names, kind, effect, check) in EXAMPLES.items():
         path.with_name(f"{example}.py").write_text(TEXTS[example])
         text = re.sub(rf"^({names}: .* = \(.*)\)$", rf"\1, {kind})", text, count=1, flags=re.MULTILINE)
@@ -133,8 +130,4 @@ def test_the_same_compiled_in_a_package_that_has_the_files(tmp_path):
         assert text.count(kind) == 2
         program += f"from mjrock.distinct.kinds.{example} import {effect}; here.{check.__name__}({effect}, False)\n"
     path.write_text(text)
-    setting = os.environ | {"PYTHONPATH": str(tmp_path), "MJROCK_INTERPRET": "0"}
-    options = {"env": setting, "cwd": tmp_path, "capture_output": True, "text": True, "check": False}
-    done = subprocess.run([sys.executable, "-c", program + "print(here.mr.__file__)"], **options)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith(str(copy))
+    test_own_dashpot.run_apart(tmp_path, program + test_own_dashpot.CHECKS)

@@ -171,7 +171,7 @@ def test_a_spreadsheet(tmp_path):
     with pandas.ExcelWriter(tmp_path / "b.xlsx") as file:
         for name in ("one", "other"):
             frame.to_excel(file, sheet_name=name, index=False)
-    with pytest.raises(ValueError, match="2 of its sheets have rows of numbers, 'one, other'; save one as CSV"):
+    with pytest.raises(ValueError, match="2 sheets have rows of numbers, 'one, other'; save one as CSV"):
         mr.GroundMotion.from_csv(tmp_path / "b.xlsx")
     with pytest.raises(ValueError, match=r"c\.xlsx: pandas does not read it as a spreadsheet"):
         mr.GroundMotion.from_csv(written(tmp_path / "c.xlsx", "0 1\n"), "g")

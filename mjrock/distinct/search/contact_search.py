@@ -94,6 +94,8 @@ class ContactSearch:
     `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
     """
 
+    examine = staticmethod(is_outdated)  # until a run knows the types of its arguments
+
     def __init__(self, scene: Scene, system: System) -> None:
         solids, joints, joint = scene.standing.solids, scene.standing.joints, scene.contacts.joint
         self.count, self.group = len(solids), len(joints)
@@ -120,7 +122,7 @@ class ContactSearch:
         self.limits = Limits(start, self._limits(start), VALID_WAY * self.sizes, interval)
         blocks = np.column_stack(np.divmod(self.law.jointed, self.count))
         self.motion, self.joints = Motion.none(start), JointState.intact(of[joint], blocks, left, rolled)
-        self.state, self.examine = self._no_contacts(), is_outdated
+        self.state = self._no_contacts()
 
     def begun(self, supports: tuple[str, ...]) -> ContactSearch:
         """The same at the start of a run, with room of its own to write into.

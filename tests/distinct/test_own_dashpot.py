@@ -101,13 +101,18 @@ print(here.mr.__file__)
 """
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("jit", ["0", "1"])
-def test_two_modules_and_two_lists_have_the_law_in_all_solvers(tmp_path, jit):
-    written(tmp_path / "mjrock")
-    path = os.pathsep.join(map(str, (tmp_path, Path(__file__).parent)))
-    setting = os.environ | {"PYTHONPATH": path, "MJROCK_INTERPRET": "0", "NUMBA_DISABLE_JIT": jit}
-    options = {"env": setting, "cwd": tmp_path, "capture_output": True, "text": True, "check": False}
-    done = subprocess.run([sys.executable, "-c", CHECKS], **options)
+def run_apart(folder, program, **environment):
+    """Run a program in a process of its own, with the package that stands in a folder."""
+    path = os.pathsep.join(map(str, (folder, Path(__file__).parent)))
+    setting = os.environ | {"PYTHONPATH": path, "MJROCK_INTERPRET": "0", **environment}
+    options = {"env": setting, "cwd": folder, "capture_output": True, "text": True, "check": False}
+    done = subprocess.run([sys.executable, "-c", program], **options)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith(str(tmp_path))
+    assert done.stdout.startswith(str(folder))
+
+
+@pytest.mark.slow
+def test_two_modules_and_two_lists_have_the_law_in_all_solvers(tmp_path):
+    """As plain Python; `test_own_device` has the same compiled."""
+    written(tmp_path / "mjrock")
+    run_apart(tmp_path, CHECKS, NUMBA_DISABLE_JIT="1")
