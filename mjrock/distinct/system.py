@@ -18,7 +18,7 @@ Tables = tuple[Any, ...]
 HELD_ENERGIES, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *TAKEN_BY_LAWS)
 ENERGY = np.dtype([(name, float) for name in (*HELD_ENERGIES, *WORK)])
 """Energy at a sample or a check, and the work since the start [J]: what friction has taken, what ground and supports
-and what actuators have put in, and what `rows.TAKEN` says."""
+and what actuators have put in, and what `rows.TAKEN_BY_LAWS` names."""
 
 
 class System(NamedTuple):

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import cast
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Polygon
@@ -258,9 +259,9 @@ def together(updates: Sequence[Update]) -> Update:
     return update
 
 
-def still(ax: Axes) -> None:
-    """Make all that is drawn part of a picture that does not move."""
-    for artist in ax.get_children():
+def still(ax: Axes, others: Sequence[Artist]) -> None:
+    """Make all that is drawn part of a picture that does not move, but for what the axes had before."""
+    for artist in set(ax.get_children()).difference(others):
         artist.set_animated(False)
 
 

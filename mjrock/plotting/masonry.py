@@ -68,7 +68,7 @@ def blocks(
         ValueError: for cracks of dry joints, a pose of another shape, a value outside its range, or axes of two
             dimensions for blocks in space.
     """
-    run, time = masonry if isinstance(masonry, Response) else None, np.zeros(1)
+    run, time, others = masonry if isinstance(masonry, Response) else None, np.zeros(1), ax.get_children()
     if run is not None and run.joints is None:
         raise ValueError("blocks takes masonry or a response of it, and this response is one of a wall")
     if run is None or pose is not None:
@@ -96,7 +96,7 @@ def blocks(
         _view(ax, flat)
     if run is not None and forces is not None:
         forces_on(ax, run, moving, forces)(0)
-    still(ax)
+    still(ax, others)
     return ax
 
 
@@ -165,12 +165,12 @@ def thrust(
     if response.joints is not None:
         return blocks(ax, response, at=at, forces="thrust", magnified=magnified, limits=limits)
     require_shown("forces", "thrust", response)
-    sample = sample_at(response.t, at)
+    sample, others = sample_at(response.t, at), ax.get_children()
     bodies = Bodies.of(response, magnified, limits).at(response.t[sample : sample + 1])
     updates = [outlines(ax, bodies), surroundings(ax, response.of_wall[0], bodies)]
     updates.append(forces_on(ax, response, bodies.moving, "thrust"))
     together(updates)(0)
-    still(ax)
+    still(ax, others)
     return ax
 
 

@@ -219,13 +219,13 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
 
 def section(ax: Axes, case: Case, stop: str = "stop") -> None:
     """The wall and all that it meets and carries, its thickness, and the height of the stop, which has a name."""
-    wall, height = case.wall, 2 * case.block.h
+    wall, height, others = case.wall, 2 * case.block.h, ax.get_children()
     bodies = Bodies.of_moving(Moving(case, np.zeros(1), np.zeros((1, 1, 3))))
     outlines(ax, bodies)(0)
     surroundings(ax, case, bodies)(0)
     for text in list(ax.texts):
         text.remove()  # it is in the notes
-    still(ax)
+    still(ax, others)
     half = case.block.b
     _across(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")
     if case.stop_top is not None and case.stop_top < height:

@@ -173,7 +173,7 @@ class Comparison(Drawn):
             f"{'':>6} |" + "|".join(f"{one.heading:^21}" for one in OF_AN_IMPACT),
             f"{'impact':>6} |" + "|".join([pair] * len(OF_AN_IMPACT)),
         ]
-        for i, row in enumerate(self._measured[:most].tolist()):
+        for i, row in enumerate(self._measured[: max(0, most)].tolist()):
             cells = (
                 " ".join(f"{'-':>10}" if math.isnan(value) else f"{value:{one.form}}" for value in both)
                 for one, both in zip(OF_AN_IMPACT, row, strict=True)

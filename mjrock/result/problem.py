@@ -162,5 +162,5 @@ def require_in_text(case: AnyCase) -> None:
         if number := beyond_text(link.law):
             raise ValueError(
                 f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "
-                f"{number}; leave timestep out, so that steps fit the motion, or leave that number out"
+                f"{number}; leave timestep out, so that steps fit the motion, or leave {number.split()[0]} out"
             )

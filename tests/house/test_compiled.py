@@ -268,3 +268,26 @@ def test_a_loop_is_taken_once_for_arguments_of_the_same_types():
     assert plane(columns) == compiled.for_types_of(plane, columns)(columns) == 5.0
     assert compiled.for_types_of(plane, parts)(parts) == 16.0
     assert compiled.for_types_of(total, ones, (2.0, 1)) is total
+
+
+def moment(values):
+    """The sum of the rows of a table, each times its number."""
+    summed = 0.0
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            summed += i * values[i, j]
+    return summed
+
+
+def test_the_order_of_an_array_is_part_of_its_type():
+    """Of a table by columns and of one with gaps, neither of which is in one piece by rows. The loop is found where it
+    has been compiled since it was looked for."""
+    loop, gaps = compiled.compiled(moment), np.arange(24.0).reshape(4, 6)[::2, ::2]
+    by_columns = np.asfortranarray(gaps)
+    assert loop(gaps.copy()) == gaps[1].sum()
+    for table in (by_columns, gaps):
+        assert compiled.for_types_of(loop, table) is loop
+        assert loop(table) == gaps[1].sum()
+    found = [compiled.for_types_of(loop, table) for table in (by_columns, gaps)]
+    assert loop not in found
+    assert [function(table) for function, table in zip(found, (by_columns, gaps), strict=True)] == 2 * [gaps[1].sum()]

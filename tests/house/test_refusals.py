@@ -149,6 +149,8 @@ CANNOT_BE = (
     ),
     (lambda: mr.Analysis(CASE, np.array([1])), r"solver = array\(\[1\]\) is not one of"),
     (lambda: mr.Analysis(CASE, Unspeakable()), "solver = a Unspeakable"),
+    (lambda: mr.dynamic_check([], "x" * 99), r"limit_state = 'x{59}\.\.\. is not one of SLV, SLC"),
+    (lambda: mr.dynamic_check([], np.zeros(99)), r"limit_state = array\(\[0[0., ]+\.\.\. is not one of SLV, SLC"),
     (lambda: contacts(side_friction=11.0), "^side_friction = 11 is outside"),
     (lambda: contacts(friction=11.0), "^friction = 11 is outside"),
     (

@@ -100,6 +100,14 @@ def test_blocks_are_drawn_where_a_pose_has_brought_them():
         plotting.blocks(ax, masonry, [0.0, 0.0, 0.0])
 
 
+def test_what_the_axes_had_before_moves_on_after_blocks_are_drawn():
+    """Lines that a user moves himself stay animated; what is drawn is part of the still picture."""
+    ax = Figure().subplots()
+    (own,) = ax.plot([0, 1], [0, 1], animated=True)
+    plotting.blocks(ax, mr.Masonry.stack([mr.Block.from_size(0.5, 0.5)] * 2, k_n=1e8))
+    assert [artist for artist in ax.get_children() if artist.get_animated()] == [own]
+
+
 def test_a_rotation_that_overturns_below_alpha_is_drawn(wall, contacts):
     """A load at the top lowers it. Without effects there is no line, nor one far beyond the motion."""
     load, tie = mr.Load(0.4 * wall.weight, height=2 * wall.h), mr.Tie(2 * wall.h, 1e6)

@@ -78,6 +78,7 @@ def test_more_impacts_than_the_other_are_shown_as_missing(one_sided, contacts, e
     comparison = mr.compare(mr.solve_analytical(one_sided, e), mr.simulate(one_sided, contacts, 1e-3))
     assert math.isnan(comparison.rows()[-1]["impact time, MuJoCo [s]"])
     assert "nan" not in comparison.table(most=50)
+    assert comparison.table(most=-1) == comparison.table(most=0)
 
 
 def test_different_cases_are_not_compared(two_sided, one_sided, e):
