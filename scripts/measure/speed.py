@@ -79,6 +79,17 @@ def set_up(blocks: int) -> float:
 
 set_up.count = 0  # type: ignore[attr-defined]
 
+
+def small_wall(peak: float) -> float:
+    """Seconds of explicit steps of a wall of 18 blocks on ground that swings with some amplitude [m/s2]; NaN in a
+    version without."""
+    if not hasattr(mr, "solve_explicit"):
+        return math.nan
+    wall = mr.Masonry.running_bond(1.6, 0.8, (0.4, 0.2), 0.3, k_n=1e8, k_s=4e7)
+    case = mr.MasonryCase(wall, 1.0, mr.GroundMotion.sine(peak, 1.0, 3))
+    return cli.seconds(lambda: mr.solve_explicit(case))
+
+
 ONE_SIDED = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0)
 TWO_SIDED = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 6.0, side_stop=False)
 UNDER_RECORD = mr.Case(FIGURE_3, 0.0, 12.0, motion=MOTION)
@@ -95,6 +106,8 @@ CALLS: dict[str, Callable[[], object]] = {
     ),
     "one-sided, 3 s, fixed step 0.1 ms": lambda: mr.simulate(ONE_SIDED, CONTACTS, 1e-4),
 }
+SMALL_WALLS = {"wall of 18 blocks, 1 s, explicit steps": 2.5, "the same as it falls": 9.0}
+"""Amplitude of the ground under each [m/s2]."""
 CAMPAIGNS = {"campaign, rocking theory, a wall": "analytical", "campaign, MuJoCo, a wall": "MuJoCo"}
 SET_UPS = {f"set-up of {count} blocks, explicit steps": count for count in (50, 1000, 2000, 4000)}
 """Processor time of each; the first one warms up, and is the only one of the quick mode."""
@@ -109,6 +122,8 @@ def serve() -> None:
         name, size = line.rstrip("\n").split("\t")
         if name in SET_UPS:
             seconds = set_up(SET_UPS[name])
+        elif name in SMALL_WALLS:
+            seconds = small_wall(SMALL_WALLS[name])
         else:
             seconds = campaign(int(size), CAMPAIGNS[name]) if name in CAMPAIGNS else cli.seconds(CALLS[name])
         print(f"{seconds!r}", flush=True)
@@ -203,7 +218,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         versions = Version(ROOT), Version(there)
         try:
             campaigns = list(CAMPAIGNS)[: 1 if args.quick else None]
-            for task in tqdm((*CALLS, *campaigns), desc="tasks", disable=None, leave=False):
+            for task in tqdm((*CALLS, *SMALL_WALLS, *campaigns), desc="tasks", disable=None, leave=False):
                 size = SIZES[CAMPAIGNS[task]][args.quick] if task in CAMPAIGNS else 0
                 count = (1 if args.quick else 3) if task in CAMPAIGNS else repeats
                 if task not in CAMPAIGNS:

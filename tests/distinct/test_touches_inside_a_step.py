@@ -207,8 +207,8 @@ def unstable(monkeypatch, output_step=1e-3, beyond=1.8):
     """A block that rocks, at a step beyond the longest stable one."""
     masonry = block(False, 0.05, (0.5, 2.0))
     case = mr.MasonryCase(masonry, 0.5, velocity=[(0.0, 0.0, 0.3)])
-    limit = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).stats["stable_timestep"]
-    monkeypatch.setattr(setup, "longest_step", lambda system: 2 * limit)
+    limit, at_rest = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).stats["stable_timestep"], setup.standing
+    monkeypatch.setattr(setup, "standing", lambda scene: at_rest(scene)._replace(limit=2 * limit))
     return mr.solve_explicit(case, timestep=beyond * limit, output_step=output_step)
 
 
