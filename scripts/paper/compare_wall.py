@@ -45,7 +45,7 @@ def drawn(case: mr.Case, responses: Sequence[mr.Response], title: str) -> Figure
         if impact.energy_before > STEP * theory.energy[0]:
             at = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
             beside(below, at, f"$|e|$ = {abs(impact.restitution):.2f}", "0.2", (6, 0))
-    inset = above.inset_axes((0.72, 0.08, 0.28, 0.9))
+    inset = above.inset_axes((0.72, 0.16, 0.28, 0.82))
     section(inset, case)
     inset.axis("off")
     return figure
