@@ -6,7 +6,6 @@ to they stand at the pose, and the forces act on them for half a step.
 
 from __future__ import annotations
 
-import math
 import sys
 from typing import NamedTuple
 
@@ -24,11 +23,11 @@ from ..geometry.vectors import (
     scaled,
     spin_components,
 )
-from ..problem.masonry.laws.joint_law import stored, stored_along
+from ..problem.masonry.laws.joint_law import stored
 from ..quantities import GRAVITY, Array
 from ..scene.course import Ground, mean_acceleration
 from .contacts.contact import press_lines, settle_touches
-from .contacts.friction import book_rubbing, stick
+from .contacts.friction import book_rubbing, sheared, stick
 from .contacts.touches import in_transit, was_open
 from .gathering import keep_burden, keep_forces
 from .kinds.lists import act_all, hold_all, stored_by_laws
@@ -162,7 +161,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
     energy.potential = energy.elastic = energy.driven = 0.0
     hold_all(system.links, system, books, energy, samples.pulled[row])
     elastic = energy.elastic
-    bonded, sheared = stored_by_laws(system.laws)
+    bonded, along_faces = stored_by_laws(system.laws)
     for p in range(len(system.lines)):
         line = system.lines[p]
         if not was_open(line):
@@ -170,11 +169,9 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
             elastic += stored(line, -line.depth) + transit
             if samples.dashpots.shape[1] > 0:
                 samples.dashpots[row, line.group] += early
-        if line.k_s < math.inf:
-            grip = read(line.grip)
-            sheared += stored_along(line, dot(grip, grip))
-    energy.elastic = elastic + bonded + sheared
-    energy.friction, energy.ground = totals.friction - sheared, totals.ground
+        along_faces += sheared(line)
+    energy.elastic = elastic + bonded + along_faces
+    energy.friction, energy.ground = totals.friction - along_faces, totals.ground
     energy.tension, energy.slip, energy.crushing = totals.tension, totals.slip, totals.crushing
     energy.joint_ends, energy.encounter_ends = totals.joint_ends, totals.encounter_ends
     keep_account(books.links, samples.links[row])

@@ -33,7 +33,7 @@ from ...geometry.vectors import (
     times,
     vector,
 )
-from ...problem.masonry.laws.joint_law import shear_limit
+from ...problem.masonry.laws.joint_law import shear_limit, stored_along
 from ...quantities import Array, Integers
 from ..rows import Row, Rows
 from ..supports import Supports
@@ -125,6 +125,16 @@ def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push:
         grip = in_body(bodies[line.face], grip)
     put(line.grip, grip)
     return drag
+
+
+@inlined
+def sheared(line: Row) -> float:
+    """Energy in the shear spring of a line, or of a law of its joint [J]. Rigid friction holds none."""
+    if line.k_s == math.inf:
+        return 0.0
+    grip = read(line.grip)
+    energy: float = stored_along(line, dot(grip, grip))
+    return energy
 
 
 @inlined

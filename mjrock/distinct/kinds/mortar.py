@@ -18,11 +18,11 @@ from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, increase, minus, no_spin, plus, put, read, scaled
 from ...problem.masonry.laws.bond import Bond
 from ...problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
-from ...problem.masonry.laws.joint_law import normal_force, stored_along
+from ...problem.masonry.laws.joint_law import normal_force
 from ...quantities import Array, Flags
 from ...scene.scene import Scene
 from ..contacts.contact import add_force, meeting, relative, where_friction_rubs
-from ..contacts.friction import along_face, as_vector, carried, shortened, stretched
+from ..contacts.friction import along_face, as_vector, carried, sheared, shortened, stretched
 from ..rows import Fields, Row, Rows, numbers
 from ..system import Books, System
 from ..turning import in_body
@@ -218,11 +218,3 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
     add_force(bodies[line.body], meet.arm, force)
     if line.face >= 0:
         add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
-
-
-@inlined
-def sheared(bond: Row) -> float:
-    """Energy in the spring of a bond along the face [J]."""
-    grip = read(bond.grip)
-    energy: float = stored_along(bond, dot(grip, grip))
-    return energy

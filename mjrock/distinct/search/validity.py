@@ -10,10 +10,10 @@ import numpy as np
 
 from ...compiled import compiled_at_once, inlined
 from ...geometry.vectors import dot, plus, put, read, scaled, vector
-from ...problem.masonry.laws.joint_law import normal_force, stored, stored_along
+from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ..contacts.contact import meeting, over_face, relative, where_friction_rubs
-from ..contacts.friction import along_face, as_vector, carried
+from ..contacts.friction import along_face, as_vector, carried, sheared
 from ..kinds.lists import is_held, stored_by_laws
 from ..system import System, Tables
 from ..turning import in_world, rotation_change, take_inverse_inertia, take_turn
@@ -371,10 +371,7 @@ def sums(system: System, which: Integers, depth: Array) -> tuple[float, ...]:
         moved += carried(line, system.supports, plus(scaled(line.push, meet.normal), as_vector(meet.normal, drag)))
         rubbed -= dot(drag, along_face(meet.normal, velocity))
         damped -= line.pressed * dot(meet.normal, velocity)
-    sheared = stored_by_laws(system.laws)[1]
+    along_faces = stored_by_laws(system.laws)[1]
     for p in range(len(system.lines)):
-        line = system.lines[p]
-        if line.k_s < math.inf:
-            grip = read(line.grip)
-            sheared += stored_along(line, dot(grip, grip))
-    return energy, sheared, power, moved, rubbed, damped
+        along_faces += sheared(system.lines[p])
+    return energy, along_faces, power, moved, rubbed, damped
