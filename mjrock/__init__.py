@@ -96,6 +96,7 @@ if TYPE_CHECKING:
     from .study.intensity.fragility import Fragility, PairedRatio, fit_capacities, fit_fragility, lost, paired_ratio
     from .study.intensity.ida import Capacity, ida, overturning_intensity
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
+    from .study.loading.code import Code
     from .study.loading.code_check import DynamicCheck, MechanismCheck, dynamic_check, mechanism_check
     from .study.loading.limit_analysis import LimitCurve, collapse_multiplier, limit_curve
     from .study.loading.push import Push, push
@@ -108,7 +109,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
-    "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "Compound",
+    "Analysis", "Block", "Bond", "Capacity", "Case", "Code", "CodeSpectrum", "Collapse", "Comparison", "Compound",
     "ContactParameters", "ContactWarning", "Contacts", "Corner", "CoulombFriction", "Damper", "DampingLaw", "Dry",
     "DynamicCheck", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion",
     "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "LimitCurve",

@@ -20,6 +20,7 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
+from ..study.loading.code import code_of
 from ..study.loading.code_check import signals_of
 from . import subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
@@ -197,7 +198,9 @@ def title_block(block: Mapping[str, str], words: Words) -> Markup:
 def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The answer and the drawing."""
     found = verdicts.answers(mechanisms, words) if mechanisms else []
-    said = words("methods" if mechanisms else "no_check"), outcomes(runs, words)
+    codes = verdicts.codes_of(mechanisms, words.language)
+    methods = verdicts.sentences(codes, "methods", words) if codes else [words("no_check")]
+    said = [*methods, outcomes(runs, words)]
     parts = [element("h2", words("answer")), *found, *(element("p", one) for one in said)]
     return [*parts, picture(whole.at_rest(words), words(f"drawing_{whole.KIND}"), words)]
 
@@ -215,10 +218,14 @@ def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The checks, step by step, and their curves."""
     parts: list[Markup] = []
     if (figure := capacity_curves(mechanisms, words)) is not None:
-        parts += [element("h2", words("checks"), kind="page"), element("p", words("checks_said"))]
+        codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
+        parts += [element("h2", words("checks"), kind="page")]
+        parts += [element("p", said) for said in verdicts.sentences(codes, "kinematic", words)]
         parts += [*verdicts.kinematic_steps(mechanisms, words), picture(figure, words("curves_said"), words)]
     if dynamic := verdicts.dynamic_steps(mechanisms, words):
-        parts += [element("h2", words("dynamic")), element("p", words("dynamic_said")), *dynamic]
+        codes = verdicts.codes_of([one._replace(kinematic=None) for one in mechanisms], words.language)
+        said = verdicts.sentences(codes, "dynamic", words)
+        parts += [element("h2", words("dynamic")), *(element("p", one) for one in said), *dynamic]
     return parts
 
 
@@ -228,7 +235,7 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
     if limit is not None:
         limits["d₀"] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
-            limits[words("limit_of_mean", state=words(check.limit_state))] = check.capacity
+            limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     solved = subject.solved_with([run.response for run in runs], words)
     parts = [element("h2", words("runs"), kind="page"), *[element("p", said) for said in solved]]
     drawn = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
@@ -248,7 +255,9 @@ def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
     parts += [element("h2", words("limits")), listed([*verdicts.limits(mechanisms, words), *whole.limits(runs, words)])]
     solvers = list(dict.fromkeys(run.response.solver for run in runs))
     kinematic = any(mechanism.kinematic for mechanism in mechanisms)
-    parts += [element("h2", words("ntc")), table((), subject.code_chapter(solvers, kinematic, words), kind="block")]
+    codes = verdicts.codes_of(mechanisms, words.language) or [code_of()]
+    heading = "; ".join(verdicts.sentences(codes, "program", words)) or words("program")
+    parts += [element("h2", heading), table((), subject.code_chapter(solvers, kinematic, words), kind="block")]
     if by_hand := whole.by_hand(words):
         parts += [element("p", words("hand")), table((), by_hand, right=(1,))]
     return [*parts, element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))]

@@ -141,7 +141,7 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
         ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
         below = (-4, -11) if held > NEAR_THE_AXIS * top else (-16, 4)  # the axis is near the curve
         for d, a, beside in ((state.capacity, held, below), (state.demand, stiff * state.demand, (4, 4))):
-            ax.annotate(words(name), (d, a), beside, textcoords="offset points", fontsize=SMALL, zorder=6)
+            ax.annotate(name, (d, a), beside, textcoords="offset points", fontsize=SMALL, zorder=6)
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
     ax.set(xlim=(0, 1.05 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
     _small(ax)

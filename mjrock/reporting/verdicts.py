@@ -10,34 +10,16 @@ import numpy as np
 
 from ..problem.wall.effect import Effect
 from ..quantities import require_kind, require_text, shown
-from ..study.loading.code_check import DAMPING, MIN_RECORDS, PERIOD, SHARE, DynamicCheck, MechanismCheck, Step, Verdict
+from ..study.loading.code import Code
+from ..study.loading.code_check import DynamicCheck, MechanismCheck, Step, Verdict
 from .markup import Markup, element, formula, table
-from .texts import DASH, FOUND, Words
+from .texts import DASH, FOUND, GIVEN, Words
 
 Check = MechanismCheck | DynamicCheck
 REVERSED = ", reversed"
 """How the name of a reversed motion ends."""
 ABREAST = 4
 """Mechanisms whose steps stand beside each other in one table."""
-FORMULAE = {
-    "alpha_0": "alpha_0",
-    "participation": "e^* = {{(Σ P_i δ_i)}^2}/{{(Σ P_i)} {(Σ P_i δ_i^2)}}",
-    "confidence_factor": "FC",
-    "a_0": "a_0 = {alpha_0 g}/{e^* FC}",
-    "linear": "q a_0 , q = 2",
-    "alpha_tied": "alpha_{0,t}",
-    "linear_tied": "q {alpha_{0,t} g}/{e^* FC}",
-    "peak": "a_g S",
-    "linear_ratio": "{q a_0}/{a_g S}",
-    "elastic_period": "T_0",
-    "d_0": "a(d_0) = 0",
-    "capacity": "d_{OF} = SHARE d_0",
-    "period": "T_{OF} = FACTOR π √{{d_{OF}}/{a(d_{OF})}}",
-    "demand": "S_{De}(T_{OF}, ξ = DAMPING %)",
-    "ratio": "{d_{OF}}/{S_{De}}",
-    "ground_ratio": "{a_{g,SLV}}/{a_g} ≥ {a_{g,SLD}}/{a_g}",
-}
-"""The formula of each step, see `formula`."""
 
 
 class Mechanism(NamedTuple):
@@ -86,6 +68,21 @@ def required_checks(checks: object, alone: str) -> list[Mechanism]:
     return found
 
 
+def codes_of(mechanisms: Sequence[Mechanism], language: str) -> list[Code]:
+    """The codes of all checks, each once; ValueError for one without texts in the language of the report."""
+    checks = [check for one in mechanisms for check in (one.kinematic, *one.dynamic) if check is not None]
+    codes = {check.code.name: check.code for check in checks}
+    for code in codes.values():
+        if language not in code.languages:
+            raise ValueError(f"language = {language!r}: the texts of {code.name} are in {', '.join(code.languages)}")
+    return list(codes.values())
+
+
+def sentences(codes: Sequence[Code], key: str, words: Words) -> list[str]:
+    """What each code says under a key, where it says anything."""
+    return [text for code in codes if (text := code.text(key, words.language))]
+
+
 def answers(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """What holds, mechanism by mechanism, with every condition."""
     rows, columns = [], ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
@@ -112,7 +109,7 @@ def _conditions(verdict: Verdict, words: Words) -> list[str]:
 
     kind = "holds" if verdict.holds else "fails"
     numbers = amount(verdict.demand), amount(verdict.capacity), element("td", words.ratio(verdict.ratio), kind="right")
-    what = words(verdict.what), words(verdict.limit_state)
+    what = words(verdict.what), verdict.limit_state
     return [*what, *numbers, element("td", words(kind), kind=kind), verdict.clause]
 
 
@@ -128,7 +125,7 @@ def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
             record = worst.name.removesuffix(REVERSED)
             record += f" ({words('reversed')})" if record != worst.name else ""
             d = words("overturned") if math.isinf(worst.d) else words.quantity(worst.d, "m", FOUND)
-        what = f"{words(least.what)}, {words(least.limit_state)}"
+        what = f"{words(least.what)}, {least.limit_state}"
         rows.append((mechanism.name, words.ratio(least.ratio), what, record, d))
     columns = ("verdict_mechanism", "least_ratio", "verdict_check", "worst_record", "run_largest")
     return table([words(name) for name in columns], rows, right=(1, 4))
@@ -136,9 +133,10 @@ def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
 
 def limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
     """What the kinematic checks do not cover."""
-    said = [words("limit_seat")] if any(mechanism.kinematic for mechanism in mechanisms) else []
+    codes = codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
+    said = sentences(codes, "limit_seat", words)
     for name, check, _ in mechanisms:
-        if check and (gone := [words(state) for state in check.states if check.broken_before(state)]):
+        if check and (gone := [state for state in check.states if check.broken_before(state)]):
             said.append(words("limit_broken", name=name, states=", ".join(gone)))
     return said
 
@@ -147,11 +145,13 @@ def kinematic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Marku
     """The steps of the kinematic checks, a column a mechanism."""
     given = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
     made = []
-    for start in range(0, len(given), ABREAST):
-        some = given[start : start + ABREAST]
-        rows = [_step(step, [check for _, check in some], words) for step in _all_steps([check for _, check in some])]
-        heads = [words("step"), words("formula"), *(name for name, _ in some), words("verdict_clause")]
-        made.append(table(heads, rows, right=range(2, 2 + len(some))))
+    for code in dict.fromkeys(check.code.name for _, check in given):
+        own = [(name, check) for name, check in given if check.code.name == code]
+        for some in (own[start : start + ABREAST] for start in range(0, len(own), ABREAST)):
+            checks = [check for _, check in some]
+            rows = [_step(step, checks, words) for step in _all_steps(checks)]
+            heads = [words("step"), words("formula"), *(name for name, _ in some), words("verdict_clause")]
+            made.append(table(heads, rows, right=range(2, 2 + len(some))))
     return made
 
 
@@ -170,22 +170,20 @@ def _all_steps(checks: Sequence[MechanismCheck]) -> list[Step]:
 
 def _step(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[str]:
     """A row: what it is, its formula, its value in each check, and its clause."""
-    share, damping = (words.number(of.get(step.of, 0.0) * by) for of, by in ((SHARE, 1), (DAMPING, 100)))
-    factor = words.number(PERIOD.get(step.of, 0.0) / math.pi, FOUND)
-    shape = FORMULAE.get(step.key, "").replace("SHARE", share).replace("DAMPING", damping)
-    shape = shape.replace("FACTOR", factor).replace("OF", step.of)
+    code, of = checks[0].code, effect_name(step.of, words)
+    shape = code.formula(step.key, step.of, lambda number: words.number(number, GIVEN))
     cells = []
     for check in checks:
         found = [one for one in check.steps if (one.key, one.of) == (step.key, step.of)]
         cells.append(_value(found[0], check, words) if found else DASH)
-    return [words(f"step_{step.key}", of=effect_name(step.of, words)), formula(shape), *cells, step.clause]
+    return [code.step(step.key, of).text[words.language], formula(shape), *cells, step.clause]
 
 
 def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
     """The cell of a value; the colour of a ratio shows whether it holds, if none below takes its place."""
     if not step.key.endswith("ratio"):
         return element("td", words.quantity(step.value, step.unit, FOUND), kind="right")
-    counts = step.key != "ratio" or step.of != "SLV" or step.value >= check.ground_ratio
+    counts = step.key != "ratio" or not check.is_of_start(step.of)
     kind = f"right {'holds' if step.value >= 1 else 'fails'}" if counts else "right"
     return element("td", words.ratio(step.value), kind=kind)
 
@@ -225,21 +223,14 @@ def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
     if check.restitution:
         low, middle, high = (words.number(one, FOUND) for one in np.percentile(check.restitution, [5, 50, 95]))
         e = words("restitution_found", middle=middle, low=low, high=high, count=len(check.restitution))
-    lacks = []
-    if check.records < MIN_RECORDS:
-        lacks.append(words("lacks_records", count=check.records, least=MIN_RECORDS))
-    if check.in_one_polarity:
-        lacks.append(words("lacks_polarity", count=check.in_one_polarity))
-    if not check.natural:
-        lacks.append(words("lacks_natural" if check.natural is False else "lacks_origin"))
     return {
-        "state": words(check.limit_state),
+        "state": check.limit_state,
         "runs": words("runs_and_records", runs=len(check.runs), records=check.records),
         "d_0": length(check.d_0),
         "exceeded": str(len(check.exceeded)),
         "largest": length(max(run.d for run in check.runs)),
         "mean": length(check.mean),
-        "capacity": words("share_of", d=length(check.capacity), share=words.number(SHARE[check.limit_state])),
+        "capacity": words("share_of", d=length(check.capacity), share=words.number(check.share)),
         "restitution": e,
-        "lacks": "; ".join(lacks) or words("nothing"),
+        "lacks": "; ".join(check.lacking_in(words.language)) or words("nothing"),
     }

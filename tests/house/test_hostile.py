@@ -219,7 +219,8 @@ CALLS = OF_NUMBERS | {
     ),
     "push": (mr.push, {"masonry": COLUMN, "driver": 1, "to": -0.01, "inertia": 0.01}),
     "mechanism_check": (
-        mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35, "elastic_period": 0.1},
+        mr.mechanism_check,
+        {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35, "elastic_period": 0.1, "code": "NTC 2018"},
     ),
     "PointSpectrum": (mr.PointSpectrum, {"period": [0.0, 0.5], "acceleration": [2.0, 5.0], "damping": 0.05}),
     "dynamic_check": (
@@ -504,7 +505,7 @@ def test_every_public_entry_is_tried():
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
-        "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
+        "Code", "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "LimitCurve", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",

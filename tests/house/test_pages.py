@@ -27,7 +27,7 @@ RUNS += ["notebook.md", "solved_cases.md", "your_files.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "code_check.md", "masonry.md", "theory.md"]
 LONG += ["results.md", "mortar.md", "slow_loading.md", "town.md"]
 """Pages whose lines run."""
-ELSEWHERE = ["own_effect.md", "stacks_grippers_feet.md"]
+ELSEWHERE = ["own_code.md", "own_effect.md", "stacks_grippers_feet.md"]
 """Pages whose lines run in tests of their own, since they are parts of files."""
 
 

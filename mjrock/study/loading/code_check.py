@@ -1,8 +1,9 @@
-"""The checks of a local mechanism after the Italian commentary C8.7.1.2.1, clause by clause.
+"""The checks of a local mechanism after a code, clause by clause.
 
-The clauses are those of Circolare 21 gennaio 2019 n. 7. `mechanism_check` is the check on a push-over curve. The
-mechanism is the single rigid block of a case, which stands on the ground or on a floor whose spectrum or motion is the
-demand, or a wall that bends between two floors or side walls. `dynamic_check` is that by nonlinear dynamic analysis.
+The code is that of a file, see `Code`; where none is given it is the Italian one, Circolare 21 gennaio 2019 n. 7,
+C8.7.1.2.1, whose clauses this module cites. `mechanism_check` is the check on a push-over curve. The mechanism is the
+single rigid block of a case, which stands on the ground or on a floor whose spectrum or motion is the demand, or a wall
+that bends between two floors or side walls. `dynamic_check` is that by nonlinear dynamic analysis.
 """
 
 from __future__ import annotations
@@ -45,28 +46,20 @@ from ...quantities import (
 from ...result.response import Response
 from ..analysis import Analysis
 from ..campaign.campaign import results
+from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of
 from .push import Push, of_centroid
 from .pushover import pushover
 
-SHARE = {"SLV": 0.4, "SLC": 0.6}
-"""Displacement capacity over that at which the curve ends [-], C8.7.1.2.1.6."""
-PERIOD = {"SLV": 1.68 * math.pi, "SLC": 1.56 * math.pi}
-"""Factor of the equivalent period [-], by the equation of the limit state."""
-EQUATION = {"SLV": "C8.7.1.10", "SLC": "C8.7.1.11"}
-"""The equation of that period."""
-DAMPING = {"SLV": 0.08, "SLC": 0.10}
-"""Equivalent damping ratio [-], C8.7.1.2.1.8."""
-BEHAVIOUR = 2.0
-"""Behaviour factor q of the linear check [-], C8.7.1.2.1.7."""
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 SHORT = 0.05
 """Period from which on the spectrum of a record is looked at where T_0 is not known [s]."""
-MIN_RECORDS = 8
-"""Records that are more than those of the global response, of which NTC 2018, 7.3.5, takes the mean from seven on."""
-
 Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
+
+
+Checked = Case | Corner | VerticalBending | HorizontalBending
+"""What the check is of."""
 
 
 class Step(NamedTuple):
@@ -75,7 +68,7 @@ class Step(NamedTuple):
     Args:
         key: which it is, see `CHECK_STEPS`.
         value: in the unit.
-        clause: where it stands in the Circolare; none of a ratio.
+        clause: where it stands in the code; none of a ratio.
         unit: of the value.
         of: the tie or the limit state that it is of.
     """
@@ -87,42 +80,15 @@ class Step(NamedTuple):
     of: str = ""
 
 
-CHECK_STEPS = {
-    "alpha_0": ("multiplier alpha_0", 4, "", "C8.7.1.1"),
-    "participation": ("participating mass e*", 4, "", "C8.7.1.5"),
-    "confidence_factor": ("confidence factor FC", 2, "", "C8.7.1.2.1.3"),
-    "a_0": ("a_0 = alpha_0 g / (e* FC), SLD", 4, "g", "C8.7.1.8"),
-    "linear": ("linear SLV, q a_0 with q = 2", 4, "g", "C8.7.1.2.1.7"),
-    "alpha_tied": ("alpha_0, ties at their strength", 4, "", "C8.7.1.1"),
-    "linear_tied": ("linear SLV, ties at their strength", 4, "g", "C8.7.1.2.1.7"),
-    "peak": ("peak of the demand, a_g S or a_Z", 4, "g", "C8.7.1.2.1.7"),
-    "linear_ratio": ("capacity over demand SLV, linear", 2, "", ""),
-    "elastic_period": ("elastic branch up to the curve, T_0", 3, "s", "C8.7.1.6"),
-    "d_0": ("d_0", 4, "m", "C8.7.1.4"),
-    "yields": ("{of} yields at d", 4, "m", ""),
-    "breaks": ("{of} breaks at d", 4, "m", ""),
-    "capacity": ("d_{of} = {share:.1f} d_0", 4, "m", "C8.7.1.2.1.6"),
-    "period": ("T_{of}", 3, "s", ""),
-    "demand": ("demand, xi = {damping:.0%}", 4, "m", "C8.7.1.2.1.8"),
-    "ratio": ("capacity over demand {of}", 2, "", ""),
-    "ground_ratio": ("a_g,SLV / a_g, at least a_g,SLD / a_g", 2, "", "C8.7.1.2.1.8"),
-}
-"""The text of each step in a table, its decimals, its unit and its clause. The key of a step of the whole mechanism is
-the name of its attribute of `MechanismCheck`, that of a limit state the name of its attribute of `LimitState`."""
-OF_MECHANISM = tuple(CHECK_STEPS)[: 1 + tuple(CHECK_STEPS).index("d_0")]
-OF_LIMIT_STATE = "capacity", "period", "demand", "ratio"
-"""The keys of the steps of a mechanism, and of those of a limit state."""
-
-
 class Verdict(NamedTuple):
     """One condition of a check.
 
     Args:
         what: which it is.
-        limit_state: "SLV" or "SLC".
+        limit_state: of the code, such as "SLV".
         demand, capacity: in the unit.
         unit: of both.
-        clause: where it stands in the Circolare.
+        clause: where it stands in the code.
     """
 
     what: str
@@ -202,10 +168,13 @@ class MechanismCheck:
         d: spectral displacements of the capacity curve [m], shape (n,).
         a: spectral accelerations [m/s2], shape (n,).
         d_0: displacement at which the acceleration falls to zero [m].
-        states: the limit states SLV and SLC.
+        states: the limit states of the code, by name.
         peak: peak acceleration of the demand, where the wall stands [m/s2]; None of a displacement spectrum.
         yielding, breaking: displacement at which each tie yields and breaks [m], by name, of those that do up to d_0.
         elastic_period: T_0 of the elastic branch [s], None of a rigid start.
+        code: what it is checked after.
+        mechanism: what was checked, None where it is not known.
+        demands: what each limit state was checked against, by name.
     """
 
     alpha_0: float
@@ -220,6 +189,9 @@ class MechanismCheck:
     yielding: Mapping[str, float] = field(default_factory=dict)
     breaking: Mapping[str, float] = field(default_factory=dict)
     elastic_period: float | None = None
+    code: Code = field(default_factory=code_of)
+    mechanism: Checked | None = None
+    demands: Mapping[str, Demand] = field(default_factory=dict)
 
     @property
     def a_0(self) -> float:
@@ -227,44 +199,53 @@ class MechanismCheck:
         return self._acceleration(self.alpha_0)
 
     @property
-    def linear(self) -> float:
-        """Peak ground acceleration of the linear check of the SLV with q = 2 [m/s2], the ties slack."""
-        return BEHAVIOUR * self.a_0
+    def linear(self) -> float | None:
+        """Peak ground acceleration of the linear check, q a_0 [m/s2], the ties slack; None of a code without one."""
+        return None if self.code.linear is None else self.code.linear.behaviour * self.a_0
 
     @property
     def linear_tied(self) -> float | None:
         """The same with the ties at their strength [m/s2]; None without ties."""
-        return None if self.alpha_tied is None else BEHAVIOUR * self._acceleration(self.alpha_tied)
+        if self.alpha_tied is None or self.code.linear is None:
+            return None
+        return self.code.linear.behaviour * self._acceleration(self.alpha_tied)
 
     @property
     def linear_ratio(self) -> float | None:
-        """Capacity over demand of the linear check of the SLV [-], with the ties at their strength; None where the peak
-        acceleration of the demand is not known."""
-        return None if self.peak is None else self.verdicts[0].ratio
+        """Capacity over demand of the linear check [-], with the ties at their strength; None of a code without one,
+        and where the peak acceleration of the demand is not known."""
+        return None if self.peak is None or self.code.linear is None else self.verdicts[0].ratio
 
     @property
     def ground_ratio(self) -> float:
         """a_g,SLV over a_g [-], C8.7.1.2.1.8: that of the displacements, and at least a_g,SLD over a_g, where the peak
-        acceleration of the demand is known."""
-        least = self.a_0 / self.peak if self.peak else 0.0
-        return max(self.states["SLV"].ratio, least)
+        acceleration of the demand is known and the code lets it count."""
+        return self._nonlinear(self.code.first).ratio
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """The linear check of the SLV, where the peak of the demand is known, and the non-linear ones.
+        """The linear check, where the code has one and the peak of the demand is known, and the non-linear ones.
 
         That of the SLV is the one of displacements, or where a_g,SLD is more than these allow, that of accelerations.
         """
-        slv, slc, found = self.states["SLV"], self.states["SLC"], list[Verdict]()
-        if self.peak is not None:
-            capacity = self.linear if self.linear_tied is None else self.linear_tied
-            found.append(Verdict("linear kinematic", "SLV", self.peak, capacity, "m/s2", "C8.7.1.2.1.7"))
-        of_slv = slv.demand, slv.capacity, "m"
-        if self.peak is not None and self.ground_ratio > slv.ratio:
-            of_slv = self.peak, self.a_0, "m/s2"
-        found.append(Verdict("nonlinear kinematic", "SLV", *of_slv, "C8.7.1.2.1.8"))
-        found.append(Verdict("nonlinear kinematic", "SLC", slc.demand, slc.capacity, "m", "C8.7.1.2.1.8"))
-        return tuple(found)
+        rule, found = self.code.linear, list[Verdict]()
+        capacity = self.linear if self.linear_tied is None else self.linear_tied
+        if self.peak is not None and rule is not None and capacity is not None:
+            found.append(Verdict("linear kinematic", rule.state, self.peak, capacity, "m/s2", rule.clause))
+        return *found, *map(self._nonlinear, self.states)
+
+    def _nonlinear(self, name: str) -> Verdict:
+        """The non-linear condition of a limit state."""
+        state = self.states[name]
+        verdict = Verdict("nonlinear kinematic", name, state.demand, state.capacity, "m", self.code.clause)
+        if self.peak and self.code.states[name].holds_until_start:
+            start = verdict._replace(demand=self.peak, capacity=self.a_0, unit="m/s2")
+            return start if start.ratio > verdict.ratio else verdict
+        return verdict
+
+    def is_of_start(self, name: str) -> bool:
+        """Whether the acceleration that starts the mechanism allows more than the displacements of a limit state."""
+        return self._nonlinear(name).unit != "m"
 
     def _acceleration(self, multiplier: float) -> float:
         """Spectral acceleration of a multiplier [m/s2], equation C8.7.1.8."""
@@ -278,14 +259,13 @@ class MechanismCheck:
         found += [("breaks", tie, d) for tie, d in self.breaking.items()]
         for name, state in self.states.items():
             found += [(key, name, getattr(state, key)) for key in OF_LIMIT_STATE]
-        if self.ground_ratio > self.states["SLV"].ratio:
-            found.append(("ground_ratio", "", self.ground_ratio))
+        found += [("ground_ratio", name, self._nonlinear(name).ratio) for name in self.states if self.is_of_start(name)]
         steps = []
         for key, of, value in found:
-            if value is not None:
-                *_, unit, clause = CHECK_STEPS[key]
+            if value is not None and key in self.code.steps:
+                unit = CHECK_STEPS[key].unit
                 value = value / GRAVITY if unit == "g" else value
-                steps.append(Step(key, value, EQUATION[of] if key == "period" else clause, unit, of))
+                steps.append(Step(key, value, self.code.step(key, of).clause, unit, of))
         return tuple(steps)
 
     def broken_before(self, limit_state: str) -> list[str]:
@@ -301,34 +281,42 @@ class MechanismCheck:
 
     def _rows(self) -> list[tuple[str, str, str]]:
         """The steps: what it is, its value, and its clause or its verdict."""
-        *linear, slv, slc = self.verdicts
-        floored = self.ground_ratio > self.states["SLV"].ratio
-        said = {"ratio SLV": "see a_g,SLV" if floored else slv.said, "ratio SLC": slc.said}
-        said |= {"linear_ratio": linear[0].said if linear else "", "ground_ratio": f"{slv.said}, C8.7.1.2.1.8"}
         rows = []
         for step in self.steps:
-            what, digits, *_ = CHECK_STEPS[step.key]
-            what = what.format(of=step.of, share=SHARE.get(step.of, 0.0), damping=DAMPING.get(step.of, 0.0))
-            note = said.get(f"{step.key} {step.of}".strip(), step.clause)
-            if step.key == "ratio" and (gone := self.broken_before(step.of)):
-                note += f", without {', '.join(gone)}, broken"
-            value = ratio_said(step.value) if step.key.endswith("ratio") else f"{step.value:.{digits}f}"
+            what, note = self.code.step(step.key, step.of).plain, step.clause
+            if step.key == "linear_ratio":
+                note = self.verdicts[0].said
+            elif step.key == "ratio":
+                note = "see below" if self.is_of_start(step.of) else self._nonlinear(step.of).said
+                if gone := self.broken_before(step.of):
+                    note += f", without {', '.join(gone)}, broken"
+            elif step.key == "ground_ratio":
+                note = f"{self._nonlinear(step.of).said}, {note}"
+            value = (
+                ratio_said(step.value)
+                if step.key.endswith("ratio")
+                else f"{step.value:.{CHECK_STEPS[step.key].digits}f}"
+            )
             rows.append((what + (f" [{step.unit}]" if step.unit else ""), value, note))
         return rows
 
     def __repr__(self) -> str:
-        ratios = ", ".join(f"{one.limit_state} {ratio_said(one.ratio)} {one.said}" for one in self.verdicts[-2:])
+        ratios = ", ".join(
+            f"{one.limit_state} {ratio_said(one.ratio)} {one.said}" for one in map(self._nonlinear, self.states)
+        )
         return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 
 def mechanism_check(
-    case: Case | Corner | VerticalBending | HorizontalBending,
+    case: Checked,
     demand: Demand | Mapping[str, Demand],
     *,
-    confidence_factor: float = 1.35,
+    confidence_factor: float | None = None,
     elastic_period: float | None = None,
+    code: Code | str = USUAL_CODE,
 ) -> MechanismCheck:
-    """The kinematic check of a wall as a local mechanism, linear and non-linear, by Circolare 2019 n. 7, C8.7.1.2.1.
+    """The kinematic check of a wall as a local mechanism, linear and non-linear, by a code. Clauses that stand here are
+    those of the Italian one, Circolare 2019 n. 7, C8.7.1.2.1.
 
     The push-over curve of the rigid wall becomes the capacity curve a(d) of an equivalent oscillator. Its displacement
     capacities are shares of the displacement at which it ends. The demand is the elastic displacement at an equivalent
@@ -345,11 +333,13 @@ def mechanism_check(
         case: the wall and its effects, whose release and motion play no part, a corner, or a wall that bends between
             floors or side walls.
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
-            [m] of a spectrum. It is that of both limit states, or a mapping has one for each, "SLV" and "SLC"; the
-            linear check then takes that of the SLV.
-        confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
+            [m] of a spectrum. It is that of all limit states, or a mapping has one for each, "SLV" and "SLC"; the
+            linear check then takes that of its own, the SLV.
+        confidence_factor: FC [-], 1 to 1.35 by NTC 2018; None takes 1.35, as the clause does where the strength of the
+            masonry does not enter the curve. Another code has its own range, or none.
         elastic_period: T_0 of an element that vibrates freely before it opens, such as a parapet [s], 0.001 to 5; its
             curve begins with an elastic branch, a = (2 pi / T_0)^2 d, C8.7.1.6. None is a rigid start.
+        code: the name of a code that comes with the package, "NTC 2018", or a `Code`, such as one of your own file.
 
     Returns:
         The `MechanismCheck`, which prints in a line and as a table.
@@ -365,26 +355,26 @@ def mechanism_check(
         >>> str(check).startswith('<MechanismCheck: starts at 0.1')
         True
     """
-    if isinstance(case, Corner):
-        case = Case(case.block, 0.0, 1.0, effects=case.masses)
-    demands = _by_limit_state(demand)
-    severe = demands["SLV"]
+    code = code_of(code)
+    demands = _by_limit_state(demand, code)
+    severe = demands[code.first]
     peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None
-    factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
+    factor = code.confidence.checked(confidence_factor)
     T_0 = None if elastic_period is None else require_within("elastic_period", elastic_period, 1e-3, 5.0, "s")
-    found = _of_bending(case) if isinstance(case, VerticalBending | HorizontalBending) else _of_wall(case)
+    found = _mechanism_of(case, code)
     d, a = found.d, found.multiplier * GRAVITY / (found.participation * factor)
     if T_0 is not None:
         fine = np.union1d(d, np.linspace(0.0, float(d[-1]), 4001))
         d, a = fine, np.minimum(np.interp(fine, d, a), (2 * math.pi / T_0) ** 2 * fine)
     d_0 = float(d[-1])
     states = {}
-    for name, share in SHARE.items():
-        capacity = share * d_0
-        period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
-        states[name] = LimitState(capacity, period, _demanded(demands[name], period, DAMPING[name], T_0 or SHORT))
+    for name, rule in code.states.items():
+        capacity = rule.share * d_0
+        period = rule.period_at(capacity, float(np.interp(capacity, d, a)))
+        states[name] = LimitState(capacity, period, _demanded(demands[name], period, rule.damping, T_0 or SHORT))
     alpha_0, ties = float(found.multiplier[0]), (found.yielding, found.breaking)
-    return MechanismCheck(alpha_0, found.tied, found.participation, factor, d, a, d_0, states, peak, *ties, T_0)
+    curve = alpha_0, found.tied, found.participation, factor, d, a, d_0, states
+    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands)
 
 
 class _Mechanism(NamedTuple):
@@ -406,6 +396,13 @@ class _Mechanism(NamedTuple):
     breaking: Mapping[str, float]
 
 
+def _mechanism_of(case: Checked, code: Code) -> _Mechanism:
+    """What the check takes of what it is given."""
+    if isinstance(case, VerticalBending | HorizontalBending):
+        return _of_bending(case)
+    return _of_wall(Case(case.block, 0.0, 1.0, effects=case.masses) if isinstance(case, Corner) else case, code)
+
+
 def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
     """A wall between floors or side walls. The centroids of both bodies begin to move alike, so that all of the mass
     takes part."""
@@ -413,7 +410,7 @@ def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
     return _Mechanism(curve.multiplier, curve.displacement, 1.0, None, {}, {})
 
 
-def _of_wall(case: Case) -> _Mechanism:
+def _of_wall(case: Case, code: Code) -> _Mechanism:
     """A wall that overturns, with its ties; ValueError if they hold it for good."""
     require_wall("case", case, "collapse_multiplier")
     curve = pushover(case)
@@ -426,16 +423,18 @@ def _of_wall(case: Case) -> _Mechanism:
     d = moved * second / (wall.centroid_height * first)
     alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
     yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
-    _warn_of_ties(case, SHARE["SLC"] * float(d[-1]), alone, breaking)
+    last, rule = list(code.states.items())[-1]
+    _warn_of_ties(case, f"d_{last}", rule.share * float(d[-1]), alone, breaking)
     tied = None
     if case.pulls:
         tied = float(curve.multiplier[0]) + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
     return _Mechanism(curve.multiplier, d, first**2 / (float(weights.sum()) * second), tied, yielding, breaking)
 
 
-def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
-    """Warn of ties that still hold at d_SLC, where they raise it above the displacement `alone` at which the curve of
-    the wall without them ends [m]. `breaking` has the displacement at which ties break [m]."""
+def _warn_of_ties(case: Case, name: str, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
+    """Warn of ties that still hold at the largest capacity [m], d_SLC of NTC 2018, where they raise it above the
+    displacement `alone` at which the curve of the wall without them ends [m]. `breaking` has the displacement at which
+    ties break [m]."""
     holding = [
         f"{name} (ultimate = {f'{tie.law.ultimate:g} m' if tie.law.ultimate < math.inf else None})"
         for name, tie in case.springs.items()
@@ -443,17 +442,18 @@ def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[s
     ]
     if holding and capacity > alone:
         warn_of(
-            f"d_SLC = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
+            f"{name} = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
             f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
             Implausible,
         )
 
 
-def _by_limit_state(demand: Demand | Mapping[str, Demand]) -> Mapping[str, Demand]:
+def _by_limit_state(demand: Demand | Mapping[str, Demand], code: Code) -> Mapping[str, Demand]:
     """The demand of each limit state."""
-    demands = demand if isinstance(demand, Mapping) else dict.fromkeys(SHARE, demand)
-    if set(demands) != set(SHARE):
-        raise ValueError(f"demand has {', '.join(map(str, demands)) or 'none'}; a mapping needs {' and '.join(SHARE)}")
+    demands = demand if isinstance(demand, Mapping) else dict.fromkeys(code.states, demand)
+    if set(demands) != set(code.states):
+        needed = " and ".join(code.states)
+        raise ValueError(f"demand has {', '.join(map(str, demands)) or 'none'}; a mapping needs {needed}")
     for name, one in demands.items():
         if not isinstance(one, GroundMotion) and not takes(one, 2):
             said = f"demand[{name!r}]" if demands is demand else "demand"
@@ -506,12 +506,13 @@ class DynamicCheck:
     """The verdict of nonlinear dynamic analysis.
 
     Args:
-        limit_state: "SLV" or "SLC".
+        limit_state: of the code, such as "SLV".
         d_0: displacement of the centroid at which nothing brings the wall back [m].
         runs: the largest displacement of each run.
         restitution: |e| of all impacts of the responses [-], shape (n,); none is known of masonry and of rows of a
             campaign.
         natural: whether the records are natural ones; None if it is not known.
+        code: what it is checked after, which has a check by dynamic runs.
     """
 
     limit_state: str
@@ -519,6 +520,17 @@ class DynamicCheck:
     runs: tuple[RunMaximum, ...]
     restitution: tuple[float, ...]
     natural: bool | None
+    code: Code = field(default_factory=code_of)
+
+    @property
+    def share(self) -> float:
+        """What the mean may reach over d_0 [-]."""
+        return self.code.states[self.limit_state].share
+
+    @property
+    def rule(self) -> DynamicRule:
+        """What the code demands of dynamic runs."""
+        return _dynamic_rule(self.code)
 
     @property
     def records(self) -> int:
@@ -532,17 +544,21 @@ class DynamicCheck:
 
     @property
     def lacking(self) -> tuple[str, ...]:
-        """What C8.7.1.2.1.9 demands and the runs lack, in words."""
-        count, lacking = self.records, list[str]()
-        if count < MIN_RECORDS:
-            more = f"and more than the {MIN_RECORDS - 1} of the global response (NTC 2018, 7.3.5) count"
-            lacking.append(f"{count} records, {more}")
-        if self.in_one_polarity:
-            lacking.append(f"{self.in_one_polarity} of {count} records in one polarity alone")
-        if not self.natural:
-            made = "are artificial" if self.natural is False else "are not said to be"
-            lacking.append(f"natural records, and these {made}")
-        return tuple(lacking)
+        """What the code demands of dynamic runs and these lack, in English, C8.7.1.2.1.9."""
+        return self.lacking_in("en")
+
+    def lacking_in(self, language: str) -> tuple[str, ...]:
+        """What the code demands of dynamic runs and these lack, in a language of the code."""
+        count, one_way, least = self.records, self.in_one_polarity, self.rule.records
+        applies = {
+            "records": (count < least, count),
+            "polarity": (one_way > 0, one_way),
+            "natural": (self.natural is False, count),
+            "origin": (self.natural is None, count),
+        }
+        lacks = {key: number for key, (holds, number) in applies.items() if holds}
+        said = (self.code.text(f"lacks_{key}", language, count=n, least=least) for key, n in lacks.items())
+        return tuple(filter(None, said))
 
     @property
     def worse(self) -> tuple[float, ...]:
@@ -562,8 +578,8 @@ class DynamicCheck:
 
     @property
     def capacity(self) -> float:
-        """The displacement that the mean may reach, 0.4 d_0 at the SLV and 0.6 d_0 at the SLC [m]."""
-        return SHARE[self.limit_state] * self.d_0
+        """The displacement that the mean may reach, of NTC 2018 0.4 d_0 at the SLV and 0.6 d_0 at the SLC [m]."""
+        return self.share * self.d_0
 
     @property
     def holds(self) -> bool:
@@ -573,10 +589,10 @@ class DynamicCheck:
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
         """The two conditions."""
-        largest = max(run.d for run in self.runs)
+        largest, clause = max(run.d for run in self.runs), self.rule.clause
         return (
-            Verdict("dynamic, largest run", self.limit_state, largest, self.d_0, "m", "C8.7.1.2.1.9"),
-            Verdict("dynamic, mean of maxima", self.limit_state, self.mean, self.capacity, "m", "C8.7.1.2.1.9"),
+            Verdict("dynamic, largest run", self.limit_state, largest, self.d_0, "m", clause),
+            Verdict("dynamic, mean of maxima", self.limit_state, self.mean, self.capacity, "m", clause),
         )
 
     def table(self, kinematic: MechanismCheck | None = None) -> str:
@@ -615,8 +631,10 @@ def dynamic_check(
     curve: Push | None = None,
     store: str | Path | None = None,
     natural: bool | None = None,
+    code: Code | str = USUAL_CODE,
 ) -> DynamicCheck:
-    """The check of a wall or of masonry by nonlinear dynamic analysis, by Circolare 2019 n. 7, C8.7.1.2.1.9.
+    """The check of a wall or of masonry by nonlinear dynamic analysis, by a code. Clauses that stand here are those of
+    the Italian one, Circolare 2019 n. 7, C8.7.1.2.1.9.
 
     The limit state holds if no run exceeds d_0, and if the mean of the largest displacements is at most 0.4 d_0 at the
     SLV and 0.6 d_0 at the SLC (C8.7.1.2.1.6). d_0 is the displacement of the centroid at which weight, loads and
@@ -636,10 +654,11 @@ def dynamic_check(
     Args:
         runs: responses of one wall or masonry with the same effects, of any solver, or of a wall the `Analysis` tasks
             of a campaign.
-        limit_state: "SLV" or "SLC", whose spectrum the records fit.
+        limit_state: "SLV" or "SLC", or one of another code, whose spectrum the records fit.
         curve: of masonry, its push along the direction that is checked, until nothing is borne any more.
         store: the file of the campaign, for tasks.
         natural: whether the records are natural ones. None if it is not known.
+        code: the name of a code that comes with the package, "NTC 2018", or a `Code`.
 
     Returns:
         The `DynamicCheck`, with `holds` and `table()`.
@@ -651,7 +670,9 @@ def dynamic_check(
     Warns:
         Implausible: for what the clause demands and the runs lack.
     """
-    require_one_of("limit_state", limit_state, SHARE)
+    code = code_of(code)
+    rule = _dynamic_rule(code)
+    require_one_of("limit_state", limit_state, code.states)
     require_kind("natural", natural, bool, type(None))
     require_kind("curve", curve, Push, type(None))
     if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):
@@ -672,10 +693,17 @@ def dynamic_check(
     )
     impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
     known = tuple(e for e in impacts if not math.isnan(e))
-    check = DynamicCheck(limit_state, d_0, found, known, natural)
+    check = DynamicCheck(limit_state, d_0, found, known, natural, code)
     if check.lacking:
-        warn_of(f"C8.7.1.2.1.9 asks for more: {'; '.join(check.lacking)}", Implausible)
+        warn_of(f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}", Implausible)
     return check
+
+
+def _dynamic_rule(code: Code) -> DynamicRule:
+    """What a code demands of dynamic runs; ValueError for one without a check by them."""
+    if code.dynamic is None:
+        raise ValueError(f"code = {code.name} has no check by dynamic runs")
+    return code.dynamic
 
 
 def d_0_of(case: Case) -> float:
