@@ -12,7 +12,7 @@ from record_files import AT2, FORMATS, HEADS, NUMBERS, READ, SAMPLES, body, writ
 NO_NUMBERS = (
         "0.02-05", "0.02E-02-3", "2-5", ".123E-020.456E-02", ".5E", ".5E+", "1.2.3", "0x1p3", "1_5", "1e999",
         "\u0661\u0662", "\uff11", "0.1\u2212", "--.5", "+-.5", "1,5x", "nan", "1.5F-2", "infinity", "0.1.-.2", '"1"',
-        "1\x1a", "1\x0b2", "1\x0c2", "1\x852", "1\u20282", "1\xa02", "1\x1c2", "1\ufeff",
+        "1\x1a2", "1\x0b2", "1\x0c2", "1\x852", "1\u20282", "1\xa02", "1\x1c2", "1\ufeff",
 )  # fmt: skip
 
 
@@ -61,7 +61,7 @@ def test_a_row_does_not_hide_behind_a_control_character(tmp_path):
 
 @FORMATS
 def test_ends_of_lines_and_of_a_dos_file(tmp_path, ending):
-    for end, last in itertools.product(["\n", "\r\n", "\r"], ["", "\x1a"]):
+    for end, last in itertools.product(["\n", "\r\n", "\r"], ["", "\x1a", 90 * "\x1a", "\x1a\r\n\x1a "]):
         text = (HEADS[ending] + body(ending)).replace("\n", end)
         motion = READ[ending](written(tmp_path / f"a.{ending}", text + last))
         expected = (9.81 if ending == "at2" else 1) * np.array(SAMPLES)
@@ -69,10 +69,9 @@ def test_ends_of_lines_and_of_a_dos_file(tmp_path, ending):
 
 
 @FORMATS
-def test_only_the_very_end_may_be_one_of_dos(tmp_path, ending):
-    for end in ("\x1a\n", "\x1a\x1a"):
-        with pytest.raises(ValueError, match=r"line \d+.* '\\x1a"):
-            READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + body(ending) + end))
+def test_what_follows_an_end_of_dos_is_not_hidden(tmp_path, ending):
+    with pytest.raises(ValueError, match=r"line \d+.* '.*\\x1a"):
+        READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + body(ending) + "\x1a\n1\n"))
 
 
 NO_UNITS = (

@@ -107,7 +107,7 @@ def test_three_components_of_geonet(tmp_path):
         (SMC.replace("2 CORRECTED", "1 UNCORRECTED"), "not an SMC file of a record, 2 CORRECTED ACCELEROGRAM"),
         (SMC.replace("  1.0000000E+02", "  1.7000000E+38"), "line 18: samples a second = 1.7e\\+38 Hz is outside"),
         (GEONET.replace("Component", "Part"), "lines 1 to 16 state no STREAM"),
-        ("made up\n\n", "none of the formats PEER AT2, .* SAC, miniSEED; as a table, which from_csv .* 0 rows"),
+        ("made up\n\n", "0 rows .* as a table, as from_csv .* none of the formats PEER AT2, .* SAC, miniSEED"),
     ],
 )
 def test_what_is_refused_names_the_line(text, complaint, tmp_path):

@@ -222,7 +222,8 @@ class TestEsm:
             ({"NDATA": ""}, "the header has no NDATA"),
             ({"SAMPLING_INTERVAL_S": "0.0"}, "line 10: time step dt = 0 s is outside"),
             ({"SAMPLING_INTERVAL_S": "fine"}, "line 10: 'fine' is not a finite number"),
-            ({"UNITS": "cm"}, r"UNITS is 'cm'; the valid ones are cm/s\^2, m/s\^2, g"),
+            ({"UNITS": "counts"}, r"UNITS is 'counts'; the valid ones are cm/s\^2, m/s\^2, g"),
+            ({"UNITS": "cm"}, r"line 14 is 'UNITS: cm': these are displacements, whatever unit is given"),
             ({"DATA_TYPE": "VELOCITY"}, "DATA_TYPE is 'VELOCITY'; the record has to be one of ACCELERATION"),
         ],
     )

@@ -63,3 +63,36 @@ def test_a_damaged_file(tmp_path, obspy):
     written(path, path.read_bytes()[:-2])
     with pytest.raises(ValueError, match=r"a\.sac: ObsPy does not read it"):
         mr.GroundMotion.from_file(path, unit="g")
+
+
+@pytest.mark.parametrize("channel", ["BHE", "HHZ", "EHN", "LL1", "SPZ"])
+def test_a_seismometer_is_named_by_its_channel(channel, tmp_path, obspy):
+    """Its counts are refused. A unit by name says that its response has been removed, and a warning repeats it."""
+    path = tmp_path / "a.mseed"
+    stream(obspy, channel).write(str(path), "MSEED")
+    for read in (mr.GroundMotion.from_file, mr.components_in):
+        with pytest.raises(ValueError, match=rf"a\.mseed: the channel {channel} is of a .*, and its counts are no acc"):
+            read(path, unit=1e-3)
+        with pytest.warns(UserWarning, match=rf"the channel {channel} is of .* are taken as accelerations in mm/s2"):
+            read(path, unit="mm/s2")
+
+
+@pytest.mark.parametrize("channel", ["HNE", "BNZ", "HGN", "E", "", "EW1", "UD2", "ACC"])
+def test_other_channels_are_read_without_a_word(channel, tmp_path, obspy):
+    path = tmp_path / "a.mseed"
+    stream(obspy, channel).write(str(path), "MSEED")
+    assert mr.GroundMotion.from_file(path, unit=1e-3).peak == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(("idep", "said"), [(6, "displacements"), (7, "velocities"), (8, None), (5, "the channel HHE")])
+def test_the_quantity_of_a_sac_file(idep, said, tmp_path, obspy):
+    """Its header says more than its channel."""
+    path, (trace,) = tmp_path / "a.sac", stream(obspy, "HHE")
+    trace.stats.sac = {"idep": idep}
+    trace.write(str(path), "SAC")
+    if said is None:
+        assert mr.GroundMotion.from_file(path, unit=1e-3).peak == pytest.approx(0.5)
+        return
+    for unit in (1e-3, "mm/s2") if idep != 5 else (1e-3,):
+        with pytest.raises(ValueError, match=rf"a\.sac: .*{said}"):
+            mr.GroundMotion.from_file(path, unit=unit)

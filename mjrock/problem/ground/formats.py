@@ -11,11 +11,11 @@ import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...quantities import GRAVITY, Array, require_within
+from ...quantities import GRAVITY, Array, require_within, warn_of
 from .records import (
     ACCELERATION_UNITS,
     AS_ASCII,
@@ -26,6 +26,7 @@ from .records import (
     DECIMAL,
     FINEST,
     SPREADSHEETS,
+    NoRecordError,
     Parse,
     Trace,
     Wanted,
@@ -35,6 +36,7 @@ from .records import (
     in_message,
     numbers,
     parse_table,
+    require_accelerations,
     require_visible,
     samples,
     stated_units,
@@ -86,6 +88,13 @@ SEISMOGRAM = {
     "DATE_TIME_FIRST_SAMPLE": "starttime",
 }  # fmt: skip
 """Fields of the header of a seismogram, as ObsPy names them."""
+SAC_QUANTITIES = {6: "displacements", 7: "velocities", 8: "accelerations"}
+"""What the field IDEP of the header of a SAC file says; 5 is unknown."""
+INSTRUMENTS = {
+    "H": "a seismometer", "L": "a seismometer", "P": "a geophone", "M": "the mass position of a seismometer",
+    "J": "a rotation sensor", "D": "a pressure sensor",
+}  # fmt: skip
+"""Instruments that are no accelerometers, by the second letter of the channel (SEED manual, appendix A)."""
 SMC_HEAD = 27
 """Lines of the header of an SMC file: 11 of text, 6 of whole numbers and 10 of real ones; then its comments."""
 
@@ -95,7 +104,7 @@ def esm_header(lines: Sequence[str]) -> dict[str, str]:
     fields = [ESM_FIELD.fullmatch(line.rstrip()) for line in lines[:ESM_LINES]]
     for place, field in enumerate(fields, 1):
         if field is None:
-            raise ValueError(
+            raise NoRecordError(
                 f"line {place} is {in_message(lines[place - 1])}: not an ESM or ITACA file, whose first {ESM_LINES} "
                 "lines are fields such as STATION_CODE: AMT"
             )
@@ -109,7 +118,8 @@ def parse_esm(lines: list[str]) -> list[Trace]:
         if not head.get(name):
             raise ValueError(f"the header has no {name}; an ESM or ITACA file of accelerations states it")
     if (kind := head.get("DATA_TYPE", "ACCELERATION").upper()) != "ACCELERATION":
-        raise ValueError(f"DATA_TYPE is {in_message(kind)}; the record has to be one of ACCELERATION")
+        raise NoRecordError(f"DATA_TYPE is {in_message(kind)}; the record has to be one of ACCELERATION")
+    require_accelerations({list(head).index("UNITS") + 1: f"UNITS: {head['UNITS']}"})
     if (unit := head["UNITS"].lower()) not in ESM_UNITS:
         raise ValueError(f"UNITS is {in_message(head['UNITS'])}; the valid ones are {', '.join(ESM_UNITS)}")
     if not re.fullmatch(COUNT, head["NDATA"]):
@@ -147,7 +157,7 @@ def parse_at2(lines: list[str]) -> list[Trace]:
     """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g."""
     if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
         instead = f"line 3 is {in_message(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
-        raise ValueError(f"{instead}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
+        raise NoRecordError(f"{instead}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
     head = AT2_HEAD.fullmatch(lines[3]) or AT2_OLD_HEAD.fullmatch(lines[3])
     if head is None:
         raise ValueError(f"line 4 states no NPTS and DT as in NPTS= 4000, DT= .0100 SEC alone: {in_message(lines[3])}")
@@ -161,9 +171,10 @@ def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
         instead = f"line 2 is {in_message(lines[1])}" if len(lines) > 1 else "1 line"
-        raise ValueError(
+        raise NoRecordError(
             f"{instead}: not the plain text of a SAC record: line 2 begins with the number of samples and dt"
         )
+    require_accelerations({1: lines[0]})
     numbers(head[3] or "", 2)  # the other columns are not used
     return [Trace(factor_of(unit) * samples(lines, 2, int(head[1])), step(head[2], 2), {})]
 
@@ -183,7 +194,7 @@ def parse_knet(lines: list[str]) -> list[Trace]:
                     raise ValueError(f"line {place} is {in_message(line)}: not as in a K-NET or KiK-net file")
                 said |= found.groupdict()
     if missing := [name for name, written in KNET.items() if re.findall(r"P<(\w+)>", written)[0] not in said]:
-        raise ValueError(f"the first {KNET_HEAD} lines have no {missing[0]}: not a K-NET or KiK-net file")
+        raise NoRecordError(f"the first {KNET_HEAD} lines have no {missing[0]}: not a K-NET or KiK-net file")
     rate, gal, full = (value_of(said[name]) for name in ("rate", "gal", "counts"))
     require_within("line 11: sampling frequency", rate, 1 / COARSEST, 1 / FINEST, "Hz")
     require_within("line 14: counts of the scale factor", full, 1, 1e12)
@@ -256,7 +267,7 @@ def parse_channels(lines: list[str]) -> list[Trace]:
             dt = _cosmos_step(lines, channel.place)
         found.append(Trace(ACCELERATION_UNITS[units[0]] * channel.values, dt, _channel_header(channel.text)))
     if not found:
-        raise ValueError("no line such as 7500 points of accel data at .010 sec: not a file of CSMIP or COSMOS")
+        raise NoRecordError("no line such as 7500 points of accel data at .010 sec: not a file of CSMIP or COSMOS")
     return found
 
 
@@ -292,7 +303,7 @@ def parse_geonet(lines: list[str]) -> list[Trace]:
     """
     heads = [i for i, line in enumerate(lines) if re.match("(Unc|C)orrected accelerogram .*GNS", line)]
     if heads[:1] != [0]:
-        raise ValueError(f"line 1 is {in_message(lines[0])}: not a GeoNet file, which begins Corrected accelerogram")
+        raise NoRecordError(f"line 1 is {in_message(lines[0])}: not a GeoNet file, which begins Corrected accelerogram")
     return [_geonet_component(lines[:end], first) for first, end in itertools.pairwise([*heads, len(lines)])]
 
 
@@ -323,7 +334,7 @@ def _geonet_component(lines: list[str], first: int) -> Trace:
 def parse_smc(lines: list[str]) -> list[Trace]:
     """The record of an SMC file of the USGS: a corrected accelerogram at a stated rate, in cm/s2."""
     if len(lines) < SMC_HEAD or not re.match(r"\s*2 CORRECTED ACCELEROGRAM", lines[0], AS_ASCII):
-        raise ValueError(f"line 1 is {in_message(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
+        raise NoRecordError(f"line 1 is {in_message(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
     whole, real = all_numbers(lines, 11, 17), all_numbers(lines, 17, SMC_HEAD)
     if len(whole) != 48 or len(real) != 50:
         raise ValueError(f"lines 12 to 27 hold {len(whole)} whole and {len(real)} real numbers; they are 48 and 50")
@@ -350,9 +361,10 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     try:
         stream = obspy.read(str(path))
     except Exception as error:
-        raise ValueError(f"ObsPy does not read it: {in_message(str(error))}") from error
+        kind = NoRecordError if isinstance(error, TypeError) else ValueError  # of none of its formats, or damaged
+        raise kind(f"ObsPy does not read it: {in_message(str(error))}") from error
     if unit is None:
-        raise ValueError(
+        raise NoRecordError(
             f"a file of {stream[0].stats._format} states no unit: give unit=, one of "
             f"{', '.join(ACCELERATION_UNITS)}, or as a number how many m/s2 a count is"
         )
@@ -361,10 +373,31 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
         raise ValueError(f"{broken[0]} has a gap or an overlap: {ids.count(broken[0])} pieces; one is needed")
     traces = []
     for trace in stream:
+        _require_accelerometer(trace.stats, unit)
         said = {name: str(getattr(trace.stats, field)) for name, field in SEISMOGRAM.items()}
         header = {name: value for name, value in said.items() if value}
         traces.append(Trace(factor_of(unit) * np.asarray(trace.data, dtype=float), float(trace.stats.delta), header))
     return traces
+
+
+def _require_accelerometer(stats: Any, unit: str | float) -> None:
+    """Raise a `NoRecordError` for a trace of velocities or displacements, by its SAC header or the code of its channel.
+
+    A unit by name says that the samples of a seismometer have been turned into accelerations. A warning repeats it.
+    """
+    stated = SAC_QUANTITIES.get(int(getattr(stats, "sac", {}).get("idep", 5)))
+    if stated is not None and stated != "accelerations":
+        raise NoRecordError(f"the field IDEP of its SAC header says {stated}; a record of accelerations is needed")
+    code = re.fullmatch(r"[BCDEFGHLMS]([A-Z])[ENZ1-9UVWTR]", stats.channel)
+    if stated is not None or code is None or code[1] not in INSTRUMENTS:
+        return
+    channel = f"the channel {stats.channel} is of {INSTRUMENTS[code[1]]}, as its second letter says"
+    if not isinstance(unit, str):
+        raise NoRecordError(
+            f"{channel}, and its counts are no accelerations. Remove its response to accelerations, and give their "
+            "unit by its name, such as unit='m/s2'"
+        )
+    warn_of(f"{channel}; its samples are taken as accelerations in {unit}, without its response")
 
 
 class Format(NamedTuple):
@@ -418,7 +451,7 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
         return parse_table(lines, Wanted(unit))
     except ValueError as error:
         names = ", ".join(one.name for one in FORMATS)
-        raise ValueError(
-            f"none of the formats {names}, SAC, miniSEED; as a table, which from_csv and components_in read with "
-            f"unit=, dt=, columns= and skip=: {error}"
+        raise type(error)(
+            f"{error}. It was read as a table, as from_csv and components_in do with unit=, dt=, columns= and skip=, "
+            f"since it is none of the formats {names}, SAC, miniSEED"
         ) from error

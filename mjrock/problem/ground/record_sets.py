@@ -18,10 +18,10 @@ from typing import NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, keep, named, require_kind, require_path, require_text, shown, spelt
+from ...quantities import Array, keep, named, require_kind, require_path, require_text, shown, spelt, warn_of
 from .formats import recognised
 from .motion import GroundMotion, motion_of
-from .records import Wanted, read, table_traces
+from .records import NoRecordError, Wanted, read, table_traces
 from .spectrum import SpectrumOfCode, factor_to_spectrum, response_spectrum
 
 VERTICAL = re.compile(r"(?:[A-Z][GHLNJ])?[ZVU]|UP|DO?W?N|VERT?(?:ICAL)?|VRT|U-?D|VT", re.IGNORECASE)
@@ -45,6 +45,7 @@ DIRECTION_IN_NAME = (
 )
 """Where the name of a file states a direction: between characters that are no letters, as a channel, after a number as
 REXEL has it, as three digits at the end, and as up or down at the end."""
+AZIMUTH_AT_END = re.compile(r"\d{3}(?:\.\w*)?")
 SQUARE = 5.0
 """How far two azimuths of a record may be from square to each other [degrees]."""
 IDENTITY = ("NETWORK", "STATION_CODE", "STATION_NAME", "LOCATION", "EVENT_ID", "EVENT_NAME")
@@ -114,8 +115,10 @@ def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     taken = {name for group in groups for name in group.tokens}
     for name, header in headers.items():
         if name not in taken:
-            upright = [token for token, _ in _candidates(name) if re.fullmatch(UPRIGHT_CODES, token)]
-            groups.append(RecordFiles(name, {name: (upright or [header.get("STREAM", "")])[-1]}, "alone"))
+            upright = [token for token, _ in _candidates(name, header) if re.fullmatch(UPRIGHT_CODES, token)]
+            stream = header.get("STREAM", "")
+            token = stream if is_direction(stream) or not upright else upright[-1]
+            groups.append(RecordFiles(name, {name: token}, "alone"))
     return sorted(groups)
 
 
@@ -135,8 +138,8 @@ def _by_header(headers: Mapping[str, Mapping[str, str]]) -> Iterator[RecordFiles
 def _by_names(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     """Files whose names differ in their direction alone, and whose headers do not differ."""
     sets: dict[str, dict[str, str]] = {}
-    for name in headers:
-        for token, key in _candidates(name):
+    for name, header in headers.items():
+        for token, key in _candidates(name, header):
             sets.setdefault(key, {})[name] = token
     same = {key: len({_identity(name, headers[name]) for name in tokens}) == 1 for key, tokens in sets.items()}
     groups = {key: tokens for key, tokens in sets.items() if same[key] and of_one_record(list(tokens.values()))}
@@ -152,11 +155,20 @@ def _identity(name: str, header: Mapping[str, str]) -> tuple[str, ...]:
     return (number[0].upper() if number else "", *(header.get(field, "") for field in IDENTITY))
 
 
-def _candidates(name: str) -> Iterator[tuple[str, str]]:
-    """Directions that the name of a file may have, each with the name that has ? in its place."""
+def _candidates(name: str, header: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Directions that the name of a file may have, each with the name that has ? in its place.
+
+    One that is vertical where the header states a horizontal one, or the other way round, is part of another word. So
+    is what stands before the azimuth at the end, as the station VER in A-VER083.
+    """
+    stream = header.get("STREAM", "")
     for pattern in DIRECTION_IN_NAME:
         for found in pattern.finditer(name):
             token = found[1]
+            if is_direction(stream) and is_vertical(stream) != is_vertical(token):
+                continue
+            if is_vertical(token) and AZIMUTH_AT_END.fullmatch(name[found.end() :]):
+                continue
             first = found.end() - 1 if CHANNEL_CODE.fullmatch(token) else found.start()
             if not token.isdigit() or int(token) <= 360:
                 yield token, f"{name[:first].removesuffix('-')}?{name[found.end() :]}"
@@ -165,7 +177,7 @@ def _candidates(name: str) -> Iterator[tuple[str, str]]:
 def _group(tokens: dict[str, str], by: str) -> RecordFiles:
     """The components of a record in their order, under the name that their files have in common."""
     names = sorted(tokens, key=lambda name: order(tokens[name]))
-    common = [{key for _, key in _candidates(name)} for name in names]
+    common = [{key for _, key in _candidates(name, {"STREAM": tokens[name]})} for name in names]
     shared = sorted(set.intersection(*common))
     return RecordFiles(shared[0] if shared else ", ".join(names), {name: tokens[name] for name in names}, by)
 
@@ -194,12 +206,18 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         """How the components of a record were found to go together: "header", "names" or "one file"."""
         return {}
 
+    @cached_property
+    def skipped(self) -> dict[str, str]:
+        """The files of the folder that hold no record, and why, by their names."""
+        return {}
+
     def __repr__(self) -> str:
         lines = [f"<RecordSet of {len(self)} records>"]
         for name, components in list(self.items())[:MOST_SHOWN]:
             streams = ", ".join(motion.header.get("STREAM") or motion.name for motion in components)
             lines.append(f"  {name}: {streams}{f' (by {self.by[name]})' if name in self.by else ''}")
-        return "\n".join(lines + (["  ..."] if len(self) > MOST_SHOWN else []))
+        lines += ["  ..."] if len(self) > MOST_SHOWN else []
+        return "\n".join([*lines, f"  no records: {named(list(self.skipped))}"] if self.skipped else lines)
 
     def __or__(self, other: Records) -> RecordSet:  # type: ignore[override]
         """The records of both; those of the second where both have one of a name."""
@@ -233,7 +251,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         if alone := [name for name, components in self.items() if not _level(components)]:
             raise ValueError(f"{named(alone)}: no horizontal component; del records[{alone[0]!r}] leaves it out")
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
-        return _found(scaled, self.by)
+        return _found(scaled, self)
 
     def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
         """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
@@ -290,7 +308,8 @@ def records_in(
     otherwise by the names of their files, which differ in E, N, Z, or E, N, U, or NS, EW, UD, or X, Y, Z, or L, T, V,
     or in two azimuths that are square to each other and UP, DWN, VER or V. Headers of different stations or events keep
     files apart, and so do the numbers RSN of PEER. The horizontal components come first, the vertical one last. A file
-    that goes with no other is a record of one component.
+    that goes with no other is a record of one component. Files that hold no record, such as the velocities and lists
+    of a download of PEER, are left out with a warning; one that is damaged is refused.
 
     Args:
         folder: where the files are.
@@ -303,8 +322,11 @@ def records_in(
 
     Raises:
         OSError: if the folder cannot be read.
-        ValueError: for a folder without such files, names that go together in more than one way, or a file that is not
-            what it should be.
+        ValueError: for a folder without records, names that go together in more than one way, or a record that is
+            damaged.
+
+    Warns:
+        UserWarning: of files that hold no record, which `skipped` of the set names.
     """
     folder, pattern = require_path("folder", folder), require_text("pattern", pattern)
     files = {path.name: path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")}
@@ -313,8 +335,7 @@ def records_in(
         raise ValueError(f"{folder} has no file that fits the pattern {spelt(pattern)}")
     found = RecordSet()
     single: dict[str, GroundMotion] = {}
-    for name in names:
-        motions = read(files[name])
+    for name, motions in _read_all({name: files[name] for name in names}, read, found.skipped).items():
         if isinstance(motions, GroundMotion) or len(motions) == 1:
             single[name] = motions if isinstance(motions, GroundMotion) else motions[0]
         elif of_one_record([motion.header.get("STREAM", "") for motion in motions]):
@@ -325,7 +346,31 @@ def records_in(
         unused = key if key not in found else next(iter(tokens))
         found[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
         found.by |= {unused: by} if len(tokens) > 1 else {}
-    return _found(dict(sorted(found.items())), found.by)
+    return _found(dict(sorted(found.items())), found)
+
+
+def _read_all(
+    files: Mapping[str, Path],
+    read: Callable[[Path], GroundMotion | Sequence[GroundMotion]],
+    skipped: dict[str, str],
+) -> dict[str, GroundMotion | Sequence[GroundMotion]]:
+    """What is read from each file by its name. Those that hold no record are named in `skipped`, with a warning; a
+    `NoRecordError` is raised where none holds one."""
+    found = {}
+    for name, path in files.items():
+        try:
+            found[name] = read(path)
+        except NoRecordError as error:
+            if len(skipped) + 1 == len(files):
+                raise
+            skipped[name] = str(error).removeprefix(f"{path}: ")
+    if skipped:
+        first = next(iter(skipped))
+        warn_of(
+            f"{len(skipped)} of {len(files)} files hold no record and are left out: {named(list(skipped))}; {first}: "
+            f"{skipped[first]}; pattern= takes others, and .skipped has each reason"
+        )
+    return found
 
 
 def _directed(motion: GroundMotion, token: str) -> GroundMotion:
@@ -342,16 +387,19 @@ def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
     return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
 
 
-def _found(records: Records, by: Mapping[str, str]) -> RecordSet:
-    """A set, and how the components of its records were found to go together."""
+def _found(records: Records, *origins: Records) -> RecordSet:
+    """A set, with what the sets that it is made of know of their files."""
     made = RecordSet(records)
-    made.by.update(by)
+    for origin in origins:
+        if isinstance(origin, RecordSet):
+            made.by.update(origin.by)
+            made.skipped.update(origin.skipped)
     return made
 
 
 def _joined(one: Records, other: Records) -> RecordSet:
     """The records of two sets; those of the second where both have one of a name."""
-    return _found({**one, **other}, {**getattr(one, "by", {}), **getattr(other, "by", {})})
+    return _found({**one, **other}, one, other)
 
 
 def scaled_together(

@@ -51,6 +51,29 @@ STATED_UNITS = {
     "g": re.compile(r"\( ?g ?\)|\[ ?g ?\]|(?<![a-z])(?:in|units?)(?: of| ?[:=]| in)* ?g(?![a-z/])", AS_ASCII),
 }
 """How files write the units of an acceleration; blanks in a row count as one."""
+LENGTH = r"(?:mm|cm|m|in|ft|inch(?:es)?)"
+UNIT_NAMED = r"(?:[(\[] ?|(?<![a-z])(?:in |units?(?: of| ?[:=]| in)*) ?)"
+QUANTITIES = {
+    "accelerations": re.compile(
+        r"(?<![a-z])(?:acc(?:el)?s?|acc?[e\xe9]l[e\xe9]ra\w*|accelerogram\w*|beschleunigung\w*)(?![a-z])", re.IGNORECASE
+    ),
+    "velocities": re.compile(
+        r"(?<![a-z])(?:vel(?:oc(?:it(?:y|ies|\xe0))?|ocidad(?:es)?)?|vitesses?|geschwindigkeit\w*)(?![a-z])|"
+        rf"{UNIT_NAMED}(?:kine|{LENGTH} ?(?:/ ?s(?:ec)?|s\^?-1))(?![a-z0-9/.^*\xb2]| ?[/^*-]| ?[2\xb2])",
+        re.IGNORECASE,
+    ),
+    "displacements": re.compile(
+        r"(?<![a-z])(?:disp(?:l(?:acements?)?)?|desplazamientos?|spostament[io]|d\xe9placements?|verschiebung\w*)"
+        rf"(?![a-z])|{UNIT_NAMED}{LENGTH}(?: ?[)\]]|$)",
+        re.IGNORECASE,
+    ),
+}
+"""How headers name what their samples are: by the quantity, or by its unit."""
+NO_QUANTITY = re.compile(
+    r"\b(?:peak|max\w*|largest|residual|final|initial|shear|wave|pg[avd]|vs ?,?30)\b|\bvs30|height|depth|dist|elev",
+    re.IGNORECASE,
+)
+"""What stands in lines of a header with a velocity or length that is none of the samples."""
 
 
 BINARY = "a binary file or one in UTF-16"
@@ -96,26 +119,55 @@ def read(path: str | PathLike[str], traces: Callable[[Path], list[Trace]]) -> li
         with np.errstate(over="ignore"):  # a number that is too large in m/s2 is named
             return [Trace(*checked_record(trace.accel, trace.dt), trace.header) for trace in traces(require_file(path))]
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+        raise (NoRecordError if isinstance(error, NoRecordError) else ValueError)(f"{path}: {error}") from error
 
 
 def text_lines(path: Path) -> list[str]:
     """The lines of a text file in UTF-8 or Latin-1.
 
-    CR, LF and CR LF end a line, and so does CR CR LF, which a transfer in text mode leaves. A last ^Z of DOS is
-    dropped.
+    CR, LF and CR LF end a line, and so does CR CR LF, which a transfer in text mode leaves. The ^Z of DOS that fill
+    the end are dropped.
     """
     data = path.read_bytes()
     if kind := binary_kind(data):
-        raise ValueError(f"{kind}; a text of accelerations in UTF-8 or Latin-1 is needed")
+        raise NoRecordError(f"{kind}; a text of accelerations in UTF-8 or Latin-1 is needed")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
-    text = text.removesuffix("\x1a")
+    if "\x1a" in text[len(whole := text.rstrip(" \t\r\n\x1a")) :]:
+        text = whole
     if not text.strip():
-        raise ValueError("an empty file; a text of accelerations is needed")
+        raise NoRecordError("an empty file; a text of accelerations is needed")
     return re.split(r"\r\r?\n|\r|\n", text)
+
+
+class NoRecordError(ValueError):
+    """A file that holds no record of accelerations, or does not state what its reader has to know of it."""
+
+
+def quantities(text: str) -> list[str]:
+    """The quantities that a text names: accelerations, velocities or displacements."""
+    plain = " ".join(text.split())
+    found = [name for name, written in QUANTITIES.items() if written.search(plain)]
+    return ["accelerations", *found] if stated_units(plain) and "accelerations" not in found else found
+
+
+def require_accelerations(head: Mapping[int, str], name: str = "") -> None:
+    """Raise a `NoRecordError` where a header, or the name of a column, names velocities or displacements.
+
+    The name of the column counts first. Of the lines of the header the last one that names a single quantity counts.
+
+    Args:
+        head: lines of the header, by their number.
+        name: that of the column.
+    """
+    lines = {place: line[:HEADER_LINE] for place, line in head.items() if not NO_QUANTITY.search(line[:HEADER_LINE])}
+    named_so = [(quantities(name), f"the name of the column is {in_message(name)}")]
+    named_so += [(quantities(line), f"line {i} is {in_message(line.strip())}") for i, line in reversed(lines.items())]
+    found, where = next(((found[0], where) for found, where in named_so if len(found) == 1), ("accelerations", ""))
+    if found != "accelerations":
+        raise NoRecordError(f"{where}: these are {found}, whatever unit is given; a record of accelerations is needed")
 
 
 def require_visible(line: str, place: int) -> None:
@@ -305,9 +357,13 @@ class RecordTable:
         """The numbers of a column, shape (rows,)."""
         return np.array([row[number_of] for row in self.values])
 
+    def name(self, number_of: int) -> str:
+        """The name of a column, empty where the header has none."""
+        return self.names[number_of] if number_of < len(self.names) else ""
+
     def bare(self, number_of: int) -> str:
         """The name of a column without what stands there in brackets."""
-        return re.split(r"[(\[]", self.names[number_of])[0].strip() if self.names else ""
+        return re.split(r"[(\[]", self.name(number_of))[0].strip()
 
     def says(self, line: int = 0) -> str:
         """A row, by the number of its line and its words."""
@@ -365,15 +421,28 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
     scale = TIME_UNITS[require_one_of("time_unit", wanted.time_unit, TIME_UNITS)]
     if wanted.unit is not None:
         factor_of(wanted.unit)
-    dt = wanted.dt
-    if dt is not None:
-        dt = scale * require_within("dt", dt, FINEST / scale, COARSEST / scale, wanted.time_unit)
+    if wanted.dt is not None:
+        dt = scale * require_within("dt", wanted.dt, FINEST / scale, COARSEST / scale, wanted.time_unit)
+        wanted = wanted._replace(dt=dt)
+    if lines[0].lstrip()[:1] in ("{", "["):
+        raise NoRecordError("it is JSON; a text of accelerations in columns or rows is needed")
     found = _table_of(lines, wanted.skip)
     if len(found.values) < 2:
-        raise ValueError(
+        raise NoRecordError(
             f"{len(found.values)} rows of numbers in {len(lines)} lines, the first of them {in_message(lines[0])}; at "
             "least 2 rows are needed, of time and acceleration or with dt of accelerations alone"
         )
+    try:
+        return _traces_of(found, wanted, scale)
+    except ValueError as error:
+        if not isinstance(error, NoRecordError):
+            require_accelerations(found.head)
+        raise
+
+
+def _traces_of(found: RecordTable, wanted: Wanted, scale: float) -> list[Trace]:
+    """The accelerations of a table, with the step of `wanted` in s, and the length of a unit of time [s]."""
+    dt = wanted.dt
     stated, scaled = found.stated(HEAD_STEP, HEAD_RATE), found.stated(HEAD_SCALE)
     if scaled and scaled.value != 1:
         raise ValueError(
@@ -388,13 +457,16 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
     if stated:
         _agree("dt, which was given,", dt, stated)
         dt = stated.value if dt is None and not timed else dt
-    if wanted.columns == ROWS or (wanted.columns is None and dt is not None and not timed and _in_rows(found)):
+    in_rows = wanted.columns == ROWS or (wanted.columns is None and dt is not None and not timed and _in_rows(found))
+    if in_rows:
         if dt is None:
-            raise ValueError("samples in rows need their time step: give dt")
+            raise NoRecordError("samples in rows need their time step: give dt")
         columns = {0: np.array([x for row in found.values for x in row])}
     else:
         columns, dt = _columns_of(found, wanted, dt)
         _agree("the step of the times", dt, stated)
+    for i in columns:
+        require_accelerations(found.head, "" if in_rows else found.name(i))
     count = found.stated(HEAD_COUNT)
     if count and count.value != (n := len(next(iter(columns.values())))):
         raise ValueError(f"{n} samples; the header states {count.value:g} in line {count.place}; skip= leaves it out")
@@ -423,7 +495,9 @@ def _table_of(lines: Sequence[str], skip: int | None) -> RecordTable:
         try:
             rows.append([number(word, place) for word in words_of])
         except ValueError as error:
-            raise ValueError(f"{error}; skip={place} leaves out what is above" if not rows else str(error)) from error
+            require_accelerations(head | {place: line})
+            kind = NoRecordError if PROSE.search(line) else ValueError
+            raise kind(f"{error}; skip={place} leaves out what is above" if not rows else str(error)) from error
         decimals = max(decimals, len(words_of[0].partition(".")[2]))
     return RecordTable({} if skip is not None else head, _names(list(head.values()), rows), rows, list(texts), decimals)
 
@@ -526,10 +600,10 @@ def _columns_of(found: RecordTable, wanted: Wanted, dt: float | None) -> tuple[d
     timed = len(picked) > 1 and (dt is None or grid)
     if wanted.columns is None and (len(picked) > 2 or (len(picked) == 2 and not timed)):
         rows = "" if grid else f", or {'' if dt else 'dt= and '}columns='rows' for samples in rows"
-        raise ValueError(f"line {found.places[0]} has {found.choice(timed)}{rows}")
+        raise NoRecordError(f"line {found.places[0]} has {found.choice(timed)}{rows}")
     if not timed:
         if dt is None:
-            raise ValueError(f"line {found.places[0]} has one column of accelerations; give its time step dt")
+            raise NoRecordError(f"line {found.places[0]} has one column of accelerations; give its time step dt")
         return {i: found.column(i) for i in picked}, dt
     if len(picked) < 2:
         raise ValueError("a column of accelerations is needed beside the one of times")
@@ -620,14 +694,14 @@ def _in_rows(found: RecordTable) -> bool:
 
 def _factor(found: RecordTable, unit: str | float | None, column: int) -> float:
     """The unit of a column [m/s2], held against that of its name, or against the only one that the header names."""
-    name = found.names[column] if column < len(found.names) else ""
+    name = found.name(column)
     of_name = stated_units(name)
     of_head = {unit: place for place, line in found.head.items() for unit in stated_units(line[:HEADER_LINE])}
     stated = of_name or list(of_head)
     if unit is None:
         if len(stated) != 1:
             said = " and ".join(stated) or "no unit"
-            raise ValueError(f"the header names {said}; give unit=, one of {', '.join(ACCELERATION_UNITS)}")
+            raise NoRecordError(f"the header names {said}; give unit=, one of {', '.join(ACCELERATION_UNITS)}")
         return ACCELERATION_UNITS[stated[0]]
     if isinstance(unit, str) and found.head and len(stated) == 1 and stated != [unit]:
         where = f"the name {in_message(name)} of the column" if of_name else f"line {of_head[stated[0]]}"
