@@ -124,6 +124,13 @@ def share_said(share: float) -> str:
     return f"{(max(up, 101) if share > 1 else up) / 100:.2f}"
 
 
+def percent_said(share: float) -> str:
+    """A part of a whole in percent: only all of it reads as 100%, and only nothing as 0%."""
+    if 0 < share < 0.01:
+        return "<1%"
+    return ">99%" if 0.99 < share < 1 else f"{share:.0%}"
+
+
 def require_real(name: str, value: object) -> float:
     """Return `value` as a float.
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from string import Template
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..files import write_text
 from ..geometry.parts import creases_of
@@ -240,14 +241,20 @@ class Page:
 
     def _track(self) -> Iterator[Json]:
         """Lines of the accelerations of the ground, the displacements of supports, and the tilt of a table."""
-        t = np.linspace(self.t[0], self.t[-1], POINTS)
         for name, motion in self.case.grounds.items():
-            yield _line(f"acceleration of the ground {GROUNDS[name]}", "m/s²", motion(t))
+            moved = motion(self._instants(motion.times))
+            yield _line(f"acceleration of the ground {GROUNDS[name]}", "m/s²", moved)
         for support in self.case.supports:
-            moved = support.at(t)
+            moved = support.at(self._instants(support.t))
             yield _line(f"displacement of {support.block}", "m", moved[:, int(np.abs(moved).max(axis=0).argmax())])
         if self.case.tilt is not None:
-            yield _line("tilt of the table", "rad", np.interp(t, *self.case.tilt))
+            t, angle = self.case.tilt
+            yield _line("tilt of the table", "rad", np.interp(self._instants(t), t, angle))
+
+    def _instants(self, given: ArrayLike) -> Array:
+        """Times of the points of a line, and then those given within the run [s]."""
+        times, start, end = np.asarray(given), float(self.t[0]), float(self.t[-1])
+        return np.append(np.linspace(start, end, POINTS), times[(start <= times) & (times <= end)])
 
 
 def _by_row(values: Array) -> Array:
@@ -256,9 +263,10 @@ def _by_row(values: Array) -> Array:
 
 
 def _line(name: str, unit: str, values: Array) -> Json:
-    """A line of what the ground does, over its peak."""
+    """A line of what the ground does, over its peak, which may lie between the points of the line. Its values are those
+    at `_instants`."""
     peak = float(np.abs(values).max())
-    return {"name": name, "unit": unit, "peak": peak, "values": np.round(values / (peak or 1.0), 3).tolist()}
+    return {"name": name, "unit": unit, "peak": peak, "values": np.round(values[:POINTS] / (peak or 1.0), 3).tolist()}
 
 
 def outline_of(joint: Joint | SpaceJoint) -> Array:

@@ -1,6 +1,7 @@
 """What newcomers read first names commands, files and versions that there are."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -29,3 +30,15 @@ def test_the_workflows_and_forms_are_yaml():
         assert yaml.safe_load(path.read_text(encoding="utf-8")), path
     tests = yaml.safe_load((ROOT / ".github/workflows/tests.yml").read_text(encoding="utf-8"))
     assert tests["jobs"]["everyday"]["strategy"]["matrix"]["python"][0] == "3.11"
+
+
+def test_the_extra_of_the_pages_brings_every_lexer_that_they_name():
+    """`pip install '.[docs]'` alone builds the site: the lexer of each block is Pygments' own or of a package named."""
+    lexers = pytest.importorskip("pygments.lexers")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    named = {re.split(r"[><=\[]", one)[0].replace("-", "_") for one in project["optional-dependencies"]["docs"]}
+    pages = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "docs").rglob("*.md"))
+    languages = set(re.findall(r"^```([a-z]\w*)$", pages, re.MULTILINE))
+    assert {"python", "ipython"} <= languages
+    for language in languages:
+        assert type(lexers.get_lexer_by_name(language)).__module__.split(".")[0] in {"pygments", *named}, language

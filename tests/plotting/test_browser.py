@@ -216,6 +216,18 @@ def test_the_track_shows_what_the_ground_the_supports_and_the_table_do(slid, tmp
     assert (line["name"], line["unit"], line["peak"]) == ("tilt of the table", "rad", 0.01)
 
 
+@pytest.mark.parametrize("length", [4.0, 40.0])
+def test_the_peak_of_the_ground_is_that_of_the_record_within_the_run(length, tmp_path):
+    """A spike of one sample between the points of the line, and a larger one after the end of the run."""
+    accel = np.zeros(20001)
+    accel[7123], accel[-1] = -2.0, 5.0
+    motion = mr.GroundMotion(accel, length / 16000)
+    wall = mr.Block.from_size(thickness=0.6, height=4.2)
+    answer = mr.solve_analytical(mr.Case(wall, 0.0, length, motion=motion), mr.Restitution.from_geometry(wall))
+    (line,) = run_of(plotting.view(answer, tmp_path / "w.html"))["track"]
+    assert line["peak"] == 2.0
+
+
 def test_a_wall_of_one_block_has_a_page(tmp_path):
     wall = mr.Block.from_size(thickness=0.6, height=4.2)
     answer = mr.solve_analytical(mr.Case(wall, 0.5 * wall.alpha, 1.0), mr.Restitution.from_geometry(wall))

@@ -112,7 +112,7 @@ class GroundMotion:
 
     def __call__(self, t: float | Array) -> Array:
         """Acceleration at any time [m/s2]."""
-        return np.asarray(np.interp(_instants(t), self._times, self.accel, left=0.0, right=0.0))
+        return np.asarray(np.interp(_instants(t), self.times, self.accel, left=0.0, right=0.0))
 
     def velocity(self, t: ArrayLike) -> Array:
         """Integral of the acceleration from zero to any time, exact, constant after the last sample [m/s]."""
@@ -124,7 +124,8 @@ class GroundMotion:
         return np.asarray(self.velocities[j] + self.dt * parts * means)
 
     @cached_property
-    def _times(self) -> Array:
+    def times(self) -> Array:
+        """Times of the samples [s], shape (n,)."""
         return self.dt * np.arange(len(self.accel), dtype=float)
 
     @cached_property
@@ -244,7 +245,7 @@ class GroundMotion:
         if new > self.dt:
             low_pass = scipy.signal.butter(8, 0.7 * self.dt / new, output="sos")
             accel = scipy.signal.sosfiltfilt(low_pass, accel, padlen=min(last, math.ceil(10 * new / self.dt)))
-        return GroundMotion(np.interp(new * np.arange(steps + 1), self._times, accel), new, name, self.header)
+        return GroundMotion(np.interp(new * np.arange(steps + 1), self.times, accel), new, name, self.header)
 
     def corrected(self, baseline: str | None = None, band: Sequence[float | None] | None = None) -> GroundMotion:
         """The motion without a baseline and within a band of frequencies, as long as before.

@@ -67,7 +67,12 @@ def building_modes(
         TypeError, ValueError: for a value outside its range, or shapes that differ.
     """
     periods = one_or_row("period", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
-    gammas, shapes = one_or_row("participation", participation, -3.0, 3.0), one_or_row("height", height, -1.0, 1.0)
+    gammas = one_or_row("participation", participation, -3.0, 3.0)
+    try:
+        shapes = one_or_row("height", height, -1.0, 1.0)
+    except ValueError as error:
+        meant = "it is a share, the shape of a mode at the floor over that at the top; z / H for a straight first mode"
+        raise ValueError(f"{error}; {meant}") from None
     if not len(periods) == len(gammas) == len(shapes):
         raise ValueError(
             f"period has {len(periods)} values, participation {len(gammas)} and height {len(shapes)}; "

@@ -72,6 +72,8 @@ SITE_EC8 = {
 given for type 1 alone."""
 FIRM = 10.0
 """T_F, beyond which the displacement is that of the ground [s]."""
+PLATEAU_FROM, PLATEAU_TO = 0.8, 1.1
+"""a and b, the periods between which a mode amplifies most, over its own [-], Circolare 2019 n. 7, C7.2.3."""
 PROBABLY_IN_G = 0.35
 """a_g below which it was probably given in g [m/s2]."""
 
@@ -149,16 +151,19 @@ class CodeSpectrum:
 
 @dataclass(frozen=True, eq=False)
 class FloorSpectrum:
-    """The elastic spectrum on a floor, Circolare 2019 n. 7, C8.7.1.2.1.4. Called with T and xi it gives S_eZ [m/s2].
+    """The elastic spectrum on a floor, Circolare 2019 n. 7, C7.2.3. Called with T and xi it gives S_eZ [m/s2].
 
-    Each mode amplifies oscillators of periods near its own. The squares of its spectra and of that of the ground are
-    added. An oscillator of a longer period than the first mode has at least the spectrum of the ground.
+    Each mode amplifies oscillators of periods near its own (equation C7.2.6). S_eZ is the root of the sum of the
+    squares over the modes, and beyond the period T_1 of the first mode at least the spectrum of the ground (C7.2.5).
 
     Args:
         ground: spectrum on the ground.
         period: of the modes T_k [s], shape (k,).
         damping: of the building xi_k [-].
         motion: gamma_k psi_k of each mode [-], shape (k,).
+
+    Warns:
+        Implausible: for a floor that is accelerated less than the ground, of which C7.2.5 takes nothing up to T_1.
     """
 
     ground: CodeSpectrum | PointSpectrum
@@ -168,28 +173,42 @@ class FloorSpectrum:
 
     __repr__ = short_repr
 
+    def __post_init__(self) -> None:
+        if self.peak < self.ground.peak:
+            warn_of(
+                f"the floor has a peak of {self.peak:.3g} m/s2 and the ground one of {self.ground.peak:.3g} m/s2: up "
+                "to T_1 C7.2.5 takes the modes alone; give more modes, or check the mechanism on the ground too",
+                Implausible,
+            )
+
+    @property
+    def first(self) -> float:
+        """Period T_1 of the first mode [s]."""
+        return float(self.period.max())
+
     def __call__(self, T: ArrayLike, damping: float | None = None) -> Array:
-        """S_eZ at the periods T [s], 0 to 100 [m/s2]."""
+        """S_eZ at the periods T [s], 0 to 100 [m/s2], equation C7.2.5."""
         T, xi = periods_of(T), self.ground.damping if damping is None else damping
-        on_ground = self.ground(T, xi)
         # xi_k counts as a fraction here, 4.9 at 5 %, as an oscillator on another in resonance has it; in the root in %
         top = 1.1 / math.sqrt(self.damping) * damping_correction(xi)
-        square = on_ground**2
+        square = np.zeros(T.shape)
         for Tk, motion in zip(self.period.tolist(), self.motion.tolist(), strict=True):
             floor = self.ground(Tk, self.damping) * abs(motion) * math.sqrt(1 + 4 * self.damping**2)
-            shorter = np.clip(1 - T / (0.8 * Tk), 0.0, None) ** 1.6
-            longer = np.clip(T / (1.1 * Tk) - 1, 0.0, None) ** 1.2
+            shorter = np.clip(1 - T / (PLATEAU_FROM * Tk), 0.0, None) ** 1.6
+            longer = np.clip(T / (PLATEAU_TO * Tk) - 1, 0.0, None) ** 1.2
             square = square + (top * floor / (1 + (top - 1) * (shorter + longer))) ** 2
-        return np.where(float(self.period.max()) < T, np.maximum(np.sqrt(square), on_ground), np.sqrt(square))
+        return np.maximum(np.sqrt(square), np.where(self.first < T, self.ground(T, xi), 0.0))
 
     def displacement(self, T: ArrayLike, damping: float | None = None) -> Array:
-        """S_DeZ at the periods T [s], S_eZ (T/2 pi)^2, at least that of the ground beyond the first mode [m]."""
-        T = periods_of(T)
-        return np.asarray(self(T, damping) * (T / (2 * math.pi)) ** 2)
+        """S_DeZ at the periods T [s], S_eZ (T/2 pi)^2 [m]; beyond b T_1 at least S_eZ(T_1) (b T_1/2 pi)^2, equation
+        C8.7.1.12."""
+        T, edge = periods_of(T), PLATEAU_TO * self.first
+        least = self(self.first, damping) * (edge / (2 * math.pi)) ** 2
+        return np.maximum(self(T, damping) * (T / (2 * math.pi)) ** 2, np.where(edge < T, least, 0.0))
 
     @property
     def peak(self) -> float:
-        """Peak acceleration of the floor, S_eZ at T = 0 [m/s2]."""
+        """Peak acceleration of the floor a_Z, S_eZ at T = 0 [m/s2], equation C7.2.8."""
         return float(self(0.0))
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...quantities import GRAVITY, Implausible, warn_of
+from ...quantities import GRAVITY, Implausible, percent_said, warn_of
 from ..ground.motion import GroundMotion
 from .effect import Anchored, Effect, resistance
 from .effects import AddedMass, Load, Thrust
@@ -124,7 +124,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
         if kept < (1 - CUT_OFF) * total:
             found.append(
                 f"the run of {duration:g} s ends before the record of {motion.duration:g} s, and leaves out "
-                f"{1 - kept / total:.0%} of its Arias intensity"
+                f"{percent_said(1 - kept / total)} of its Arias intensity"
             )
     return found
 

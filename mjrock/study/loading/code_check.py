@@ -32,6 +32,7 @@ from ...quantities import (
     Array,
     Implausible,
     is_iterable,
+    percent_said,
     ratio_said,
     require_kind,
     require_one_of,
@@ -747,8 +748,8 @@ def _require_whole(curve: Push) -> None:
         raise ValueError("curve is that of an Actuator; push along a direction, which moves all blocks")
     if math.isnan(curve.d_0):
         raise ValueError(
-            f"curve ends at {curve.displacement[-1]:.4g} m, where {curve.force[-1] / curve.peak:.0%} of its peak is "
-            "borne; push on until nothing is"
+            f"curve ends at {curve.displacement[-1]:.4g} m, where {percent_said(curve.force[-1] / curve.peak)} of its "
+            "peak is borne; push on until nothing is"
         )
 
 
