@@ -22,6 +22,8 @@ HINGE = (("x", "slide", "1 0 0"), ("z", "slide", "0 0 1"), ("theta", "hinge", "0
 
 PLATE = 4.0
 """How far the plate of a face reaches from the middle of its joint, over the largest extent of the bodies [-]."""
+SMALLEST_SLAB = 0.05
+"""Half the length of the slab that is seen behind a face that one point meets, over the extent of the bodies [-]."""
 LEAST_MOMENT = 1e-14
 """Smallest principal moment of a tensor of inertia that MuJoCo takes [kg m2]."""
 
@@ -159,7 +161,8 @@ def _slab(scene: Scene, name: str, i: int, at: tuple[float, ...]) -> Iterator[st
     met = np.array([face == name for face in scene.contacts.face_names])
     along = (scene.bodies.rest[scene.contacts.body] + scene.contacts.at)[met] - scene.contacts.face_at[i]
     places = along @ np.array([nz, -nx])
-    half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())
+    half = max(0.5 * float(np.ptp(places)), SMALLEST_SLAB * scene.bodies.extent)
+    middle = 0.5 * float(places.max() + places.min())
     x, z = x + middle * nz, z - middle * nx
     size, axis = (half, 0.6 * scene.bodies.length, 1.0), (nx, 0.0, nz)
     yield "  " + tag("geom", name=name, type="plane", size=size, pos=at, zaxis=axis, group="3")

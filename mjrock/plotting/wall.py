@@ -52,7 +52,8 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     )
     ax.plot([left, right], [0, 0], color="0.15", linewidth=1.0, zorder=1)
     if case.stop_top is not None:
-        stop = Rectangle((-wall.b - 0.09 * height, 0), 0.09 * height, case.stop_top)
+        face, back = case.standing.met_by_stop, -wall.b - 0.09 * height
+        stop = Polygon(np.vstack([(back, 0.0), face, (back, case.stop_top)]))
         stop.set(facecolor=GROUND_COLOUR, edgecolor="0.4", hatch="////", linewidth=0.8, zorder=1)
         ax.add_patch(stop)
     toes = (1.0,) if case.one_sided else (1.0, -1.0)
@@ -76,10 +77,9 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
 def _openings(ax: Axes, case: Case, moving: Moving) -> Update:
     """Sill and head of each opening as dashed lines through the thickness."""
     wall = case.block
-    profile = wall.profile or ((0.0, 2 * wall.b), (2 * wall.h, 2 * wall.b))
     heights = sorted({z for opening in wall.openings for z in (opening.sill, opening.head) if z > 0})
-    outer = np.interp(heights, *np.transpose(profile)) - wall.b
-    places = [moving.placed(0, np.array([(-wall.b, z), (x, z)])) for x, z in zip(outer, heights, strict=True)]
+    ends = zip(*wall.section.faces(np.array(heights)), heights, strict=True)
+    places = [moving.placed(0, np.array([(inner, z), (outer, z)])) for inner, outer, z in ends]
     look: Look = {"color": "0.35", "linewidth": 0.9, "linestyle": "--", "zorder": 3, "animated": True}
     lines = [line for _ in heights for line in ax.plot([], [], **look)]
 
@@ -254,7 +254,7 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
 
 def _effects(case: Case, *, arguments: bool) -> list[Note]:
     """The place of each effect in the section, and a note on it."""
-    face, said, made = -case.block.b, dict[Effect, str](), []
+    said, made = dict[Effect, str](), []
     _, breaking = case.limits_of_ties(np.linspace(0.0, case.overturning_rotation, POINTS))
     for name, effect in case.named.items():
         if not effect.mass_added:
@@ -266,12 +266,12 @@ def _effects(case: Case, *, arguments: bool) -> list[Note]:
         if name in breaking and not arguments:
             moved = float(case.wall.pose(np.array([breaking[name]]))[0, 0])
             note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"
-        place = (face if effect.on_face else effect.offset, effect.height)
+        place = (case.block.inner_face(effect.height) if effect.on_face else effect.offset, effect.height)
         if len(corners := effect.outline):
             place = (float(corners[:, 0].mean()), float(corners[:, 1].mean()))
         made.append((place, note))
     if arguments and case.stop_top is not None:
-        made.append(((face - 0.05, case.stop_top), "SideStop(top)"))
+        made.append(((case.block.inner_face(case.stop_top) - 0.05, case.stop_top), "SideStop(top)"))
     return made
 
 

@@ -43,10 +43,10 @@ class Wall:
         self.base, self.up, off = contacts.base, wall.centroid_height, wall.centroid_offset
         self.edges = wall.half_base - off, -wall.half_base - off
         self.at = self.base.positions - off
-        self.face = wall.b + off
         self.side = None if case.stop_top is None else contacts.side_up_to(case.stop_top)
         if self.side is not None:
             self.heights = self.side.positions + 0.5 * float(case.stop_top or 0.0) - self.up
+            self.face = np.array([self._face(height) for height in self.heights])
         self.forces = [
             (effect.offset - off, effect.height - self.up, force[0], force[2])
             for effect, force in constant_forces_of(case.effects).values()
@@ -62,14 +62,18 @@ class Wall:
         for name, (_, link), (elongation, _) in placed:
             self.sliders[name] = Slider(link.law, float(elongation), start=float(elongation))
 
+    def _face(self, height: float) -> float:
+        """How far the inner face lies behind the centroid, at a height above it [m]."""
+        return self.case.wall.centroid_offset - self.case.wall.inner_face(height + self.up)
+
     def elongations(self, y: Array) -> list[tuple[Array, Array]]:
         """Elongations of the friction dampers from the length drawn [m], and their rates [m/s]."""
         x, z, theta, vx, vz, omega = y
         found = []
         for height, link in self.slipping:
             longer, across, up = self._pulled(height, link, x, z, theta)
-            px = height * np.cos(theta) + self.face * np.sin(theta)
-            pz = self.face * np.cos(theta) - height * np.sin(theta)
+            px = height * np.cos(theta) + self._face(height) * np.sin(theta)
+            pz = self._face(height) * np.cos(theta) - height * np.sin(theta)
             found.append((longer, across * (vx + omega * px) + up * (vz + omega * pz)))
         return found
 
@@ -162,15 +166,16 @@ class Wall:
 
     def _pulled(self, height: float, tie: Anchored, x: Real, z: Real, theta: Real) -> tuple[Real, Real, Real]:
         """Elongation of a tie beyond its slack [m], and its direction from the anchor to the wall."""
-        across = tie.length + x + self.face * (1 - np.cos(theta)) + height * np.sin(theta)
-        up = z + self.face * np.sin(theta) - height * (1 - np.cos(theta)) - tie.rise
+        face = self._face(height)
+        across = tie.length + x + face * (1 - np.cos(theta)) + height * np.sin(theta)
+        up = z + face * np.sin(theta) - height * (1 - np.cos(theta)) - tie.rise
         length = np.hypot(across, up)
         return length - tie.law.reach, across / length, up / length
 
     def _damped(self, damper: Anchored, y: Array) -> tuple[float, float, float, float]:
         """Point of a damper from the centroid at rest [m], and its force on the wall [N], x before z each."""
         x, z, theta, vx, vz, omega = y
-        px, pz = -self.face, damper.height - self.up
+        px, pz = -self._face(damper.height - self.up), damper.height - self.up
         sine, cosine = math.sin(theta), math.cos(theta)
         across = damper.length + x + px * (cosine - 1) + pz * sine
         above = z - px * sine + pz * (cosine - 1)
@@ -215,7 +220,7 @@ class Wall:
             push = -(self.side.stiffness * gap + self.side.damping * (vx + omega * height))
             push = np.where(gap < 0, np.maximum(push, 0), 0)
             Fx, moment = float(push.sum()), moment + float(push @ height)
-        pulls = [(-self.face, height, *self._pulled(height, tie, x, z, theta), tie) for height, tie in self.ties]
+        pulls = [(-self._face(at), at, *self._pulled(at, tie, x, z, theta), tie) for at, tie in self.ties]
         applied = self.forces + [
             (px, pz, -nx * pull, -nz * pull)
             for px, pz, stretched, nx, nz, tie in pulls
@@ -225,7 +230,7 @@ class Wall:
         for slider, (at, link) in zip(self.sliders.values(), self.slipping, strict=True):
             longer, across, up = self._pulled(at, link, x, z, theta)
             pull = slider.pull(longer)
-            applied.append((-self.face, at, -across * pull, -up * pull))
+            applied.append((-self._face(at), at, -across * pull, -up * pull))
         sine, cosine = math.sin(theta), math.cos(theta)
         for px, pz, fx, fz in applied:
             Fx, Fz = Fx + fx, Fz + fz

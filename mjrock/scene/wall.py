@@ -98,8 +98,10 @@ def standing_wall(
     facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
     if stop_top is not None:
         side = contacts.side_up_to(stop_top)
-        places += [(-wall.b - centroid[0], z) for z in side.positions + (0.5 * stop_top - centroid[1])]
-        faces, normals = faces + [(-wall.b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
+        heights = side.positions + 0.5 * stop_top
+        inner = [wall.inner_face(z) for z in heights]
+        places += [(x - centroid[0], z - centroid[1]) for x, z in zip(inner, heights, strict=True)]
+        faces, normals = faces + [(x, 0.0) for x in inner], normals + [(1.0, 0.0)] * side.points
         joint, joints = joint + [1] * side.points, [*joints, "side"]
         k, c = np.concatenate([k, side.stiffness]), np.concatenate([c, side.damping])
         friction = np.concatenate([friction, np.full(side.points, side.friction or 0.0)])
@@ -107,7 +109,7 @@ def standing_wall(
     facts |= {"reference_frequency": base.frequency, "law": contacts.law}
 
     def place(effect: Effect) -> tuple[float, float]:
-        return -wall.b if effect.on_face else effect.offset, effect.height
+        return wall.inner_face(effect.height) if effect.on_face else effect.offset, effect.height
 
     links, forces = attachments(effects, np.zeros(1, dtype=np.int64), place, centroid[None])
     even = wall.centroid_offset == 0 and not (links.bearing.names or forces.names)

@@ -14,6 +14,10 @@ WALLS = {
     "plain": (mr.Block.from_size(0.55, 9.0, 6.0), 1),
     "doors and a window": (mr.Block.from_size(0.55, 9.0, 6.0, openings=DOORS), 7),
     "tapered": (mr.Block.from_size(0.6, 6.0, 4.0, profile=[(0, 0.6), (3, 0.4), (3, 0.3), (6, 0.3)]), 2),
+    "plumb outside": (
+        mr.Block.from_size(0.6, 6.0, 4.0, profile=[(0, 0.6), (3, 0.4), (3, 0.3), (6, 0.3)], plumb="outer"),
+        2,
+    ),
     "gable": (mr.Block.from_size(0.55, 9.0, 6.0, gable=mr.Gable(2.0)), 2),
     "all": (
         mr.Block.from_size(0.6, 9.0, 6.0, openings=DOORS, profile=[(0, 0.6), (9, 0.4)], gable=mr.Gable(2.0, 1.0)),

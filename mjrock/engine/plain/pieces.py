@@ -100,14 +100,33 @@ def _of_solid(solid: Solid, scene: Scene) -> Iterator[Piece]:
     if is_wall and not solid.fixed:
         yield from _of_wall(solid, scene)
         return
+    if is_stepped_stop(solid):
+        corners = solid.corners
+        foot = corners[corners[:, 2] == corners[:, 2].min(), 0].max()
+        yield from _filled(solid, np.minimum(corners, (foot, np.inf, np.inf)))
+        return
     for i, part in enumerate(parts):
         name = solid.name if i == 0 else f"{solid.name} part {i}"
         yield Piece(name, solid.name, solid.body, part, is_ground=is_wall and solid.name == "base")
 
 
+def is_stepped_stop(solid: Solid) -> bool:
+    """Whether a solid is a side stop behind a wall with setbacks inside, which are filled where the two meet."""
+    return solid.name == "side" and not solid.sides and len(solid.drawn) > 1
+
+
+def _filled(solid: Solid, corners: Array) -> Iterator[Piece]:
+    """A solid that meets others as the hull of corners. Where it has several parts, those are seen and meet nothing."""
+    hull = hull_of(corners)
+    whole, simple = Convex(corners[list(hull.corners)], hull.faces, hull.normals), len(solid.drawn) == 1
+    yield Piece(solid.name, solid.name, solid.body, whole, is_seen=simple)
+    if not simple:
+        for i, part in enumerate(solid.drawn if solid.fixed else solid.parts):
+            yield Piece(f"{solid.name} part {i}", solid.name, solid.body, part, meets=False)
+
+
 def _of_wall(solid: Solid, scene: Scene) -> Iterator[Piece]:
-    """A wall meets its base and its side as one convex solid. Where it has openings or another section, the parts that
-    are seen meet nothing."""
+    """A wall meets its base and its side as one convex solid."""
     corners = solid.corners
     rests = scene.contacts.at[scene.contacts.normal[:, 1] == 1, 0]
     ends, low = np.array([rests.min(), rests.max()]), corners[:, 2].min()
@@ -116,13 +135,10 @@ def _of_wall(solid: Solid, scene: Scene) -> Iterator[Piece]:
     if inset > 1e-12 * np.abs(corners).max():  # edges that have been crushed are cut off
         edges = np.array([(x, y, low) for x in ends for y in (foot[:, 1].min(), foot[:, 1].max())])
         corners = np.concatenate([corners[corners[:, 2] > low], foot + np.array((0.0, 0.0, inset)), edges])
-    hull = hull_of(corners)
-    whole = Convex(corners[list(hull.corners)], hull.faces, hull.normals)
-    simple = len(solid.parts) == 1
-    yield Piece(solid.name, solid.name, solid.body, whole, is_seen=simple)
-    if not simple:
-        for i, part in enumerate(solid.parts):
-            yield Piece(f"{solid.name} part {i}", solid.name, solid.body, part, meets=False)
+    if any(is_stepped_stop(other) for other in scene.standing.solids):
+        top = corners[corners[:, 2] == corners[:, 2].max()]
+        corners = np.concatenate([corners, np.minimum(top, (corners[:, 0].min(), np.inf, np.inf))])
+    yield from _filled(solid, corners)
 
 
 class Overlap(NamedTuple):

@@ -255,6 +255,6 @@ def _base(wall: Block) -> float:
 
 def _side(wall: Block, top: float) -> float:
     """e_side of any wall against a stop that reaches to `top`, see `Restitution.from_geometry`."""
-    edge, face = wall.half_base + wall.centroid_offset, wall.b + wall.centroid_offset
+    edge, face = wall.half_base + wall.centroid_offset, wall.centroid_offset - wall.inner_face(top)
     z, below = wall.centroid_height, wall.centroid_height - top
     return (wall.inertia + wall.mass * (edge * face + z * below)) / (wall.inertia + wall.mass * (face**2 + below**2))

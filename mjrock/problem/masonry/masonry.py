@@ -420,7 +420,7 @@ class Masonry(Drawn):
         side_friction: Annotated[float, Within(0, 10)] = 0.0,
         **options: Unpack[OtherOptions],
     ) -> Self:
-        """Rectangular blocks one on the other, centred, from the lowest upwards.
+        """Blocks one on the other, their bases centred, from the lowest upwards. One with a profile is a `Compound`.
 
         A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
 

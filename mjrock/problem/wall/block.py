@@ -20,6 +20,7 @@ from ...quantities import (
     keep,
     keep_declared,
     require_kind,
+    require_one_of,
     require_real,
     require_row,
     require_sequence,
@@ -28,7 +29,7 @@ from ...quantities import (
 )
 from .effects import AddedMass
 from .restoring_moment import Restoring, of_force, pose_of
-from .section import Front, Gable, Moments, Opening, Profile, moments, require_profile
+from .section import PLUMB, Front, Gable, Moments, Opening, Profile, Section, moments, require_profile
 
 HEAVIEST = 4000.0
 """Density above which that of a wall is taken for a weight [kg/m3]; basalt and iron ore have 3,000 to 4,000."""
@@ -48,10 +49,13 @@ class Block:
             corners move them inwards. Mass and inertia are those of the full wall.
         openings: doors and windows through the whole thickness. A door shortens the base too.
         profile: pairs of height and thickness [m] from the base to the top, for a wall that tapers or has storeys of
-            different thickness; linear in between. The inner face is straight. None is a constant thickness.
+            different thickness; linear in between. None is a constant thickness.
         masses: masses that move with the wall.
         gable: the upper part of a wall whose length falls towards its top; the height counts up to there. None is a
             rectangle as seen from outside.
+        plumb: "inner" or "outer", the face that is plumb where the thickness of a profile changes. Facades with
+            setbacks inside, on which floors bear, are plumb outside: their thinner storeys stand above the outer edge,
+            and alpha is less than with the inner face plumb.
 
     Raises:
         ValueError: for a value outside its range, a wall that is thicker than it is high, or one whose centroid does
@@ -67,6 +71,7 @@ class Block:
     profile: Profile | None = None
     masses: tuple[AddedMass, ...] = ()
     gable: Gable | None = field(default=None, kw_only=True)
+    plumb: str = field(default="inner", kw_only=True)
 
     def __post_init__(self) -> None:
         keep_declared(self)
@@ -96,6 +101,7 @@ class Block:
                 require_kind(f"{name}[{i}]", part, kind)
             keep(self, **{name: tuple(parts)})
         require_kind("gable", self.gable, Gable, type(None))
+        require_one_of("plumb", self.plumb, PLUMB)
         self.front.require()
         if self.profile is not None:
             keep(self, profile=require_profile(self.profile, 2 * self.b, 2 * self.h))
@@ -116,13 +122,14 @@ class Block:
         masses: Sequence[AddedMass] = (),
         *,
         gable: Gable | None = None,
+        plumb: str = "inner",
     ) -> Block:
         """The wall of full sizes `thickness` 2b at the base, `height` 2h and `length` [m]; the rest as for `Block`."""
         thickness = require_within("thickness", thickness, 2e-3, 20.0, "m")
         if require_real("height", height) < thickness:
             raise ValueError(f"height = {height:g} m is less than thickness = {thickness:g} m: are they swapped?")
         height = require_within("height", height, 1e-2, min(200.0, 200 * thickness), "m")
-        parts = {"openings": openings, "profile": profile, "masses": masses, "gable": gable}
+        parts = {"openings": openings, "profile": profile, "masses": masses, "gable": gable, "plumb": plumb}
         return cls(thickness / 2, height / 2, length, density, inset, **parts)  # type: ignore[arg-type]
 
     @classmethod
@@ -139,7 +146,8 @@ class Block:
         if self.inset:
             parts.append(f"inset {self.inset:.6g} m")
         if self.profile:
-            parts.append(f"{self.profile[-1][1]:.6g} m thick at the top")
+            outside = ", plumb outside" if self.plumb == "outer" else ""
+            parts.append(f"{self.profile[-1][1]:.6g} m thick at the top{outside}")
         if self.gable:
             parts.append(f"gable of {self.gable.height:.6g} m")
         for name, many in (("opening", self.openings), ("added mass", self.masses)):
@@ -162,11 +170,20 @@ class Block:
         """The wall as seen from outside."""
         return Front(self.length, 2 * self.h, self.openings, self.gable)
 
+    @property
+    def section(self) -> Section:
+        """The wall across its thickness."""
+        return Section(self.profile or ((0.0, 2 * self.b), (2 * self.h, 2 * self.b)), self.plumb)
+
+    def inner_face(self, z: float) -> float:
+        """Where the inner face is at a height z [m], x from the middle of the base [m]; that of the thicker part at a
+        step."""
+        return -self.b if not self.profile or self.plumb == "inner" else float(self.section.faces(np.array(z))[0])
+
     @cached_property
     def _parts(self) -> Moments:
         """Mass and its moments of all that is not a plain rectangle [kg, kg m, kg m2]."""
-        profile = self.profile or ((0.0, 2 * self.b), (2 * self.h, 2 * self.b))
-        total = [self.density * value for value in moments(profile, self.front)]
+        total = [self.density * value for value in moments(self.section, self.front)]
         for added in self.masses:
             x, z = added.offset, added.height
             for i, value in enumerate((1.0, x, z, x * x, z * z)):
@@ -291,8 +308,4 @@ class Block:
     @property
     def outline(self) -> Array:
         """Corners of the section about the centroid, counter-clockwise from the inner edge of the base [m], (n, 2)."""
-        b, h = self.b, self.h
-        corners = [(-b, 0.0), (b, 0.0), (b, 2 * h), (-b, 2 * h)]
-        if self.profile:
-            corners = [(-b, 0.0), *((thickness - b, z) for z, thickness in self.profile), (-b, 2 * h)]
-        return np.array(corners) - (self.centroid_offset, self.centroid_height)
+        return self.section.outline - (self.centroid_offset, self.centroid_height)

@@ -164,7 +164,7 @@ class Case(Carrying):
 
     def held_by(self, link: Anchored) -> Array:
         """The point that a link holds, at rest [m], shape (2,)."""
-        return np.array([-self.block.b, link.height])
+        return np.array([self.block.inner_face(link.height), link.height])
 
     def body_of(self, block: int | None) -> int | None:
         """Number of the body of a block: 0 of the wall, None of what does not move."""
@@ -205,8 +205,9 @@ class Case(Carrying):
         if self.stop_top is None:
             return self.restoring.inner.alpha
         wall, top = self.wall, self.stop_top
-        weight = of_force(wall.centroid_offset, wall.centroid_height - top, 0.0, wall.weight, wall.b)
-        over = weight.plus(self._forces(top, wall.b)).inner
+        face = -wall.inner_face(top)
+        weight = of_force(wall.centroid_offset, wall.centroid_height - top, 0.0, wall.weight, face)
+        over = weight.plus(self._forces(top, face)).inner
         return min(max(over.alpha, wall.alpha), ON_ITS_FACE) if over.Q > 0 else ON_ITS_FACE
 
     def _forces(self, level: float, half_base: float) -> list[Restoring]:
@@ -224,7 +225,7 @@ class Case(Carrying):
     @cached_property
     def resisting(self) -> tuple[TiePull, ...]:
         """All that resists a push outwards with a spring: ties, which bring the wall back, and what slips both ways."""
-        return tuple(TiePull.of(tie, self.block.b, self.block.half_base) for tie in self.springs.values())
+        return tuple(TiePull.of(tie, self.block) for tie in self.springs.values())
 
     def limits_of_ties(self, rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
         """Rotations [rad] at which ties yield, and at which they break, by name, within increasing `rotations` (n,)."""

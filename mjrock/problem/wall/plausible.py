@@ -47,7 +47,8 @@ def rebound_height(case: Any) -> float:
     pushes the base outwards.
     """
     wall = case.wall
-    edge, face = wall.half_base + wall.centroid_offset, wall.b + wall.centroid_offset
+    face = wall.centroid_offset - wall.inner_face(case.stop_top or 0.0)
+    edge = wall.half_base + wall.centroid_offset
     return float(wall.centroid_height + (wall.inertia / wall.mass + edge * face) / wall.centroid_height)
 
 
@@ -132,7 +133,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
 def _of_effects(case: Any) -> list[str]:
     def room(link: Anchored) -> tuple[float, float]:
         b, far = case.block.b, max(case.restoring.outer.alpha, case.wall.alpha)
-        pull = TiePull.of(link, b, case.block.half_base)._replace(reach=link.span)
+        pull = TiePull.of(link, case.block)._replace(reach=link.span)
         return 2 * b, float(pulled(pull, far, 1.0)[0])
 
     return of_effects(case.effects, Whole("wall", "the wall", case.block.mass), room)

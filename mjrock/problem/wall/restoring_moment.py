@@ -131,10 +131,10 @@ class TiePull(NamedTuple):
     ultimate: float
 
     @classmethod
-    def of(cls, tie: Anchored, b: float, half_base: float) -> TiePull:
-        """A tie that holds the inner face of a wall of half thickness `b` and half base `half_base` [m]."""
+    def of(cls, tie: Anchored, wall: Any) -> TiePull:
+        """A tie that holds the inner face of a wall, a `Block`."""
         law = tie.law
-        shape = -b, tie.height, tie.length, tie.rise, half_base, law.reach
+        shape = wall.inner_face(tie.height), tie.height, tie.length, tie.rise, wall.half_base, law.reach
         return cls(*shape, law.k, law.strength, law.ultimate)
 
     def moment(self, phi: Array) -> Array:

@@ -8,7 +8,7 @@ Gauss's rule makes each moment exact to rounding.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Annotated, NamedTuple
@@ -135,7 +135,54 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
             f"profile = {shown(profile)} is outside the valid range: it starts at height 0 with the thickness "
             f"{thickness:g} m and ends at the height {height:g} m"
         )
-    return tuple(pairs)
+    return ((0.0, thickness), *pairs[1:])
+
+
+PLUMB = "inner", "outer"
+"""The face that is plumb where the thickness changes."""
+
+
+class Section(NamedTuple):
+    """The wall across its thickness, x outwards from the middle of its base and z upwards.
+
+    Args:
+        profile: thickness over the height.
+        plumb: "inner" or "outer", the face that is plumb.
+    """
+
+    profile: Profile
+    plumb: str
+
+    def across(self, thickness: Array) -> tuple[Array, Array]:
+        """Where the inner and the outer face are, x [m], at places of a thickness [m], shape (n,) each."""
+        half = 0.5 * self.profile[0][1]
+        if self.plumb == "outer":
+            return half - thickness, np.full(np.shape(thickness), half)
+        return np.full(np.shape(thickness), -half), thickness - half
+
+    def faces(self, z: Array) -> tuple[Array, Array]:
+        """Where the inner and the outer face are at heights [m], x [m], of the thicker part at a step; (n,) each."""
+        heights, thicknesses = np.transpose(self.profile)
+        below = np.interp(-z, -heights[::-1], thicknesses[::-1])
+        return self.across(np.maximum(np.interp(z, heights, thicknesses), below))
+
+    def slabs(self, cuts: Collection[float]) -> Iterator[tuple[tuple[float, float], Array]]:
+        """The slabs between the corners of the profile and further heights: lower and upper end, z [m], and thickness
+        at both [m], shape (2,)."""
+        for (low, t_low), (high, t_high) in pairwise(self.profile):
+            for ends in pairwise(sorted({low, high} | {z for z in cuts if low < z < high})):
+                yield ends, t_low + (t_high - t_low) * (np.array(ends) - low) / (high - low)
+
+    @property
+    def outline(self) -> Array:
+        """Corners, counter-clockwise from the inner edge of the base [m], shape (n, 2)."""
+        heights, thicknesses = np.transpose(self.profile)
+        inner, outer = (np.column_stack([x, heights]) for x in self.across(thicknesses))
+        if self.plumb == "outer":
+            outer = outer[[0, -1]]
+        else:
+            inner = inner[[0, -1]]
+        return np.concatenate([inner[:1], outer, inner[:0:-1]])
 
 
 class Front(NamedTuple):
@@ -219,49 +266,26 @@ class Front(NamedTuple):
                 )
 
 
-def moments(profile: Profile, front: Front) -> Moments:
+def moments(section: Section, front: Front) -> Moments:
     """Volume and moments of a wall.
 
-    The thickness of its profile is measured from the straight inner face, which stands half the lowest thickness behind
-    the middle of the base.
+    Between corners a wall of one length has moments of at most the third degree, which Simpson's rule integrates
+    exactly. Where the length changes the height is the sine of an angle between the ends, which makes chords of a
+    circle smooth there, and Gauss's rule is taken.
     """
-    inner = -0.5 * profile[0][1]
-    total = [0.0] * 5
-    for (low, t_low), (high, t_high) in pairwise(profile):
-        cuts = {low, high} | {z for z in front.corners if low < z < high}
-        for z0, z1 in pairwise(sorted(cuts)):
-            t0, t1 = (t_low + (t_high - t_low) * (z - low) / (high - low) for z in (z0, z1))
-            rule = _gauss if front.is_curved else _simpson
-            for i, value in enumerate(rule(front, inner, (z0, t0), (z1, t1))):
-                total[i] += value
-    return Moments(*total)
-
-
-def _simpson(front: Front, inner: float, low: tuple[float, float], high: tuple[float, float]) -> list[float]:
-    """Volume and moments of a slab of one length between two heights with their thicknesses from x = inner outwards
-    [m]: polynomials of at most the third degree, which Simpson's rule integrates exactly."""
-    (z0, t0), (z1, t1) = low, high
-    area, x, z, xx, zz = 0.0, 0.0, 0.0, 0.0, 0.0
-    for weight, at, t in ((1, z0, t0), (4, 0.5 * (z0 + z1), 0.5 * (t0 + t1)), (1, z1, t1)):
-        share = weight * (z1 - z0) / 6
-        outer = inner + t
-        area += share * t
-        x += share * 0.5 * (outer**2 - inner**2)
-        z += share * t * at
-        xx += share * (outer**3 - inner**3) / 3
-        zz += share * t * at**2
-    left = float(front.left(np.array(0.5 * (z0 + z1))))
-    return [left * value for value in (area, x, z, xx, zz)]
-
-
-def _gauss(front: Front, inner: float, low: tuple[float, float], high: tuple[float, float]) -> list[float]:
-    """The same of a slab whose length changes. The height is the sine of an angle between the ends, which makes chords
-    of a circle smooth there."""
-    (z0, t0), (z1, t1) = low, high
-    angle = 0.5 * math.pi * NODES
-    share = 0.5 * (1 + np.sin(angle))
-    z, t = z0 + (z1 - z0) * share, t0 + (t1 - t0) * share
-    weight = WEIGHTS * 0.25 * math.pi * (z1 - z0) * np.cos(angle) * front.left(z)
-    outer = inner + t
-    terms = t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2
-    return [float(weight @ term) for term in terms]
+    total = np.zeros(5)
+    for (low, high), ends in section.slabs(front.corners):
+        if front.is_curved:
+            angle = 0.5 * math.pi * NODES
+            share, weight = 0.5 * (1 + np.sin(angle)), WEIGHTS * 0.25 * math.pi * np.cos(angle)
+            z = low + (high - low) * share
+            weight = weight * front.left(z)
+        else:
+            share, weight = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
+            z = low + (high - low) * share
+            weight = weight * front.left(np.array(0.5 * (low + high)))
+        t = ends[0] + (ends[1] - ends[0]) * share
+        inner, outer = section.across(t)
+        terms = t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2
+        total += (high - low) * np.array([weight @ term for term in terms])
+    return Moments(*total.tolist())

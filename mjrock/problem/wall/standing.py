@@ -208,16 +208,28 @@ class WallStanding:
     def solids(self) -> tuple[Solid, ...]:
         """The wall less its openings, the base as a slab below it, and the side stop as a slab beside it."""
         wall, b = self.wall, self.wall.b
-        slabs = [("base", -3 * b, 3 * b, -b, 0.0)]
-        slabs += [] if self.stop_top is None else [("side", -3 * b, -b, 0.0, self.stop_top)]
-        rest = in_space(np.array([wall.centroid_offset, wall.centroid_height]))
+        half, rest = 0.5 * wall.length, in_space(np.array([wall.centroid_offset, wall.centroid_height]))
         solids = [Solid("wall", 0, 0, rest, parts := parts_of_wall(wall), _met(parts), (), math.hypot(b, wall.h))]
-        for name, left, right, low, high in slabs:
-            ends = [(z, -0.5 * wall.length, 0.5 * wall.length) for z in (low, high)]
-            slab = (_slab(ends[0], ends[1], [(left, right)] * 2),)
-            size = 0.5 * math.hypot(right - left, high - low)
-            solids.append(Solid(name, None, -1, np.zeros(3), slab, _met(slab), (), size))
+        base = (_slab((-b, -half, half), (0.0, -half, half), [(-3 * b, 3 * b)] * 2),)
+        solids.append(Solid("base", None, -1, np.zeros(3), base, _met(base), (), 0.5 * math.hypot(6 * b, b)))
+        if self.stop_top is not None:
+            side = tuple(
+                _slab((low, -half, half), (high, -half, half), [(-3 * b, x), (-3 * b, x_high)])
+                for (x, low), (x_high, high) in pairwise(self.met_by_stop.tolist())
+                if high > low
+            )
+            size = 0.5 * math.hypot(2 * b, self.stop_top)
+            solids.append(Solid("side", None, -1, np.zeros(3), side, _met(side), (), size))
         return tuple(solids)
+
+    @property
+    def met_by_stop(self) -> Array:
+        """Corners of the inner face of the wall from the base up to the top of the side stop [m], shape (n, 2)."""
+        wall, top = self.wall, self.stop_top or 0.0
+        if wall.plumb == "inner" or not wall.profile:
+            return np.array([(-wall.b, 0.0), (-wall.b, top)])
+        slabs = [(z, wall.section.across(t)[0]) for z, t in wall.section.slabs({top}) if z[1] <= top]
+        return np.concatenate([np.column_stack([inner, z]) for z, inner in slabs])
 
     @property
     def joints(self) -> tuple[WallJoint, ...]:
@@ -256,17 +268,15 @@ def _met(parts: Sequence[Convex]) -> tuple[Flags, ...]:
 def parts_of_wall(wall: Block) -> tuple[Convex, ...]:
     """The convex parts that a wall is made of [m]: what is left of it beside its openings, between heights at which its
     thickness, its length or an opening has a corner. Round openings have straight sides between some heights."""
-    profile, front, parts = wall.profile or ((0.0, 2 * wall.b), (2 * wall.h, 2 * wall.b)), wall.front, list[Convex]()
+    front, parts = wall.front, list[Convex]()
     heights = front.corners | {
         float(opening.sill + share * opening.height) for opening in front.openings if opening.round for share in ROUND
     }
-    for (low, t_low), (high, t_high) in pairwise(profile):
-        for ends in pairwise(sorted({low, high} | {z for z in heights if low < z < high})):
-            thick = [t_low + (t_high - t_low) * (z - low) / (high - low) for z in ends]
-            faces = [(-wall.b, t - wall.b) for t in thick]
-            for left, right in _beside_openings(wall, *ends):
-                bottom, top = ((z, a, b) for z, a, b in zip(ends, left, right, strict=True))
-                parts.append(_slab(bottom, top, faces))
+    for ends, thickness in wall.section.slabs(heights):
+        faces = np.transpose(wall.section.across(thickness)).tolist()
+        for left, right in _beside_openings(wall, *ends):
+            bottom, top = ((z, a, b) for z, a, b in zip(ends, left, right, strict=True))
+            parts.append(_slab(bottom, top, faces))
     return tuple(parts)
 
 

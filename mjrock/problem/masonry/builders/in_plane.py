@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -59,12 +60,12 @@ def ground_below_all(blocks: Sequence[FlatBlock]) -> Polygon:
     return ground_under(left, right, high - low, max(block.length for block in blocks), low)
 
 
-def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
-    """Rectangular blocks one on the other, centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
+def stacked(blocks: Sequence[Block], ground: bool) -> list[FlatBlock]:
+    """Blocks one on the other, their bases centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
     require_flag("ground", ground)
     if not isinstance(blocks, Sequence) or isinstance(blocks, str) or not blocks:
         raise TypeError(f"blocks = {shown(blocks)} is not a list of blocks")
-    polygons, z = [], 0.0
+    polygons, z = list[FlatBlock](), 0.0
     for i, block in enumerate(blocks):
         require_kind(f"blocks[{i}]", block, Block)
         if block.inset:
@@ -73,14 +74,12 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
                 "a Polygon with its corners cut off"
             )
         fixed = i == 0 and not ground
-        polygons.append(
-            rectangle(-block.b, block.b, z, z + 2 * block.h, block.density, block.length, fixed, f"block_{i}")
-        )
+        polygons.append(_standing(block, z, fixed, f"block_{i}"))
         if not math.isclose(polygons[-1].mass, block.mass, rel_tol=1e-9):
             raise ValueError(
-                f"blocks[{i}] has openings, a profile or masses, and a block of a stack is a plain rectangle: cut it "
-                "at sills, heads and steps into blocks of the length that is left there, as Polygon where one is "
-                "flatter than thick; or take the Block in a Case, which has them all"
+                f"blocks[{i}] has openings, a gable or masses, and a block of a stack has one length: cut it at sills "
+                "and heads into blocks of the length that is left there, as Polygon where one is flatter than thick; "
+                "or take the Block in a Case, which has them all"
             )
         z += 2 * block.h
     if ground:
@@ -89,7 +88,18 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
     return polygons
 
 
-def side_of(blocks: Sequence[Polygon], side_stop: bool | SideStop) -> Polygon | None:
+def _standing(block: Block, z: float, fixed: bool, name: str) -> FlatBlock:
+    """A block whose base is at a height z [m]: a polygon, or one for each slab of its profile."""
+    parts = []
+    for (low, high), thickness in block.section.slabs(()):
+        if high > low:
+            inner, outer = block.section.across(thickness)
+            corners = [(inner[0], z + low), (outer[0], z + low), (outer[1], z + high), (inner[1], z + high)]
+            parts.append(Polygon(corners, block.density, block.length))
+    return Compound(parts, fixed, name) if len(parts) > 1 else replace(parts[0], fixed=fixed, name=name)
+
+
+def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> Polygon | None:
     """The fixed block behind the inner face of a stack, from z = 0 up to its top or to that of the stop; or None.
 
     A ValueError says if the stop ends above the stack.

@@ -1,0 +1,159 @@
+"""Walls with setbacks inside: the outer face is plumb, and each number follows from rectangles added up in the test."""
+
+import math
+import re
+import warnings
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.scene.wall import wall_scene
+
+T0, T1, STEP, HEIGHT = 0.60, 0.45, 3.2, 9.6
+PROFILE = [(0, T0), (STEP, T0), (STEP, T1), (HEIGHT, T1)]
+AREAS, LEVELS = np.array([T0 * STEP, T1 * (HEIGHT - STEP)]), np.array([STEP / 2, (STEP + HEIGHT) / 2])
+BEHIND = np.array([T0 / 2, T1 / 2])  # of the centroids of both storeys, from the outer face
+ALPHA_0 = (AREAS @ BEHIND) / (AREAS @ LEVELS)
+
+
+def setback(**options):
+    return mr.Block.from_size(T0, HEIGHT, profile=PROFILE, plumb="outer", **options)
+
+
+def test_the_multiplier_is_that_of_two_storeys_about_the_outer_edge():
+    assert pytest.approx(0.0569, abs=5e-5) == ALPHA_0
+    wall = setback()
+    assert mr.pushover(mr.Case(wall, 0.0, 1.0)).start == pytest.approx(ALPHA_0, rel=1e-12)
+    assert math.tan(wall.alpha) == pytest.approx(ALPHA_0, rel=1e-12)
+    assert wall.mass == pytest.approx(2000 * AREAS.sum())
+    x, z = T0 / 2 - AREAS @ BEHIND / AREAS.sum(), AREAS @ LEVELS / AREAS.sum()
+    about = sum(
+        2000 * area * ((t**2 + h**2) / 12 + (T0 / 2 - behind - x) ** 2 + (level - z) ** 2)
+        for area, t, h, behind, level in zip(AREAS, (T0, T1), (STEP, HEIGHT - STEP), BEHIND, LEVELS, strict=True)
+    )
+    np.testing.assert_allclose((wall.centroid_offset, wall.centroid_height, wall.inertia), (x, z, about), rtol=1e-12)
+    assert mr.mechanism_check(mr.Case(wall, 0.0, 1.0), mr.code_spectrum("EC8 type 1", ag=1.0, soil="A")).alpha_0 == (
+        pytest.approx(ALPHA_0, rel=1e-12)
+    )
+
+
+@pytest.mark.parametrize("parts", [{}, {"gable": mr.Gable(2.0), "openings": [mr.Opening(0.3, 2.0, 2.0)]}])
+def test_it_is_the_mirror_image_of_a_wall_that_is_plumb_inside(parts):
+    inside, outside = mr.Block.from_size(T0, HEIGHT, profile=PROFILE, **parts), setback(**parts)
+    assert outside.centroid_offset == pytest.approx(-inside.centroid_offset, rel=1e-13)
+    np.testing.assert_allclose(outside.restoring, inside.restoring[::-1], rtol=1e-13)
+    assert outside.inertia == pytest.approx(inside.inertia, rel=1e-13)
+    mirrored = inside.outline * (-1, 1)
+    np.testing.assert_allclose(sorted(outside.outline.tolist()), sorted(mirrored.tolist()), atol=1e-12)
+    x, z = outside.outline.T
+    assert 0.5 * (x * np.roll(z, -1) - z * np.roll(x, -1)).sum() == pytest.approx(AREAS.sum())
+
+
+def test_it_turns_about_the_outer_edge_until_its_centroid_stands_above_it():
+    wall = setback()
+    x, z, _ = wall.pose([wall.alpha])[0] + (wall.centroid_offset, wall.centroid_height, 0)
+    assert (x, z) == pytest.approx((T0 / 2, wall.R))
+
+
+def test_a_tie_holds_the_inner_face_where_that_is():
+    """Its lever about the outer edge at rest is its height, and at a rotation that of the point that it holds."""
+    tie = mr.Tie(8.0, 1e7, length=4.0)
+    case = mr.Case(setback(), 0.0, 1.0, effects=tie)
+    np.testing.assert_allclose(case.held_by(tie), (T0 / 2 - T1, 8.0))
+    np.testing.assert_allclose(
+        mr.Case(setback(), 0.0, 1.0, effects=mr.Tie(1.0, 1e7)).held_by(mr.Tie(1.0, 1e7)), (-0.3, 1)
+    )
+    arm = np.array([-T1, 8.0])  # from the outer edge to the point
+
+    def elongation(theta):
+        turned = (
+            arm[0] * math.cos(theta) + arm[1] * math.sin(theta),
+            arm[1] * math.cos(theta) - arm[0] * math.sin(theta),
+        )
+        return math.hypot(turned[0] - arm[0] + 4.0, turned[1] - arm[1]) - 4.0
+
+    rate = (elongation(0.03 + 1e-5) - elongation(0.03 - 1e-5)) / 2e-5
+    found = case.pulls[0].moment(np.array([0.03]))[0]
+    assert found == pytest.approx(1e7 * elongation(0.03) * rate, rel=1e-8)  # by virtual work
+
+
+def test_the_side_stop_lies_behind_every_storey():
+    wall = setback()
+    case = mr.Case(wall, 0.0, 1.0)
+    side = case.standing.solids[2]
+    assert [part.corners[:, 0].max() for part in side.drawn] == pytest.approx([-0.3, -0.15])
+    volume = sum(part.bulk.volume for part in side.drawn)
+    assert volume == pytest.approx((0.9 - 0.3) * STEP + (0.9 - 0.15) * (HEIGHT - STEP))
+    assert mr.Case(wall, 0.0, 1.0, side_stop=mr.SideStop(2.0)).standing.solids[2].drawn[0].bulk.volume == (
+        pytest.approx(0.6 * 2.0)
+    )
+
+
+def test_the_impact_on_the_stop_keeps_the_momentum_about_its_highest_point():
+    """The wall comes down about its inner edge of the base with a rate of 1; the stop ends at its face at the top."""
+    wall = setback()
+    x, z, inertia, m = wall.centroid_offset, wall.centroid_height, wall.inertia, wall.mass
+    point = np.array([T0 / 2 - T1, HEIGHT])
+    arm, edge = np.array([x, z]) - point, np.array([x, z]) - (-T0 / 2, 0.0)
+    velocity = np.array([edge[1], -edge[0]])  # of the centroid, turning outwards with 1 rad/s about the inner edge
+    momentum = inertia + m * (velocity[0] * arm[1] - velocity[1] * arm[0])
+    after = momentum / (inertia + m * arm @ arm)
+    assert mr.Restitution.from_geometry(wall).side == pytest.approx(after, rel=1e-12)
+
+
+def contacts_of(wall):
+    with warnings.catch_warnings(action="ignore"):
+        return mr.Contacts.from_law(wall, mr.Restitution(0.95, -0.45), 1e9, 1e9)
+
+
+def test_the_model_has_its_points_and_ties_on_the_inner_face():
+    wall = setback()
+    case = mr.Case(wall, 0.3 * wall.alpha, 0.35, effects=mr.Tie(8.0, 2e5, length=4.0))
+    scene = wall_scene(case, contacts_of(wall))
+    rest = scene.bodies.rest[0]
+    assert scene.links.at[0] + rest == pytest.approx([-0.15, 8.0])
+    side = scene.contacts.joint == 1
+    np.testing.assert_allclose((scene.contacts.at + rest)[side], [(-0.3, 0.0), (-0.15, HEIGHT)], atol=1e-12)
+    np.testing.assert_allclose(scene.contacts.face_at[side, 0], [-0.3, -0.15])
+    planes = dict(
+        re.findall(r'geom name="(side\w*)" type="plane" .*?pos="(\S+) ', mr.mjcf_of(case, contacts_of(wall), 1e-3))
+    )
+    assert {name: round(float(x), 3) for name, x in planes.items()} == {"side": -0.3, "side_face_1": -0.15}
+
+
+@pytest.mark.slow
+def test_mujoco_scipy_and_plain_models_agree_on_its_rebound():
+    """In plain models MuJoCo finds the contacts of the wall with the stop behind its storeys."""
+    wall = setback()
+    case, contacts = mr.Case(wall, 0.3 * wall.alpha, 2.0), contacts_of(wall)
+    motion, second = mr.simulate(case, contacts), mr.solve_compliant(case, contacts)
+    assert motion.theta.min() > -1e-2 * wall.alpha
+    assert second.peaks[1] == pytest.approx(motion.peaks[1], rel=0.06)
+    plain = mr.simulate(case, contacts, 1e-4, collisions=True)
+    assert plain.peaks[1] == pytest.approx(motion.peaks[1], rel=0.06)
+
+
+@pytest.mark.parametrize("plumb", ["inner", "outer"])
+def test_a_stack_of_it_is_a_unit_of_rectangles(plumb):
+    wall = mr.Block.from_size(T0, HEIGHT, profile=PROFILE, plumb=plumb)
+    masonry = mr.Masonry.stack([wall], k_n=1e9, friction=5.0)
+    unit = masonry.blocks[1]
+    assert (unit.mass, unit.inertia) == pytest.approx((wall.mass, wall.inertia))
+    outwards, inwards = (mr.collapse_multiplier(masonry, way).multiplier for way in (1, -1))
+    x = T0 - AREAS @ BEHIND / AREAS.sum()  # from the face that is not plumb
+    ways = (ALPHA_0, x / wall.centroid_height)
+    assert (outwards, inwards) == pytest.approx(ways if plumb == "outer" else ways[::-1], rel=1e-9)
+
+
+def test_a_storey_on_top_stands_on_what_is_there():
+    top = mr.Block.from_size(0.2, 1.0)
+    masonry = mr.Masonry.stack([mr.Block.from_size(T0, HEIGHT, profile=PROFILE, plumb="outer"), top], k_n=1e9)
+    joint = masonry.joints[1]
+    assert sorted((joint.start[0], joint.end[0])) == pytest.approx([-0.1, 0.1])
+    assert joint.start[1] == pytest.approx(HEIGHT)
+
+
+def test_what_is_neither_face_is_refused():
+    with pytest.raises(ValueError, match="plumb = 'middle'"):
+        mr.Block.from_size(T0, HEIGHT, profile=PROFILE, plumb="middle")
