@@ -120,3 +120,71 @@ def test_it_stands_a_slow_push_below_the_multiplier_and_falls_above(solve):
 def test_what_cannot_be(call, complaint):
     with pytest.raises((TypeError, ValueError), match=complaint):
         call()
+
+
+def two_storeys(effect):
+    """Two storeys of 3.2 m, whose middle floor loads the wall and does not hold it."""
+    wall = mr.Block.from_size(0.45, 6.4, 1.0, 1800.0)
+    return mr.VerticalBending(wall, 12e3, bearing=0.225, effects=effect)
+
+
+def hand(bending, crack, inertia):
+    """Virtual work of 12 kN at mid-height of 6.4 m, in the middle of 0.45 m, by one sum for each side of the crack."""
+    t, h, W, N = 0.45, 6.4, bending.wall.weight, 12e3
+    up = crack / (h - crack)
+    rise, sway = (0.5 * t, 3.2) if crack >= 3.2 else (t + up * 0.5 * t, up * 3.2)
+    work = W * t + N * (t + up * 0.225) + N * rise
+    return work / (0.5 * W * crack + inertia * N * sway)
+
+
+@pytest.mark.parametrize(
+    ("effect", "inertia", "least"),
+    [(mr.Load(12e3, 3.2), 0, 0.3194), (mr.AddedMass(12e3 / mr.GRAVITY, 3.2), 1, 0.2435)],
+    ids=["load", "mass"],
+)
+def test_a_middle_floor_that_does_not_hold_loads_the_wall(effect, inertia, least):
+    bending = two_storeys(effect)
+    cracks = np.linspace(0.1, 6.3, 62001)
+    scanned = [hand(bending, crack, inertia) for crack in cracks]
+    assert bending.multiplier == pytest.approx(min(scanned), rel=1e-8)
+    assert bending.multiplier == pytest.approx(least, abs=5e-5)
+    assert bending.crack_height == pytest.approx(cracks[np.argmin(scanned)], abs=1e-3)
+    for crack in (1.0, 3.0, 3.5, 6.0):
+        given = mr.VerticalBending(bending.wall, 12e3, bearing=0.225, crack=crack, effects=effect)
+        assert given.multiplier == pytest.approx(hand(bending, crack, inertia), rel=1e-12)
+        assert given.curve.multiplier[0] == pytest.approx(given.multiplier, rel=1e-12)
+
+
+def test_the_same_as_blocks():
+    """The load stands on the lower body where the crack is above it, as limit analysis finds it."""
+    bending = two_storeys(mr.Load(12e3, 3.2))
+    crack = bending.crack_height
+    masonry = mr.Masonry.between_floors(bending.wall, 12e3, bearing=0.225, crack=crack)
+    found = mr.collapse_multiplier(masonry, 1, effects=mr.Load(12e3, 3.2, block="lower"))
+    assert found.multiplier == pytest.approx(bending.multiplier, rel=1e-6)
+
+
+def test_e_star_and_d_of_a_mass_in_between():
+    """Of virtual displacements: crack / 2 of both bodies, and 3.2 of the mass below the crack."""
+    effect = mr.AddedMass(12e3 / mr.GRAVITY, 3.2)
+    bending = two_storeys(effect)
+    crack, W, N = bending.crack_height, bending.wall.weight, 12e3
+    assert crack > 3.2
+    first, second = W * crack / 2 + N * 3.2, W * crack**2 / 4 + N * 3.2**2
+    assert bending.participation == pytest.approx(first**2 / ((W + N) * second), rel=1e-12)
+    check = mr.mechanism_check(bending, lambda T, xi: 0.02)
+    assert check.participation == bending.participation
+    assert check.d_0 == pytest.approx(bending.curve.displacement[-1] / bending.participation)
+
+
+@pytest.mark.parametrize(
+    ("effect", "complaint"),
+    [
+        (mr.Load(12e3, 7.0), r"effects\[0\], height = 7 m is outside the valid range 0 to 6.4 m"),
+        (mr.Load(12e3, 3.0, 0.3), r"effects\[0\], offset = 0.3 m is outside the valid range -0.225 to 0.225 m"),
+        (mr.Thrust(3.0, 12e3), r"effects\[0\] = .*Thrust.* is not a Load or AddedMass"),
+    ],
+)
+def test_what_does_not_load_it_is_refused(effect, complaint):
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        two_storeys((effect,))

@@ -7,11 +7,13 @@ wall held at its sides they turn about upright edges, as an arch in plan.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Annotated, NamedTuple, get_args
 
 import numpy as np
+import scipy
 
 from ...quantities import (
     GRAVITY,
@@ -22,13 +24,17 @@ from ...quantities import (
     keep,
     keep_declared,
     require_kind,
+    require_sequence,
     require_within,
     short_repr,
     warn_of,
 )
 from .block import Block
+from .effects import AddedMass, Load
 from .tie import Tie
 
+CRACKS = 0.01, 0.99
+"""Lowest and highest crack, over the height of the wall [-]."""
 CURVE_POINTS = 20_001
 """Rotations at which the curve is looked at."""
 DEEPEST_FLOOR, TYPICAL = 5.0, 2500.0
@@ -51,6 +57,21 @@ class BendingCurve(NamedTuple):
     multiplier: Array
 
 
+class Weights(NamedTuple):
+    """What loads a wall that bends.
+
+    Args:
+        weight: downwards [N], shape (n,).
+        inertia: weight of what has inertia sideways [N], shape (n,).
+        x, z: where they act, from the inner edge of the base outwards and upwards [m], shape (n,) each.
+    """
+
+    weight: Array
+    inertia: Array
+    x: Array
+    z: Array
+
+
 def require_plain(wall: Block) -> None:
     """Raise a TypeError or a ValueError unless a wall is a plain rectangle."""
     require_kind("wall", wall, Block)
@@ -71,6 +92,11 @@ class VerticalBending:
     which is least, 2 / (W h) [sqrt((W + N) t) + sqrt(N a)]^2, where mu / (1 - mu) = sqrt((W + N) t / (N a)). Rigid
     bodies, no tension, no sliding.
 
+    A floor in between that loads the wall and does not hold it is an effect: a `Load`, or an `AddedMass` where its
+    inertia pushes the wall too. With P at a distance x from the inner face and a height z, and r = mu / (1 - mu), it
+    adds P (t - x) to the work of the weights below the crack and P (t + r x) above it, over mu h, and a mass adds
+    P z or P r (h - z) to W mu h / 2. The crack is then found in each stretch between the effects.
+
     Args:
         wall: a plain rectangle.
         load: of the floor on the whole length of the wall [N], 1 to 1e9. It has no inertia sideways, where the floors
@@ -78,9 +104,11 @@ class VerticalBending:
         bearing: how far from the inner face the floor bears at most [m], above 0 and up to the thickness, where the
             whole load acts as the wall turns; None is the thickness.
         crack: its height [m], 0.01 to 0.99 times that of the wall; None is that of the least multiplier.
+        effects: loads and masses on the wall, their offsets from its middle, outwards [m].
 
     Raises:
-        TypeError, ValueError: for a wall that is not a plain rectangle, or a value outside its range.
+        TypeError, ValueError: for a wall that is not a plain rectangle, an effect of another kind or beside the wall,
+            or a value outside its range.
 
     Examples:
         >>> strip = mr.VerticalBending(mr.Block.from_size(0.3, 4.0), load=20e3)
@@ -92,6 +120,7 @@ class VerticalBending:
     load: Annotated[float, Within(1, 1e9, "N", "load of the floor")]
     bearing: float | None = None
     crack: float | None = None
+    effects: tuple[Load | AddedMass, ...] = field(default=(), kw_only=True)
 
     __repr__ = short_repr
 
@@ -102,27 +131,76 @@ class VerticalBending:
         if self.bearing is not None:
             keep(self, bearing=require_within("bearing", self.bearing, 1e-3 * thickness, thickness, "m"))
         if self.crack is not None:
-            keep(self, crack=require_within("crack", self.crack, 0.01 * height, 0.99 * height, "m"))
+            keep(self, crack=require_within("crack", self.crack, CRACKS[0] * height, CRACKS[1] * height, "m"))
+        given = (self.effects,) if isinstance(self.effects, Load | AddedMass) else self.effects
+        require_sequence("effects", given, "a sequence of Load and AddedMass")
+        for i, effect in enumerate(given):
+            require_kind(f"effects[{i}]", effect, Load, AddedMass)
+            require_within(f"effects[{i}], height", effect.height, 0.0, height, "m")
+            if isinstance(effect, Load):
+                require_within(f"effects[{i}], offset", effect.offset, -self.wall.b, self.wall.b, "m")
+        keep(self, effects=tuple(given))
 
     @property
     def lever(self) -> float:
         """Distance of the load from the inner face [m]."""
         return 2 * self.wall.b if self.bearing is None else self.bearing
 
+    def weights(self, crack: float) -> Weights:
+        """The weights of both bodies about a crack at a height [m], of the floor above and of the effects."""
+        t, h, W, mu = 2 * self.wall.b, 2 * self.wall.h, self.wall.weight, crack / (2 * self.wall.h)
+        rows = [
+            (W * mu, W * mu, 0.5 * t, 0.5 * crack),
+            (W * (1 - mu), W * (1 - mu), 0.5 * t, 0.5 * (h + crack)),
+            (self.load, 0.0, self.lever, h),
+        ]
+        for effect in self.effects:
+            inertia = GRAVITY * effect.mass_added
+            weight = effect.force if isinstance(effect, Load) else inertia
+            rows.append((weight, inertia, 0.5 * t + effect.offset, effect.height))
+        return Weights(*np.transpose(rows))
+
+    def _rates(self, crack: float) -> tuple[Weights, Array, Array]:
+        """The weights, and how fast they begin to move outwards and upwards over the rotation of the lower body [m]."""
+        found, t, h = self.weights(crack), 2 * self.wall.b, 2 * self.wall.h
+        ratio, above = crack / (h - crack), found.z > crack
+        sway = np.where(above, ratio * (h - found.z), found.z)
+        return found, sway, np.where(above, t + ratio * found.x, t - found.x)
+
+    def _starts(self, crack: float) -> float:
+        """The multiplier of a crack at a height [m]."""
+        found, sway, rise = self._rates(crack)
+        return float(found.weight @ rise / (found.inertia @ sway))
+
     @cached_property
     def crack_height(self) -> float:
         """Height of the crack [m], the given one or that of the least multiplier."""
+        height = 2 * self.wall.h
         if self.crack is not None:
             return self.crack
-        ratio = math.sqrt((self.wall.weight + self.load) * 2 * self.wall.b / (self.load * self.lever))
-        return 2 * self.wall.h * ratio / (1 + ratio)
+        if not self.effects:
+            ratio = math.sqrt((self.wall.weight + self.load) * 2 * self.wall.b / (self.load * self.lever))
+            return height * ratio / (1 + ratio)
+        low, high = (share * height for share in CRACKS)
+        ends = [low, *sorted(z for effect in self.effects if low < (z := effect.height) < high), high]
+        options = {"xatol": 1e-9 * height}
+        found = [
+            scipy.optimize.minimize_scalar(self._starts, bounds=stretch, method="bounded", options=options)
+            for stretch in pairwise(ends)
+            if stretch[1] > stretch[0]
+        ]
+        return float(min(found, key=lambda one: float(one.fun)).x)
 
     @property
     def multiplier(self) -> float:
         """alpha_0, at which the wall begins to bend [-]."""
-        weight, mu = self.wall.weight, self.crack_height / (2 * self.wall.h)
-        work = (weight + self.load) * 2 * self.wall.b / mu + self.load * self.lever / (1 - mu)
-        return work / (weight * self.wall.h)
+        return self._starts(self.crack_height)
+
+    @property
+    def participation(self) -> float:
+        """e*, the share of the mass that takes part [-], C8.7.1.5; 1 without masses, as both bodies move alike."""
+        found, sway, _ = self._rates(self.crack_height)
+        return min(float((found.inertia @ sway) ** 2 / (found.inertia.sum() * (found.inertia @ sway**2))), 1.0)
 
     @cached_property
     def curve(self) -> BendingCurve:
@@ -140,12 +218,19 @@ class VerticalBending:
         sine, cosine, sine_up, cosine_up = np.sin(theta), np.cos(theta), np.sin(psi), np.cos(psi)
         across, up = t * sine + z * cosine, t * cosine - z * sine  # rates of the inner edge of the crack
         rate = across / (above * cosine_up + a * sine_up)  # of psi
-        lower, upper = np.array([z, 2 * self.wall.h - z]) / (2 * self.wall.h) * self.wall.weight
-        rise = lower * up / 2 + upper * (up + rate * (t * cosine_up - above * sine_up) / 2)
-        rise += self.load * (up + rate * (a * cosine_up - above * sine_up))
-        sway = lower * across / 2 + upper * (across - rate * (t * sine_up + above * cosine_up) / 2)
-        moved = (lower * x / 2 + upper * (x + (t * (cosine_up - 1) - above * sine_up) / 2)) / self.wall.weight
-        multiplier = rise / sway
+        found = self.weights(z)
+        rise, sway, moved = (np.zeros_like(theta) for _ in range(3))
+        for weight, inertia, px, pz in zip(*found, strict=True):
+            if pz > z:
+                high = pz - z
+                moves = x + px * (cosine_up - 1) - high * sine_up
+                outwards = across - rate * (px * sine_up + high * cosine_up)
+                upwards = up + rate * (px * cosine_up - high * sine_up)
+            else:
+                moves = (t - px) * (1 - cosine) + pz * sine
+                outwards, upwards = (t - px) * sine + pz * cosine, (t - px) * cosine - pz * sine
+            rise, sway, moved = rise + weight * upwards, sway + inertia * outwards, moved + inertia * moves
+        multiplier, moved = rise / sway, moved / found.inertia.sum()
         end = int(np.flatnonzero(multiplier <= 0)[0])
         part = multiplier[end - 1] / (multiplier[end - 1] - multiplier[end])
         last = [row[end - 1] + part * (row[end] - row[end - 1]) for row in (theta, moved)]
@@ -251,6 +336,11 @@ class HorizontalBending:
     def multiplier(self) -> float:
         """alpha_0, at which the wall begins to bend [-]."""
         return 4 * self.thrust * self.wall.b / self.wall.weight * sum(1 / part for part in self.parts)
+
+    @property
+    def participation(self) -> float:
+        """e*, the share of the mass that takes part [-], C8.7.1.5: all of it, as both centroids begin to move alike."""
+        return 1.0
 
     @property
     def friction(self) -> float:

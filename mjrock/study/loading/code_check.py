@@ -405,10 +405,10 @@ def _mechanism_of(case: Checked, code: Code) -> _Mechanism:
 
 
 def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
-    """A wall between floors or side walls. The centroids of both bodies begin to move alike, so that all of the mass
-    takes part."""
-    curve = bending.curve
-    return _Mechanism(curve.multiplier, curve.displacement, 1.0, None, {}, {})
+    """A wall between floors or side walls. The curve is that of the common centroid, and d is its displacement over e*
+    then, by C8.7.1.4 and C8.7.1.5."""
+    curve, participation = bending.curve, bending.participation
+    return _Mechanism(curve.multiplier, curve.displacement / participation, participation, None, {}, {})
 
 
 def _of_wall(case: Case, code: Code) -> _Mechanism:
