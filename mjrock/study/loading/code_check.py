@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -22,9 +23,11 @@ from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST_PERIOD
 from ...problem.ground.spectrum import SpectrumOfCode, response_spectrum
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
+from ...problem.masonry.masonry import Masonry
 from ...problem.wall.bending import HorizontalBending, VerticalBending
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
+from ...problem.wall.effects import link_effects
 from ...problem.wall.restoring_moment import moment_at_strength
 from ...problem.wall.wedge import Corner
 from ...quantities import (
@@ -32,6 +35,7 @@ from ...quantities import (
     Array,
     Implausible,
     is_iterable,
+    named,
     percent_said,
     ratio_said,
     require_kind,
@@ -48,8 +52,10 @@ from ...result.response import Response
 from ..analysis import Analysis
 from ..campaign.campaign import results
 from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of
+from .limit_analysis import LimitCurve
+from .moving_part import MovingPart, multiplier_of
 from .push import Push, of_centroid
-from .pushover import pushover
+from .pushover import falls_to_zero, pushover
 
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
@@ -59,7 +65,7 @@ Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
 
 
-Checked = Case | Corner | VerticalBending | HorizontalBending
+Checked = Case | Corner | VerticalBending | HorizontalBending | LimitCurve
 """What the check is of."""
 
 
@@ -176,6 +182,7 @@ class MechanismCheck:
         code: what it is checked after.
         mechanism: what was checked, None where it is not known.
         demands: what each limit state was checked against, by name.
+        moving: names of the blocks that move, whose common centroid d is of; none of a wall.
     """
 
     alpha_0: float
@@ -193,6 +200,7 @@ class MechanismCheck:
     code: Code = field(default_factory=code_of)
     mechanism: Checked | None = None
     demands: Mapping[str, Demand] = field(default_factory=dict)
+    moving: tuple[str, ...] = ()
 
     @property
     def a_0(self) -> float:
@@ -282,7 +290,7 @@ class MechanismCheck:
 
     def _rows(self) -> list[tuple[str, str, str]]:
         """The steps: what it is, its value, and its clause or its verdict."""
-        rows = []
+        rows = [("what moves", "", named(self.moving))] if self.moving else []
         for step in self.steps:
             what, note = self.code.step(step.key, step.of).plain, step.clause
             if step.key == "linear_ratio":
@@ -305,7 +313,8 @@ class MechanismCheck:
         ratios = ", ".join(
             f"{one.limit_state} {ratio_said(one.ratio)} {one.said}" for one in map(self._nonlinear, self.states)
         )
-        return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
+        of = f" of {named(self.moving)}" if self.moving else ""
+        return f"<MechanismCheck{of}: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 
 def mechanism_check(
@@ -330,9 +339,14 @@ def mechanism_check(
     the user. A mechanism on a floor (C8.7.1.2.1.4) takes `spectrum.at_height(...)` or `motion.through_building(...)` as
     its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known.
 
+    Of masonry of blocks the curve is that of `limit_curve`, one for each direction. alpha_0 and e* follow from the
+    virtual displacements of the mechanism with which it begins, the displacement is that of the common centroid of the
+    blocks that move in it, with the masses on them, and d is that over e* (C8.7.1.4). Ties pull with their strength
+    along the curve, and are slack in alpha_0, of the same mechanism.
+
     Args:
-        case: the wall and its effects, whose release and motion play no part, a corner, or a wall that bends between
-            floors or side walls.
+        case: the wall and its effects, whose release and motion play no part, a corner, a wall that bends between
+            floors or side walls, or the `LimitCurve` of masonry.
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
             [m] of a spectrum. It is that of all limit states, or a mapping has one for each, "SLV" and "SLC"; the
             linear check then takes that of its own, the SLV.
@@ -346,7 +360,8 @@ def mechanism_check(
         The `MechanismCheck`, which prints in a line and as a table.
 
     Raises:
-        TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
+        TypeError, ValueError: for a value outside its range, a wall whose curve does not end, as its ties hold it, or a
+            limit curve that ends while something is borne.
 
     Warns:
         Implausible: for ties that still hold at d_SLC and raise it above d_0 of the wall without them.
@@ -373,9 +388,10 @@ def mechanism_check(
         capacity = rule.share * d_0
         period = rule.period_at(capacity, float(np.interp(capacity, d, a)))
         states[name] = LimitState(capacity, period, _demanded(demands[name], period, rule.damping, T_0 or SHORT))
-    alpha_0, ties = float(found.multiplier[0]), (found.yielding, found.breaking)
+    alpha_0 = float(found.multiplier[0]) if found.slack is None else found.slack
+    ties = found.yielding, found.breaking
     curve = alpha_0, found.tied, found.participation, factor, d, a, d_0, states
-    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands)
+    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving)
 
 
 class _Mechanism(NamedTuple):
@@ -387,20 +403,26 @@ class _Mechanism(NamedTuple):
         participation: e* [-], C8.7.1.5.
         tied: multiplier that starts it with the ties at their strength [-]; None without ties.
         yielding, breaking: displacement at which each tie yields and breaks [m], by name.
+        slack: multiplier that starts it with the ties slack [-], where it is not the first of the curve.
+        moving: names of the blocks that move.
     """
 
     multiplier: Array
     d: Array
     participation: float
-    tied: float | None
-    yielding: Mapping[str, float]
-    breaking: Mapping[str, float]
+    tied: float | None = None
+    yielding: Mapping[str, float] = MappingProxyType({})
+    breaking: Mapping[str, float] = MappingProxyType({})
+    slack: float | None = None
+    moving: tuple[str, ...] = ()
 
 
 def _mechanism_of(case: Checked, code: Code) -> _Mechanism:
     """What the check takes of what it is given."""
     if isinstance(case, VerticalBending | HorizontalBending):
         return _of_bending(case)
+    if isinstance(case, LimitCurve):
+        return _of_blocks(case)
     return _of_wall(Case(case.block, 0.0, 1.0, effects=case.masses) if isinstance(case, Corner) else case, code)
 
 
@@ -408,12 +430,56 @@ def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
     """A wall between floors or side walls. The curve is that of the common centroid, and d is its displacement over e*
     then, by C8.7.1.4 and C8.7.1.5."""
     curve, participation = bending.curve, bending.participation
-    return _Mechanism(curve.multiplier, curve.displacement / participation, participation, None, {}, {})
+    return _Mechanism(curve.multiplier, curve.displacement / participation, participation)
+
+
+class _PartCurve(NamedTuple):
+    """The curve of the part of masonry that moves, up to where nothing is borne.
+
+    Args:
+        part: what moves.
+        masonry: it and the rest.
+        displacement: of its centroid [m], shape (n,).
+        multiplier: [-], shape (n,), zero at the last.
+    """
+
+    part: MovingPart
+    masonry: Masonry
+    displacement: Array
+    multiplier: Array
+
+    @classmethod
+    def of(cls, name: str, curve: LimitCurve) -> _PartCurve:
+        """That of a limit curve; a ValueError with its name says if it ends before."""
+        masonry, borne = curve.start.masonry, curve.multiplier
+        if masonry is None or not curve.start.moving or not borne[0] > 0 >= borne[-1]:
+            raise ValueError(
+                f"{name} = {curve!r} ends where {borne[-1]:.4g} of the weight is borne: {curve.ended}; the check takes "
+                "a curve up to where nothing is borne: leave out to, or follow masonry that slides by push"
+            )
+        part = MovingPart.of(curve.start, masonry, curve.effects)
+        moved, last = part.displacement(masonry, curve.pose), int(np.flatnonzero(borne <= 0)[0])
+        end = falls_to_zero(moved[: last + 1], borne[: last + 1])
+        return cls(part, masonry, np.append(moved[:last], end), np.append(borne[:last], 0.0))
+
+
+def _of_blocks(curve: LimitCurve) -> _Mechanism:
+    """Masonry of blocks, up to where nothing is borne."""
+    part, masonry, moved, borne = _PartCurve.of("case", curve)
+    pulled = any(link.law.holds for link in link_effects(curve.effects).values())
+    return _Mechanism(
+        borne,
+        moved / part.participation,
+        part.participation,
+        float(borne[0]) if pulled else None,
+        slack=multiplier_of(curve.start, masonry, curve.effects),
+        moving=part.names,
+    )
 
 
 def _of_wall(case: Case, code: Code) -> _Mechanism:
     """A wall that overturns, with its ties; ValueError if they hold it for good."""
-    require_wall("case", case, "collapse_multiplier")
+    require_wall("case", case, "mr.limit_curve(masonry, direction)")
     curve = pushover(case)
     if not math.isfinite(curve.end):
         raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
@@ -629,7 +695,7 @@ def dynamic_check(
     runs: Sequence[Response] | Sequence[Analysis],
     limit_state: str = "SLV",
     *,
-    curve: Push | None = None,
+    curve: LimitCurve | Push | None = None,
     store: str | Path | None = None,
     natural: bool | None = None,
     code: Code | str = USUAL_CODE,
@@ -643,10 +709,11 @@ def dynamic_check(
     what is known to hold up to collapse. The worse of both polarities of a record enters the mean, which is on the
     safe side of the clause.
 
-    Of masonry of many blocks d_0 is that of its `push` along a direction, of the common centroid of its free blocks,
-    and the maxima are those of the same centroid along that direction. Leave ties out of the push, and give it what
-    else is constant. A run from which a block has fallen exceeds d_0. Masonry that may go either way is checked with
-    the push either way.
+    Of masonry of many blocks d_0 is that of its `limit_curve` along a direction, of the common centroid of the blocks
+    that move in the mechanism, and the maxima are those of the same centroid along that direction. Where joints slide,
+    so that a limit curve ends early, it is that of its `push`, of the common centroid of all free blocks. Leave ties
+    out of the curve, and give it what else is constant. A run from which a block has fallen exceeds d_0. Masonry that
+    may go either way is checked with the curve either way.
 
     The clause demands more records than the global response, natural ones that fit the spectrum together, and a
     restitution of mechanism and slenderness. A warning names what the runs lack of it. Whether they fit the spectrum is
@@ -656,7 +723,7 @@ def dynamic_check(
         runs: responses of one wall or masonry with the same effects, of any solver, or of a wall the `Analysis` tasks
             of a campaign.
         limit_state: "SLV" or "SLC", or one of another code, whose spectrum the records fit.
-        curve: of masonry, its push along the direction that is checked, until nothing is borne any more.
+        curve: of masonry, its limit curve or push along the direction that is checked, until nothing is borne any more.
         store: the file of the campaign, for tasks.
         natural: whether the records are natural ones. None if it is not known.
         code: the name of a code that comes with the package, "NTC 2018", or a `Code`.
@@ -675,7 +742,7 @@ def dynamic_check(
     rule = _dynamic_rule(code)
     require_one_of("limit_state", limit_state, code.states)
     require_kind("natural", natural, bool, type(None))
-    require_kind("curve", curve, Push, type(None))
+    require_kind("curve", curve, LimitCurve, Push, type(None))
     if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):
         raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
     cases = _cases_of(given, curve)
@@ -687,7 +754,8 @@ def dynamic_check(
         case = cast(Case, cases[0])
         d_0, maxima = d_0_of(case), [displaced(case.wall, one * case.wall.alpha) for one in _peaks(given, store)]
     else:
-        d_0, maxima = curve.d_0, [_along(run, cast(MasonryCase, run.case), curve.way) for run in responses]
+        judged = _Judged.of(curve)
+        d_0, maxima = judged.d_0, [judged.largest(run) for run in responses]
     found = tuple(
         RunMaximum(motion.name, *signal, run.solver, d)
         for motion, signal, run, d in zip(motions, signals_of(cases), given, maxima, strict=True)
@@ -718,22 +786,44 @@ def displaced(wall: Block, rotation: float) -> float:
     return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
 
 
-def _along(run: Response, case: MasonryCase, way: Array) -> float:
-    """Largest displacement of the centroid of the free blocks along a direction [m], infinite where a block fell."""
-    return math.inf if run.fallen else max(float(of_centroid(case, run.pose, way).max()), 0.0)
+class _Judged(NamedTuple):
+    """What of masonry is judged in runs: the centroid of some blocks along a direction, shape (d,), and its d_0 [m]."""
+
+    masonry: Masonry
+    blocks: tuple[str, ...]
+    way: Array
+    d_0: float
+
+    @classmethod
+    def of(cls, curve: LimitCurve | Push) -> _Judged:
+        """The blocks that move in a limit curve, or all free ones in a push."""
+        if isinstance(curve, LimitCurve):
+            part, masonry, moved, _ = _PartCurve.of("curve", curve)
+            return cls(masonry, part.names, part.way, float(moved[-1]))
+        masonry = cast(MasonryCase, curve.answer.case).masonry
+        return cls(masonry, tuple(masonry.names[i] for i in masonry.free), curve.way, curve.d_0)
+
+    def largest(self, run: Response) -> float:
+        """Its largest displacement in a run [m], infinite where a block fell."""
+        case = cast(MasonryCase, run.case)
+        return math.inf if run.fallen else max(float(of_centroid(case, run.pose, self.way, self.blocks).max()), 0.0)
 
 
-def _cases_of(runs: Sequence[Response | Analysis], curve: Push | None) -> list[AnyCase]:
+def _cases_of(runs: Sequence[Response | Analysis], curve: LimitCurve | Push | None) -> list[AnyCase]:
     """The cases of runs of one kind, which are of one wall or masonry with the same effects."""
     first = runs[0].case
-    if curve is not None:
+    masonry = None
+    if isinstance(curve, Push):
         _require_whole(curve)
+        masonry = curve.answer.case.built
+    elif curve is not None:
+        masonry = curve.start.masonry
     for i, run in enumerate(runs):
         require_kind(f"runs[{i}]", run, Response if isinstance(runs[0], Response) else Analysis)
         case = run.case
         if curve is None:
-            require_wall(f"runs[{i}]", case, "curve, its push along the direction that is checked")
-        elif case.built != curve.answer.case.built:
+            require_wall(f"runs[{i}]", case, "curve, its limit_curve or push along the direction that is checked")
+        elif case.built != masonry:
             raise ValueError(f"runs[{i}] is not of the masonry of curve")
         if case.motion is None:
             raise ValueError(f"runs[{i}] has no horizontal ground motion, of which the clause takes the maxima")

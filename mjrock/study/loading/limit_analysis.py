@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -51,6 +51,9 @@ PRESSED = 1e-6
 """Normal force of a joint that counts as none, over the largest [-]."""
 BEHIND = 0.1
 """How far a line that closes may lie behind its face, over the tolerance of the masonry [-]."""
+TANGENT, FARTHER = 1e-4, 10
+"""Displacement at which the fall of a curve is looked at first, over the size of the masonry, and how many times the
+steps that are expected a curve may take until nothing is borne any more [-]."""
 HALVINGS = 40
 """How often a step is halved at most in the search for where a line closes."""
 
@@ -253,12 +256,16 @@ class LimitCurve:
         multiplier: of the horizontal force over the weight [-], shape (n,), below zero where the masonry is held back.
         pose: of the free blocks, as in a `Response`, shape (n, free, 3), in space (n, free, 7).
         ended: why it stopped, in words.
+        start: the mechanism with which it begins.
+        effects: those of the masonry, with the numbers of their blocks.
     """
 
     displacement: Array
     multiplier: Array
     pose: Array
     ended: str
+    start: Collapse = field(repr=False)
+    effects: tuple[Effect, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         return (
@@ -276,7 +283,7 @@ def limit_curve(
     masonry: Masonry,
     direction: float | ArrayLike | None = 1,
     *,
-    to: float,
+    to: float | None = None,
     angle: float | None = None,
     effects: Sequence[Effect] | Effect = (),
     poses: int = 100,
@@ -293,8 +300,9 @@ def limit_curve(
     Args:
         masonry: the masonry, with dry joints.
         direction, angle, effects: as of `collapse_multiplier`.
-        to: displacement of the centroid of all free blocks along the direction at which to stop [m], 1e-6 to 100.
-        poses: how many steps go to it, 2 to 10000; it ends before where nothing is borne any more.
+        to: displacement of the centroid of all free blocks along the direction at which to stop [m], 1e-6 to 100; None
+            goes on until nothing is borne any more.
+        poses: how many steps go to it, 2 to 10000, or about as many to where nothing is borne any more.
 
     Returns:
         The `LimitCurve`: `displacement` [m], `multiplier` [-], `pose` and `d_0`.
@@ -304,14 +312,20 @@ def limit_curve(
 
     Examples:
         >>> column = mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 3)
-        >>> round(mr.limit_curve(column, 1, to=0.5).d_0, 3)
+        >>> round(mr.limit_curve(column, 1).d_0, 3)
         0.3
     """
     require_kind("masonry", masonry, Masonry)
-    to = require_within("to", to, 1e-6, 100.0, "m")
-    step = to / require_whole("poses", poses, 2, 10_000)
-    found = collapse_multiplier(masonry, direction, angle=angle, effects=effects)
+    poses = require_whole("poses", poses, 2, 10_000)
+    given = _required(masonry, effects)
+    start = found = collapse_multiplier(masonry, direction, angle=angle, effects=given)
     path = Path.of(masonry, horizontal(masonry, direction, angle))
+    if to is None:
+        step = path.reach(start, given) / poses
+        to, most = math.inf, FARTHER * poses
+    else:
+        to, most = require_within("to", to, 1e-6, 100.0, "m"), poses
+        step = to / poses
     curve = [(0.0, found.multiplier, path.rest)]
     while True:
         d, multiplier, pose = curve[-1]
@@ -325,11 +339,11 @@ def limit_curve(
         if path.gone(pose) - d < ROUNDED * path.size:
             ended = "locks"
             break
-        if len(curve) > poses + len(path.pair):
+        if len(curve) > most + len(path.pair):
             ended = "lines close again and again"
             break
         try:
-            found = collapse_multiplier(masonry, direction, angle=angle, effects=effects, pose=pose)
+            found = collapse_multiplier(masonry, direction, angle=angle, effects=given, pose=pose)
         except UnbalancedError:
             ended = "another joint begins to open"
             break
@@ -338,7 +352,7 @@ def limit_curve(
             break
         curve.append((path.gone(pose), found.multiplier, pose))
     displacement, multipliers, gone = zip(*curve, strict=True)
-    return LimitCurve(np.array(displacement), np.array(multipliers), np.array(gone), ended)
+    return LimitCurve(np.array(displacement), np.array(multipliers), np.array(gone), ended, start, given)
 
 
 def _ended(d: float, multiplier: float, to: float, found: Collapse) -> str:
@@ -393,6 +407,20 @@ class Path(NamedTuple):
     def gone(self, pose: Array) -> float:
         """How far the centroid has gone along the way [m]."""
         return float(self.mass @ pose[:, : len(self.way)] @ self.way)
+
+    def reach(self, found: Collapse, effects: tuple[Effect, ...]) -> float:
+        """About how far the centroid goes until nothing is borne any more [m]: along the tangent of the curve at rest,
+        or the size of the masonry where it does not fall."""
+        if not found.moving:
+            return self.size
+        pose = self.further(self.rest, found, self.staying(self.rest, found), TANGENT * self.size)
+        direction = self.way[:2] if self.masonry.in_space else self.way[0]
+        try:
+            after = collapse_multiplier(self.masonry, direction, effects=effects, pose=pose).multiplier
+        except ValueError:
+            return self.size
+        fall = (found.multiplier - after) / self.gone(pose)
+        return min(found.multiplier / fall, self.size) if fall > 0 else self.size
 
     def rates(self, moves: Moves, directions: Array) -> csr_array:
         """Rates at which lines move apart in directions of their faces at rest, for unit velocities, (m, unknowns)."""

@@ -234,15 +234,18 @@ def weight_of(case: MasonryCase) -> float:
     return GRAVITY * float(free_masses(case).sum())
 
 
-def of_centroid(case: MasonryCase, motion: Array, way: Array) -> Array:
+def of_centroid(case: MasonryCase, motion: Array, way: Array, blocks: Sequence[str] | None = None) -> Array:
     """Displacement [m] or velocity [m/s] of the common centroid of the free blocks along a unit vector, shape (n,).
 
     Args:
         case: the masonry and its effects.
         motion: poses or velocities of the free blocks, shape (n, free, nq).
         way: the unit vector, shape (d,).
+        blocks: names of those that count; None are all.
     """
     mass = free_masses(case)
+    if blocks is not None:
+        mass = np.where([case.masonry.names[i] in blocks for i in case.masonry.free], mass, 0.0)
     return np.asarray((motion[..., : len(way)] @ way) @ mass / mass.sum())
 
 
