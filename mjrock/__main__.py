@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
-COMMANDS = {"inspect": ".anymodel.command", "status": ".study.campaign.progress", "view": ".engine.replay"}
+from .notice import notice
+
+COMMANDS = {
+    "compile": ".study.compilation",
+    "inspect": ".anymodel.command",
+    "status": ".study.campaign.progress",
+    "view": ".engine.replay",
+}
 """Where the function `answer` of each command is, which takes its arguments and returns a text."""
 HELP = {
+    "compile": "compile the loops of all solvers and store them, once for an installation",
     "inspect": "contacts of a MuJoCo model in physical units",
     "status": "how far a campaign is, from its store",
     "view": "a model and its answer in MuJoCo's viewer",
@@ -33,9 +42,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         text = importlib.import_module(module, "mjrock").answer(given[1:])
     except (ValueError, TypeError, OSError) as error:
-        sys.stderr.write(f"error: {error}\n")
+        notice(str(error), by="error")
         return 2
-    sys.stdout.write(text + "\n")
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:  # nobody reads on, as of `| head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0
 
 

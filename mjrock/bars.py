@@ -20,7 +20,7 @@ OF_ALL = "{desc}: {percentage:3.0f}%|{bar}| {n:.0f} of {total:g} {unit} [{elapse
 def shown_bar(what: str, unit: str, total: float | None, **options: object) -> tqdm:
     """The bar of tqdm that suits: a widget in a notebook with `ipywidgets`, otherwise text.
 
-    Seconds have two decimals. Nothing is shown where the output is a file.
+    Seconds have two decimals. Nothing is shown where the output is a file, or where there is none.
     """
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     in_notebook = hasattr(shell, "kernel")  # of Jupyter, VS Code or Colab
@@ -32,7 +32,8 @@ def shown_bar(what: str, unit: str, total: float | None, **options: object) -> t
     if unit == "s":
         form = form.replace("{n:.0f}", "{n:.2f}")
     options = {"total": total, "desc": what, "unit": unit, "bar_format": form} | options
-    return kind(disable=False if in_notebook else None, **options)
+    silent = True if sys.stderr is None else None  # None: where it is no terminal
+    return kind(disable=False if in_notebook else silent, **options)
 
 
 class Bar:

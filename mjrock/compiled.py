@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
-import sys
 from collections.abc import Callable
 from functools import cache, cached_property
 from pathlib import Path
@@ -22,6 +21,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from .interrupts import interrupts_held_back
+from .notice import notice
 from .patience import NotStoredError, allowed, as_plain_python, news
 
 WITHOUT = "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
@@ -44,12 +44,12 @@ def _imported_numba() -> Any:
         import numba
         import numba.extending
 
-        from .stored import LoopCache, tell_of_compilations
+        from .stored import cache_of, tell_of_compilations
     except ImportError:
-        sys.stderr.write(f"mjrock: {WITHOUT}\n")
+        notice(WITHOUT)
         return None
     tell_of_compilations()
-    globals().update(numba=numba, LoopCache=LoopCache)
+    globals().update(numba=numba, cache_of=cache_of)
     while _waiting:
         _register(numba, _waiting.pop(0))
     return numba
@@ -65,7 +65,7 @@ def _register(numba: Any, function: Callable[..., Any]) -> None:
 
 def __getattr__(name: str) -> Any:
     """numba and what is made of it, where there is numba."""
-    if name in ("numba", "LoopCache") and _numba() is not None:
+    if name in ("numba", "cache_of") and _numba() is not None:
         return globals()[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
@@ -161,8 +161,7 @@ class Loop:
             return self.py_func
         dispatcher = numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)(self.py_func)
         if dispatcher is not self.py_func:  # it is with NUMBA_DISABLE_JIT=1
-            with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
-                dispatcher._cache = globals()["LoopCache"](self.py_func, self._at_once)
+            dispatcher._cache = globals()["cache_of"](self.py_func, self._at_once)
         return dispatcher
 
 

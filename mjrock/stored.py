@@ -5,16 +5,16 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import re
-import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from numba.core import event
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, NullCache
 
-from .patience import NotStoredError, allowed, is_behind
+from .notice import notice
+from .patience import NotStoredError, allowed
 
 SLOW = {
     "mjrock.theory.arcs.rocking_loop": ("rocking theory", 3),
@@ -28,40 +28,54 @@ SLOW = {
 NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
 IMPORT = re.compile(r"^from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
 """An import from the package as a module is imported itself, not in a function or for a type checker."""
-
-
-def notice(text: str) -> None:
-    """Tell the user a line."""
-    sys.stderr.write(f"mjrock: {text}\n")
+CONSTANT = r"^(?:\w+, )*(?:{})\b.* = .*(?:\n[ )\]}}].*)*"
+"""Constants of some names."""
+TUPLE = r"^class (?:{})\(NamedTuple\):\n(?:(?: .*)?\n)*"
+"""NamedTuples of some names."""
+FIELD = r"^    \w+: .*"
 
 
 @cache
-def _imports(path: Path) -> list[Path]:
-    """The modules of the package that a module imports as it is imported itself."""
+def _imports(path: Path) -> list[tuple[Path, list[str]]]:
+    """The modules of the package that a module imports as it is imported itself, and which names of them."""
     found = []
-    for dots, module, names in IMPORT.findall(path.read_text(encoding="utf-8")):
-        folder = path.parents[len(dots) - 1].joinpath(*module.split("."))
-        found += [folder.with_suffix(".py"), *(folder / f"{name}.py" for name in re.findall(r"\w+", names))]
-    return [module for module in found if module.is_file()]
+    for dots, module, listed in IMPORT.findall(path.read_text(encoding="utf-8")):
+        names, folder = re.findall(r"\w+", listed), path.parents[len(dots) - 1].joinpath(*module.split("."))
+        found += [(folder.with_suffix(".py"), names), *((folder / f"{name}.py", []) for name in names)]
+    return [(module, names) for module, names in found if module.is_file()]
+
+
+def _has_compiled(text: str) -> bool:
+    return "@compiled" in text or "@inlined" in text
+
+
+def _numbers(path: Path, names: list[str]) -> list[str]:
+    """The constants of some names in a module without compiled functions, and the fields of its NamedTuples."""
+    text, named = path.read_text(encoding="utf-8"), "|".join(names)
+    if not names or _has_compiled(text):
+        return []
+    fields = re.findall(FIELD, "".join(re.findall(TUPLE.format(named), text, re.MULTILINE)), re.MULTILINE)
+    return [*re.findall(CONSTANT.format(named), text, re.MULTILINE), *fields]
 
 
 def stamp(path: Path) -> str:
     """A digest of the modules with compiled functions among a module and all that it imports, directly or not.
 
     numba recompiles a function when its own file has changed. A compiled function also contains the functions of other
-    files that it calls, so that a change in any of these files has to recompile it as well.
+    files that it calls, the constants and the order of the fields of what it is given, so that a change of any of these
+    has to recompile it as well. Constants and fields may stand in modules without compiled functions.
     """
     found, ahead = set(), [path]
     while ahead:
         module = ahead.pop()
         if module not in found:
             found.add(module)
-            ahead += _imports(module)
+            ahead += [imported for imported, _ in _imports(module)]
     digest = hashlib.sha256()
     for module in sorted(found):
-        text = module.read_bytes()
-        if any(mark in text for mark in (b"@compiled", b"@inlined")):
-            digest.update(text)
+        text = module.read_text(encoding="utf-8")
+        if _has_compiled(text):
+            digest.update("\n".join([text, *(line for each in _imports(module) for line in _numbers(*each))]).encode())
     return digest.hexdigest()
 
 
@@ -98,18 +112,12 @@ class LoopCache(FunctionCache):  # type: ignore[misc]
             return None
 
     def _lock(self) -> None:
-        """Wait while another process compiles this function, which frees the lock also where it is killed.
-
-        A process that compiles for another one goes on to the next function instead.
-        """
-        from filelock import FileLock, Timeout  # needed only where something is compiled
+        """Wait while another process compiles this function, which frees the lock also where it is killed."""
+        from filelock import FileLock  # needed only where something is compiled
 
         with contextlib.suppress(OSError):  # a disk that cannot be written stores nothing either
-            try:
-                self._locked = FileLock(f"{self._cache_file._index_path}.lock")
-                self._locked.acquire(blocking=not is_behind())
-            except Timeout:
-                raise NotStoredError from None
+            self._locked = FileLock(f"{self._cache_file._index_path}.lock")
+            self._locked.acquire()
 
     def _unlock(self) -> None:
         if self._locked is not None:
@@ -120,6 +128,42 @@ class LoopCache(FunctionCache):  # type: ignore[misc]
         with contextlib.suppress(OSError):
             super().save_overload(*key)
         self._unlock()
+
+
+class NoCache(NullCache):  # type: ignore[misc]
+    """Where nothing can be stored, short runs need not wait for the compiler either."""
+
+    def __init__(self, at_once: bool) -> None:
+        self._at_once = at_once
+
+    def load_overload(self, *key: Any) -> None:
+        """Nothing is stored.
+
+        Raises:
+            NotStoredError: if the run need not wait for the compiler.
+        """
+        if allowed(self._at_once):
+            raise NotStoredError
+
+
+def cache_of(function: Callable[..., Any], at_once: bool) -> LoopCache | NoCache:
+    """Where a compiled function is stored, if any folder can be written."""
+    try:
+        return LoopCache(function, at_once)
+    except RuntimeError:  # neither the package nor the user's folder can be written
+        return NoCache(at_once)
+
+
+def folder() -> Path:
+    """The folder in which loops of the modules beside this one are stored; the folders of others lie beside it.
+
+    Raises:
+        OSError: if none can be written.
+    """
+    path = cache_of(folder, at_once=False).cache_path
+    if path is None:
+        raise OSError(NOWHERE)
+    return Path(path)
 
 
 class Compilations(event.Listener):  # type: ignore[misc]

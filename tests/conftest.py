@@ -1,11 +1,13 @@
 import contextlib
 import gc
 import os
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 
 import pytest
 
 import mjrock as mr
+from mjrock import machine
+from mjrock.study.compilation import RUNS, carry_out
 from scripts.shared.paper import FIGURE_3, K_N
 
 os.environ.setdefault("MJROCK_INTERPRET", "0")  # tests compile; those of first answers switch it on
@@ -19,8 +21,14 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     worker = getattr(session.config, "workerinput", None)
     if worker is not None:
         with contextlib.suppress(Exception):
-            for run in loops()[int(worker["workerid"].removeprefix("gw")) :: worker["workercount"]]:
-                run()
+            for number in range(int(worker["workerid"].removeprefix("gw")), len(RUNS), worker["workercount"]):
+                carry_out(number)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Name what last digits depend on, where a test has failed."""
+    if terminalreporter.stats.get("failed") or terminalreporter.stats.get("error"):
+        terminalreporter.write_line(f"computed by {machine.description()}")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -42,25 +50,6 @@ LONG = {"test_hostile", "test_wheel", "test_pages", "test_scripts", "test_earthq
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """The longest tests start first, so that no process waits at the end for one that another has just begun."""
     items.sort(key=lambda item: item.path.stem not in LONG)
-
-
-def loops() -> list[Callable[[], object]]:
-    """Short runs that call the loops which take seconds to compile; MuJoCo and explicit steps in turn."""
-    contacts = mr.Contacts.from_damping(FIGURE_3, k_base=K_N, xi_base=0.05)
-    case, push = mr.Case(FIGURE_3, 0.01, 0.02, side_stop=False), mr.GroundMotion.half_sine(9.0, 0.5)
-    plane = mr.MasonryCase(mr.Masonry.stack([FIGURE_3], K_N), 1.0, motion=push)
-    space = mr.MasonryCase(mr.Masonry.box((0.6, 0.4, 2.0), k_n=K_N), 1.0, motion=push)
-    short = mr.MasonryCase(space.masonry, 0.02)
-    e = mr.Restitution.from_geometry(FIGURE_3)
-    return [
-        lambda: mr.simulate(case, contacts),
-        lambda: mr.solve_explicit(plane),
-        lambda: mr.simulate(short),
-        lambda: mr.solve_explicit(space),
-        lambda: mr.simulate(case, contacts, 1e-4),
-        lambda: mr.solve_analytical(mr.Case(FIGURE_3, 0.0, 1.0, motion=push), e),
-        lambda: mr.simulate(short, timestep=1e-4),
-    ]
 
 
 @pytest.fixture(scope="session")

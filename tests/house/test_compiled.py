@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import compiled, stored
+from mjrock import bars, compiled, compiler, patience, stored
 
 PACKAGE = Path(mr.__file__).parent
 
@@ -113,33 +113,46 @@ def test_the_stamp_of_a_module_is_that_of_what_it_imports(tmp_path):
     copy = tmp_path / "mjrock"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "laws"))
 
-    def edited(module):
-        """Which of three modules with loops have another stamp after an edit of a module with compiled functions."""
+    def edited(module, old="", new="# @compiled"):
+        """Which of three modules with loops have another stamp after an edit of a module with compiled functions, or
+        after an edit in the one line that has some text."""
         path = copy / module
         text = path.read_text()
-        path.write_text(text + "\n# @compiled\n")
+        assert not old or text.count(old) == 1
+        path.write_text(text.replace(old, new) if old else f"{text}\n{new}\n")
         after = stamps()
         path.write_text(text)
-        return {name for name, stamp in stamps().items() if stamp != after[name]}
+        return {name for name, stamp in before.items() if stamp != after[name]}
 
     def stamps():
         stored._imports.cache_clear()
         names = ("engine/loop.py", "theory/arcs.py", "distinct/loop.py")
         return {name: stored.stamp(copy / name) for name in names}
 
+    before = stamps()
     assert edited("distinct/loop.py") == {"distinct/loop.py"}
     assert edited("distinct/contacts/contact.py") == {"distinct/loop.py"}
     assert edited("theory/arcs.py") == {"theory/arcs.py"}
     assert edited("engine/loop.py") == {"engine/loop.py"}
     assert edited("engine/pace.py") == {"engine/loop.py"}
     assert "engine/loop.py" in edited("geometry/frames.py")  # which it reaches by others
-    assert edited("compiled.py") == {"engine/loop.py", "theory/arcs.py", "distinct/loop.py"}
+    assert edited("engine/memory.py", "TIMESTEP, IMPRATIO = 0, 1", "TIMESTEP, IMPRATIO = 1, 0") == {"engine/loop.py"}
+    order = "    pose: Array\n    velocity: Array\n", "    velocity: Array\n    pose: Array\n"
+    assert edited("engine/memory.py", *order) == {"engine/loop.py"}
+    assert edited("engine/memory.py", '"linux": "libmujoco', '"linux": "lib') == set()  # no compiled function knows it
+    assert edited("engine/memory.py", "the two addresses.", "both.") == set()
+    assert edited("distinct/rows.py", "\nPOINT_ON_FIXED_BLOCK =", "\nPOINT_ON_FIXED_BLOCK = 1 +") == {
+        "distinct/loop.py"
+    }
+    every = {"engine/loop.py", "theory/arcs.py", "distinct/loop.py"}
+    assert edited("quantities.py", "\nGRAVITY =", "\nGRAVITY = 1 +") == edited("compiled.py") == every
     assert edited("distinct/search/contact_search.py") <= {"distinct/loop.py"}
 
 
 @pytest.mark.slow
 def test_a_read_only_installation_works(tmp_path):
-    """No folder can be written, neither the package's nor the user's: the loops are compiled in each process."""
+    """No folder can be written, neither the package's nor the user's: short runs go as plain Python, and where they may
+    not, the loops are compiled in each process."""
     copy = tmp_path / "site" / "mjrock"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
     # a file where the folders would have to be made, which stops even the superuser
@@ -149,8 +162,14 @@ def test_a_read_only_installation_works(tmp_path):
     nowhere = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": str(tmp_path / "home"), "PYTHONDONTWRITEBYTECODE": "1"}
     said = run(tmp_path / "anew.npz", home=tmp_path / "site", program=THEORY, **nowhere)
     assert said.splitlines() == [f"mjrock: {COMPILING}{ANEW}"]
+    assert run(tmp_path / "plain.npz", home=tmp_path / "site", program=THEORY, MJROCK_INTERPRET="1", **nowhere) == ""
     run(tmp_path / "stored.npz", program=THEORY)
     same(tmp_path / "anew.npz", tmp_path / "stored.npz")
+    same(tmp_path / "plain.npz", tmp_path / "stored.npz")
+    command = [sys.executable, "-m", "mjrock", "compile"]
+    setting = os.environ | nowhere | {"PYTHONPATH": str(tmp_path / "site")}
+    refused = subprocess.run(command, env=setting, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (refused.returncode, refused.stderr) == (2, f"error: {stored.NOWHERE}\n")
 
 
 def test_a_cache_that_cannot_be_read_or_written_is_none(monkeypatch):
@@ -196,6 +215,63 @@ def test_where_no_folder_can_be_written_it_says_so(monkeypatch, capfd):
     monkeypatch.setitem(stored.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
     compiled.compiled(PROBE)(np.ones(2))
     assert capfd.readouterr().err == f"mjrock: compiling probes, some 7 s of a core, {ANEW}\n"
+
+
+def test_where_nothing_can_be_stored_short_runs_are_plain_python(monkeypatch):
+    if not compiled._numba():
+        pytest.skip("without numba nothing is stored")
+    from numba.core.caching import FunctionCache
+
+    monkeypatch.setattr(FunctionCache._impl_class, "_locator_classes", [])
+    monkeypatch.setenv("MJROCK_INTERPRET", "1")
+    monkeypatch.setattr(patience._here, "taken", 0.0)
+    monkeypatch.setattr(patience._here, "started", patience.MOST)
+    probe, room = compiled.compiled(PROBE), np.ones(2)
+    with patience.first_answer(print):
+        probe(room)
+        assert not probe.signatures
+        monkeypatch.setattr(patience._here, "taken", patience.COMPILING)
+        probe(room)
+    assert len(probe.signatures) == 1
+    assert list(room) == [4.0, 4.0]
+    assert compiler.lock_of_store() is None
+
+
+def test_where_there_is_no_standard_error_it_compiles_in_silence(monkeypatch, tmp_path):
+    """As of pythonw on Windows, of services, and of programs without a console. It compiles also what is stored."""
+    if not compiled._numba():
+        pytest.skip("without numba nothing is stored")
+    from numba.core.caching import FunctionCache
+
+    monkeypatch.setattr(FunctionCache, "load_overload", lambda self, *key: None)
+    monkeypatch.setitem(stored.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
+    monkeypatch.setattr(sys, "stderr", None)
+    room = np.ones(2)
+    compiled.compiled(PROBE)(room)
+    assert list(room) == [2.0, 2.0]
+    with bars.shown_bar("probes", "pieces", 3) as bar:
+        bar.update(2)
+    wall = mr.Block.from_size(0.6, 4.2)
+    monkeypatch.undo()
+    monkeypatch.setattr(sys, "stderr", None)
+    walls = [mr.Analysis(mr.Case(wall, 0.05, 0.1), "analytical", mr.Restitution.from_geometry(wall))]
+    mr.campaign(walls, tmp_path / "walls.sqlite", workers=1)
+    with mr.Store(tmp_path / "walls.sqlite") as store:
+        assert [row["status"] for row in store.rows()] == ["done"]
+
+
+@pytest.mark.slow
+def test_the_command_stores_what_scripts_call(tmp_path):
+    """A wall and theory then compile nothing. The command says where the loops are."""
+    copy = tmp_path / "mjrock"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    command = [sys.executable, "-m", "mjrock", "compile"]
+    said = subprocess.check_output(command, env=os.environ | {"PYTHONPATH": str(tmp_path)}, cwd=tmp_path, text=True)
+    assert said.startswith(f"the loops are stored in {copy}; ")
+    before = sorted(copy.rglob("*.nbc"))
+    assert len(before) > 30
+    assert run(tmp_path / "stored.npz", home=tmp_path, MJROCK_INTERPRET="0") == ""
+    assert sorted(copy.rglob("*.nbc")) == before
 
 
 def test_squares_are_products():

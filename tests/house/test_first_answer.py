@@ -1,12 +1,16 @@
 """Where no loop is stored, a short run has its answer as plain Python while another process compiles: `patience`."""
 
 import json
+import multiprocessing
 import os
+import pickle
 import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+import timeit
 from pathlib import Path
 
 import filelock
@@ -28,8 +32,8 @@ wall = mr.Block.from_size(0.6, 4.2)
 contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
 case = mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False)
 answer = mr.simulate(case, contacts)
-behind = patience._here.compiling
-print(answer.theta[-1].hex(), "numba" in sys.modules, behind and behind.pid, flush=True)
+behind = patience._here.compiler
+print(answer.theta[-1].hex(), "numba" in sys.modules, behind and behind.process.pid, flush=True)
 """
 
 THEORY = """
@@ -45,6 +49,15 @@ print(answer.theta[-1].hex())
 """Rocking theory, whose loop is compiled the soonest."""
 
 
+BEHIND = """
+from mjrock import compiler
+compiler.lock_of_store = lambda: "no other process matters here"
+compiler.serve(0.2)
+"""
+
+linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="it looks into /proc")
+
+
 @pytest.fixture
 def fresh(tmp_path):
     """A copy of the package that has stored nothing."""
@@ -52,9 +65,13 @@ def fresh(tmp_path):
     return tmp_path
 
 
-def started(folder, program=WALL, interpret="1", **environment):
-    """A program in a process of its own that takes the package in a folder."""
+def started(folder, program=WALL, interpret="1", *, at_home=False, **environment):
+    """A program in a process of its own that takes the package in a folder; as if it were no test, where it lies at
+    home."""
     setting = os.environ | {"PYTHONPATH": str(folder), "MJROCK_INTERPRET": interpret} | environment
+    if at_home:
+        setting = {name: value for name, value in setting.items() if name not in patience.ENDING}
+        setting["TMPDIR"] = str(folder / "mjrock" / "theory")  # any folder in which the package does not lie
     piped = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     return subprocess.Popen([sys.executable, "-c", program], env=setting, cwd=folder, **piped)
 
@@ -79,6 +96,14 @@ def is_alive(process):
         return False
 
 
+def ended(process, within=20):
+    """Whether a process ends within some time [s]."""
+    until = time.monotonic() + within
+    while is_alive(process) and time.monotonic() < until:
+        time.sleep(0.05)
+    return not is_alive(process)
+
+
 def test_an_answer_comes_without_a_compiler_and_with_the_same_digits(fresh):
     theta, numba, _ = said(fresh)
     assert numba == "False"
@@ -87,9 +112,9 @@ def test_an_answer_comes_without_a_compiler_and_with_the_same_digits(fresh):
     assert theta == mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False), contacts).theta[-1].hex()
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="it looks into /proc")
+@linux
 @pytest.mark.parametrize("ending", ["ends", "killed"])
-def test_the_process_that_compiles_ends_with_its_parent(fresh, ending):
+def test_the_process_that_compiles_ends_with_its_parent_in_a_test(fresh, ending):
     parent = started(fresh, WALL + "sys.stdin.read()")
     process = parent.stdout.readline().split()[-1]
     if process == "None":
@@ -98,11 +123,81 @@ def test_the_process_that_compiles_ends_with_its_parent(fresh, ending):
     if ending == "killed":
         parent.kill()
     parent.communicate("")
-    until = time.monotonic() + 20
-    while is_alive(process) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not is_alive(process)
+    assert ended(process)
     assert not has_stored(fresh)
+
+
+@linux
+def test_the_process_that_compiles_outlives_a_short_script_and_says_so(fresh):
+    parent = started(fresh, at_home=True)
+    process = parent.stdout.readline().split()[-1]
+    if process == "None":
+        pytest.skip("one core: nothing compiles behind a run")
+    said = parent.communicate("")[1]
+    try:
+        assert is_alive(process)
+        assert said == (
+            f"mjrock: process {process} goes on compiling for at most 120 s, at low priority; the next start takes "
+            "what it stores. It can be ended without harm\n"
+        )
+        assert Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[16] == "10"  # its nice value
+    finally:
+        os.kill(int(process), signal.SIGKILL)
+
+
+@linux
+@pytest.mark.slow
+def test_the_second_start_takes_compiled_loops(fresh):
+    """Of a script that ends long before the compiler does. The bits are the same, and nothing is said any more."""
+    counted = "print(sum(rocking_loop.stats.cache_hits.values()) if rocking_loop._loaded else 0)"
+    first = started(fresh, THEORY + counted, at_home=True)
+    told, said = first.communicate("")
+    if patience._cores() == 1:
+        pytest.skip("one core: nothing compiles behind a run")
+    assert told.split()[-1] == "0"
+    assert ended(said.split("process ")[1].split()[0], within=300)
+    assert started(fresh, THEORY + counted, at_home=True).communicate("") == (told.split()[0] + "\n1\n", "")
+
+
+@linux
+def test_one_process_for_each_store_compiles_behind_others(fresh):
+    """A second one ends at once, though its parent runs on."""
+    kept = fresh / "mjrock" / "__pycache__" / "compiler.lock"
+    kept.parent.mkdir(exist_ok=True)
+    with filelock.FileLock(kept):
+        parent = started(fresh, WALL + "sys.stdin.read()", at_home=True)
+        process = parent.stdout.readline().split()[-1]
+        assert process == "None" or ended(process)
+    assert parent.communicate("")[1] == ""
+
+
+@pytest.mark.parametrize("setting", [*patience.ENDING, "NUMBA_CACHE_DIR", "first process", "worker"])
+def test_where_the_process_that_compiles_ends_with_its_parent(setting, monkeypatch, tmp_path):
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    for name in (*patience.ENDING, "NUMBA_CACHE_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(os, "getppid", lambda: 77)
+    assert patience.may_outlive()
+    if setting == "first process":
+        monkeypatch.setattr(os, "getppid", lambda: 1)
+    elif setting == "worker":
+        monkeypatch.setattr(multiprocessing, "parent_process", multiprocessing.current_process)
+    else:
+        monkeypatch.setenv(setting, str(tmp_path / "store"))
+    assert not patience.may_outlive()
+
+
+@linux
+def test_the_process_that_compiles_is_limited():
+    """In the time of a core, in memory, and in time after its parent."""
+    limits = "from mjrock import compiler; import resource as r; compiler.limit(); print(*r.getrlimit(r.RLIMIT_CPU))"
+    assert subprocess.check_output([sys.executable, "-c", limits], text=True).split() == ["120", "120"]
+    run = patience.Run(timeit.timeit, {"stmt": "import time; time.sleep(60)", "number": 1})
+    begun = time.monotonic()
+    process = subprocess.Popen([sys.executable, "-c", BEHIND], stdin=subprocess.PIPE)
+    process.communicate(pickle.dumps(pickle.dumps(run)))
+    assert process.returncode == 1
+    assert time.monotonic() - begun < 30
 
 
 @pytest.mark.slow

@@ -11,9 +11,10 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
+    ("machine", "notice"),
     ("_version", "bars", "interrupts", "notebook", "patience"),
     ("stored",),
-    ("compiled", "files", "method", "quantities"),
+    ("compiled", "compiler", "files", "method", "quantities"),
     ("geometry", "linear"),
     ("problem.ground",),
     ("problem.wall",),
@@ -198,3 +199,23 @@ def test_a_constant_has_a_name_of_its_own():
     }
     assert len(named) > 100
     assert shared == {}
+
+
+def test_compiled_functions_give_tuples_every_field():
+    """numba makes a NamedTuple of what it is given: a field with a default that is left out is not there, and whoever
+    reads it gets an error that names no module."""
+    fields, calls = {}, []
+    for path in MODULES:
+        for node in nodes(path):
+            if isinstance(node, ast.ClassDef) and "NamedTuple" in [getattr(base, "id", "") for base in node.bases]:
+                fields.setdefault(node.name, set()).add(sum(isinstance(each, ast.AnnAssign) for each in node.body))
+            marks = {getattr(mark, "id", "") for mark in getattr(node, "decorator_list", ())}
+            if marks & {"compiled", "compiled_at_once", "inlined"}:
+                calls += [(path, call) for call in ast.walk(node) if isinstance(call, ast.Call)]
+    made = [(path, call) for path, call in calls if getattr(call.func, "id", "") in fields]
+    assert [
+        f"{path.relative_to(ROOT)}:{call.lineno}: {call.func.id} leaves out fields"
+        for path, call in made
+        if len(call.args) + len(call.keywords) not in fields[call.func.id]
+    ] == []
+    assert len(made) > 30

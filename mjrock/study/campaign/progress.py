@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import re
-import sys
 import time
 import warnings
 from collections import Counter
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ...bars import OF_ALL, PLAIN, shown_bar
+from ...notice import notice
 from .store import Store
 from .task import Row
 
@@ -192,7 +192,7 @@ class CampaignProgress:
         self._say(closing(self.skipped, self.statuses, self.outcomes, seconds, self.total))
 
     def _say(self, text: str) -> None:
-        print(f"campaign: {text}", file=sys.stderr, flush=True)
+        notice(text, by="campaign")
 
     def __enter__(self) -> CampaignProgress:
         return self

@@ -1,0 +1,47 @@
+"""What the last digits of an answer depend on: the kernels of linear algebra, which differ between processors."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import importlib.metadata
+import importlib.util
+import os
+import platform
+from functools import cache
+from pathlib import Path
+
+NAMES = ("scipy_openblas_get_corename64_", "scipy_openblas_get_corename", "openblas_get_corename")
+"""Functions of OpenBLAS that give the name of its kernel, as NumPy, SciPy and others name them."""
+
+
+@cache
+def kernels() -> dict[str, str]:
+    """The kernel that OpenBLAS takes for this processor, for NumPy and for SciPy, such as "Haswell".
+
+    The environment variable OPENBLAS_CORETYPE names another one. Packages that bring no OpenBLAS of their own, as those
+    of macOS and of conda, are left out.
+    """
+    found = {}
+    for package in ("numpy", "scipy"):
+        spec = importlib.util.find_spec(package)
+        folder = Path(spec.origin if spec is not None and spec.origin else package).parent
+        for path in [*folder.with_name(f"{package}.libs").glob("*openblas*"), *folder.glob(".dylibs/*openblas*")]:
+            with contextlib.suppress(OSError):
+                library = ctypes.CDLL(str(path))
+                for function in (getattr(library, name) for name in NAMES if hasattr(library, name)):
+                    function.restype = ctypes.c_char_p
+                    found[package] = function().decode()
+    return found
+
+
+def description() -> str:
+    """The processor, Python, and the versions and kernels of what computes, in one line."""
+    versions = [f"Python {platform.python_version()} on {platform.machine()}"]
+    for package in ("numpy", "scipy", "numba", "mujoco"):
+        with contextlib.suppress(importlib.metadata.PackageNotFoundError):
+            kernel = f" with OpenBLAS for {kernels()[package]}" if package in kernels() else ""
+            versions.append(f"{package} {importlib.metadata.version(package)}{kernel}")
+    if name := os.environ.get("NUMBA_CPU_NAME"):
+        versions.append(f"compiled for {name}")
+    return ", ".join(versions)
