@@ -7,12 +7,12 @@ DOCS := .venv/.docs
 OLDEST := .venv-oldest
 INSTALLED := out/installed
 
-.PHONY: demo docs test test-slow test-oldest test-installed mutants lint calibrate models figures robots clean stale
+.PHONY: demo docs test test-slow test-processors test-oldest test-installed mutants lint calibrate models figures robots clean stale
 
 # Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
-test test-slow test-oldest test-installed mutants: export OPENBLAS_NUM_THREADS = 1
+test test-slow test-processors test-oldest test-installed mutants: export OPENBLAS_NUM_THREADS = 1
 # Bytecode is stored: the processes that tests start then need not compile the package again, nor pytest rewrite its tests.
-test test-slow test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
+test test-slow test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
 demo: $(READY)
 	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo
@@ -27,6 +27,9 @@ docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.
 
 test-slow: $(DOCS)
 	$(BIN)/pytest -n auto --dist worksteal -m slow
+
+test-processors: $(TEST) # the everyday tests of the physics by the linear algebra of other processors; OTHERS=1 the few for .ci/run
+	$(BIN)/python tests/processors.py $(if $(OTHERS),--others)
 
 mutants: $(TEST) # changes one operator or number of the physics at a time and names what no test notices; some minutes
 	$(BIN)/python tests/mutants.py $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))
