@@ -276,7 +276,7 @@ def test_what_is_said_of_a_file_is_checked(tmp_path):
 @pytest.mark.parametrize(
     ("meshes", "complaint"),
     [
-        ({}, "meshes = {} of type dict is not a dict of vertices and faces by name"),
+        ({}, "meshes is empty: the model has no element of the kind .* whole walls, IfcWall"),
         ([1], "meshes = .* is not a dict"),
         ({"a": 1}, "meshes.'a' .* = 1 of type int is not a pair of vertices and faces"),
         ({"a": ([(0, 0)], [])}, "meshes.'a' .*: vertices has the shape .1, 2.; .n, 3. is needed"),

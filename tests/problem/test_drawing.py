@@ -78,22 +78,22 @@ def test_what_is_drawn_well_is_not_doubted(masonry):
 
 @pytest.mark.parametrize("gap", [0.0004, 0.01])
 @pytest.mark.parametrize("in_space", [False, True])
-def test_open_joints_are_refused_with_the_gap_and_a_tolerance_that_joins_them(gap, in_space):
-    """No block touches any other, or one alone does: either way the tolerance that is said makes all joints."""
+def test_open_joints_are_refused_with_the_gap_that_joins_them(gap, in_space):
+    """No block touches any other, or one alone does: either way the gap that is said makes all joints."""
     sides = [(-1.0, 3.0, -1.0, 0.0)] + [(i * (0.5 + gap), i * (0.5 + gap) + 0.5, gap, gap + 0.3) for i in range(3)]
     blocks = [mr.Polygon([(a, c), (b, c), (b, d), (a, d)], fixed=c < 0) for a, b, c, d in sides]
     if in_space:
         blocks = [mr.Polyhedron.prism(block) for block in blocks]
-    with pytest.raises(ValueError, match=rf"within the tolerance of 1e-05 m; .* there are {gap:g} m; tol") as refused:
+    with pytest.raises(ValueError, match=rf"within the tolerance of 1e-05 m; .* there are {gap:g} m; gap") as refused:
         mr.Masonry(blocks)
-    tolerance = float(re.search(r"tolerance = (\S+) m joins all of them", str(refused.value))[1])
-    assert gap < tolerance < 1.2 * gap
-    assert len(mr.Masonry(blocks, tolerance=tolerance).joints) == 5
+    said = re.search(r"gap = (\S+) m joins all of them: it finds 5 joints$", str(refused.value))
+    assert gap <= float(said[1]) < 1.2 * gap
+    assert len(mr.Masonry(blocks, gap=float(said[1])).joints) == len(mr.Masonry(blocks, gap=gap).joints) == 5
 
 
-def test_blocks_that_no_tolerance_joins_are_refused_with_their_distance():
+def test_blocks_that_no_gap_joins_are_refused_with_their_distance():
     ground, stone = (mr.Polygon([(0, z), (1, z), (1, z + 1), (0, z + 1)], fixed=z < 0) for z in (-1.0, 0.3))
-    with pytest.raises(ValueError, match=r"block_1 and block_0 there are 0.3 m, and no tolerance up to 0.1 m joins"):
+    with pytest.raises(ValueError, match=r"block_1 and block_0 there are 0.3 m, and no gap up to 0.1 m joins"):
         mr.Masonry([ground, stone])
 
 
@@ -160,8 +160,7 @@ def test_faces_of_a_file_that_nearly_touch_are_doubted():
         name: (np.array([(x, y, z) for x in ends for y in (0.0, 0.5) for z in (0.0, 0.5)]), faces)
         for name, ends in stones.items()
     }
-    with pytest.warns(
-        mr.Implausible, match=r"1 pairs .* lie less than 0.0002 m apart, such as one\|two; tolerance = 0"
-    ):
+    with pytest.warns(mr.Implausible, match=r"1 pairs .* lie less than 0.0002 m apart, such as one\|two; gap = 0.0002"):
         assert len(mr.Masonry.from_meshes(meshes, ground=True).joints) == 2
     assert len(mr.Masonry.from_meshes(meshes, ground=True, tolerance=2e-4).joints) == 3
+    assert len(mr.Masonry.from_meshes(meshes, ground=True, gap=2e-4).joints) == 3

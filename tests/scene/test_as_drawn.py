@@ -41,10 +41,25 @@ def test_a_block_drops_onto_springs_that_bear_nothing(solve, masonry):
 
 def test_masonry_that_does_not_stand_is_followed_as_it_falls():
     leaning = in_plane(lean=0.6)
-    with pytest.raises(ValueError, match="cannot stand"):
-        mr.solve_explicit(mr.MasonryCase(leaning, 0.1))
+    for solve in (mr.solve_explicit, mr.simulate):
+        with pytest.raises(ValueError, match=r"cannot stand: .*; settled=False in the case runs it as drawn"):
+            solve(mr.MasonryCase(leaning, 0.1))
     run = mr.solve_explicit(mr.MasonryCase(leaning, 0.2, settled=False))
     assert run.theta[-1, 0] > 0.01
+
+
+def test_a_block_slides_down_a_slope_as_coulomb_has_it():
+    """s = (sin a - mu cos a) g t^2 / 2 on 30 degrees, from springs without load; at rest it is refused."""
+    angle, mu = np.radians(30), 0.3
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    slope = mr.Polygon(np.array([(-9, -1), (9, -1), (9, 0), (-9, 0)]) @ turn, fixed=True)
+    block = mr.Polygon(np.array([(0, 0), (1.4, 0), (1.4, 0.52), (0, 0.52)]) @ turn)
+    masonry = mr.Masonry([slope, block], friction=mu)
+    with pytest.raises(ValueError, match=r"block_1 would fall under the weight; .*settled=False in the case runs it"):
+        mr.solve_explicit(mr.MasonryCase(masonry, 0.3))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.3, settled=False))
+    way = 0.5 * GRAVITY * (np.sin(angle) - mu * np.cos(angle)) * 0.3**2
+    assert np.hypot(*run.pose[-1, 0, :2]) == pytest.approx(way, rel=1e-4)
 
 
 def test_only_masonry_as_drawn_has_a_fingerprint_of_its_own():

@@ -19,8 +19,11 @@ from .files.bodies import LENGTH_UNITS
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
-LARGE_BLOCKS, MANY = 5.0, 5
-"""Size that half of the free blocks of masonry exceed which are probably not in m, where there are so many [m, -]."""
+LARGE_BLOCKS, SMALL_BLOCKS, MANY = 5.0, 0.02, 5
+"""Sizes that half of the free blocks of masonry exceed, or fall short of, which are probably not in m, where there are
+so many [m, m, -]."""
+STANDS = 1.5
+"""Height of blocks that stand, and are no wall that lies on its face [m]."""
 USUAL, COMMON_SIZE = (0.04, 3.0), 0.35
 """Sizes of blocks that a unit is named for, and that of which the nearest is named first [m]."""
 NEARLY = 20.0
@@ -28,10 +31,12 @@ NEARLY = 20.0
 LIES, ON_GROUND, ALONG = 0.25, 0.5, 2.0
 """Free blocks of a file lie along y from fixed ones by this share of the extent, and half of them lie on the ground
 while joints across y have twice the area of all others, where y may be the axis that points upwards [-]."""
+FINE_TOLERANCE = 1e-5
+"""The usual tolerance of masonry [m], at which narrow faces are found too."""
 WIDEST_TOLERANCE = 0.1
 """Largest tolerance of masonry [m]."""
 TOLERANCE_FACTOR = 1.05
-"""Factor to which the tolerance that joints need is found [-]."""
+"""Factor to which the gap that joints need is found [-]."""
 FAR_BELOW_LOWEST = 30.0
 """How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
 OVERDAMPED = 30.0
@@ -39,7 +44,7 @@ OVERDAMPED = 30.0
 UNDAMPED = 1e-4
 """The same below which it is doubted [-], where xi is a hundred times as much."""
 JointFinder = Callable[[float], Sequence[Joint | SpaceJoint]]
-"""The joints that a tolerance gives [m]."""
+"""The joints that a gap, or a tolerance, gives [m]."""
 ALIKE = 0.99
 """Cosine of the angle between the normals of two joints of the same two blocks, which convex blocks cannot have [-]."""
 
@@ -82,8 +87,9 @@ def odd_sizes(sizes: Mapping[str, float]) -> str:
     median = sizes[ordered[len(ordered) // 2]]
     if sizes[ordered[0]] > LARGEST_BLOCK:
         name = ordered[0]
-    elif sizes[ordered[-1]] < SMALLEST_BLOCK:
-        return f"{ordered[-1]} is {sizes[ordered[-1]]:.4g} m across: is the unit too small? A file takes unit='m'"
+    elif sizes[ordered[-1]] < SMALLEST_BLOCK or (len(sizes) >= MANY and median < SMALL_BLOCKS):
+        name = ordered[len(ordered) // 2]
+        return f"{name} is {sizes[name]:.4g} m across: is the unit too small? A file takes unit='m'"
     elif len(sizes) >= MANY and median > LARGE_BLOCKS:
         name = ordered[len(ordered) // 2]
     else:
@@ -115,7 +121,7 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
     """What says that blocks of a file stand along another axis than z, in words, empty where nothing does.
 
     Free blocks lie beside all fixed ones and not above them; or, where ground was put under the file, most of them lie
-    on it and are stacked sideways, as a wall that has been laid on its face.
+    on it and are stacked sideways, as a wall that has been laid on its face. Walls as high as a storey stand there.
     """
     free = [i for i, block in enumerate(blocks) if not block.fixed]
     held = [i for i, block in enumerate(blocks) if block.fixed]
@@ -129,6 +135,8 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
             return f"the free blocks lie along {'xy'[axis]} from the fixed ones and not above them; " + said.format(
                 "xy"[axis]
             )
+        return ""
+    if STANDS <= np.median([np.ptp(blocks[i].corners[:, 2]) for i in free]) <= LARGE_BLOCKS:
         return ""
     inner = [joint for joint in joints if joint.below not in held]
     areas = sum((joint.area * np.abs(joint.normal) for joint in inner), np.zeros(3))
@@ -150,7 +158,10 @@ def remedy(deepest: float, joints_within: JointFinder, blocks: Sequence[AnyBlock
     touching = {i for joint in joints for i in (joint.below, joint.above)}
     if loose := sum(i not in touching and not block.fixed for i, block in enumerate(blocks)):
         return f"with tolerance = {tolerance:g} m, which takes them, {loose} blocks have no joint: mend the file"
-    return f"tolerance = {tolerance:g} m takes them: it finds {len(joints)} joints"
+    lost = len(not_joined(blocks, joints, tolerance))
+    narrow = SHORTEST_JOINT * tolerance
+    said = f", and leaves {lost} pairs of near blocks without one, since joints are wider than {narrow:g} m"
+    return f"tolerance = {tolerance:g} m takes them: it finds {len(joints)} joints{said if lost else ''}"
 
 
 def rounded_up(value: float) -> float:
@@ -166,13 +177,16 @@ def not_joined(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint],
     return pairs[[tuple(pair) not in joined for pair in pairs.tolist()]]
 
 
-def nearly(names: Sequence[str], wider: float) -> str:
-    """What is odd about joints of a file that only a wider tolerance finds [m], in words, empty where none are."""
+def nearly(names: Sequence[str], gap: float, tolerance: float) -> str:
+    """What is odd about joints of a file that only another gap finds [m], in words, empty where none are."""
     if not names:
         return ""
+    said = f"{len(names)} pairs of blocks have no joint and lie less than {gap:g} m apart, such as {named(names)}; "
+    if gap > tolerance:
+        return f"{said}gap = {gap:g} m joins them"
     return (
-        f"{len(names)} pairs of blocks have no joint and lie less than {wider:g} m apart, such as {named(names)}; "
-        f"tolerance = {wider:g} m joins them"
+        f"{said}their faces are no wider than {SHORTEST_JOINT:g} times the tolerance of {tolerance:g} m; gap = {gap:g} "
+        "m in its place joins them"
     )
 
 
@@ -217,37 +231,37 @@ def touches_told(touches: Sequence[Touch], names: Sequence[str]) -> str:
 
 
 def smallest_gap(
-    blocks: Sequence[AnyBlock], names: Sequence[str], loose: Sequence[int], joints_within: JointFinder, tolerance: float
+    blocks: Sequence[AnyBlock], names: Sequence[str], loose: Sequence[int], joints_within: JointFinder, reach: float
 ) -> str:
-    """The smallest gap of blocks that touch no other within a tolerance [m], and the one with which all would.
+    """The smallest gap of blocks that touch no other within a reach [m], and the one with which all would.
 
     Args:
         blocks, names: of the masonry.
         loose: numbers of blocks without a joint.
-        joints_within: the joints that a tolerance gives.
-        tolerance: that gives them none.
+        joints_within: the joints that a gap gives.
+        reach: the gap that gives them none.
     """
     low, high = (np.array([end(block.corners, axis=0) for block in blocks]) for end in (np.min, np.max))
     apart = np.array([np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1) for i in loose])
     apart[np.arange(len(loose)), loose] = np.inf
     one, other = divmod(int(apart.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
-    touches = [touch for touch in along_lines(blocks, (), tolerance) if {touch.block, touch.other} & set(loose)]
+    touches = [touch for touch in along_lines(blocks, (), reach) if {touch.block, touch.other} & set(loose)]
     said = f"{touches_told(touches, names)}; " if touches else ""
     if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
         return said.removesuffix("; ")
     said += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
-    needed = needed_tolerance(loose, joints_within, tolerance)
+    needed = needed_gap(loose, joints_within, reach)
     if needed is None:
-        return f"{said}, and no tolerance up to {WIDEST_TOLERANCE:g} m joins all of them"
-    return f"{said}; tolerance = {needed:.2g} m joins all of them"
+        return f"{said}, and no gap up to {WIDEST_TOLERANCE:g} m joins all of them"
+    return f"{said}; gap = {needed:.2g} m joins all of them: it finds {len(joints_within(needed))} joints"
 
 
-def needed_tolerance(loose: Sequence[int], joints_within: JointFinder, given: float) -> float | None:
-    """A tolerance of two digits with which blocks have a joint each [m], near the least one; None where none has."""
+def needed_gap(loose: Sequence[int], joints_within: JointFinder, given: float) -> float | None:
+    """A gap of two digits with which blocks have a joint each [m], near the least one; None where none has."""
 
-    def joins(tolerance: float) -> bool:
-        return set(loose) <= {i for joint in joints_within(tolerance) for i in (joint.below, joint.above)}
+    def joins(gap: float) -> bool:
+        return set(loose) <= {i for joint in joints_within(gap) for i in (joint.below, joint.above)}
 
     low = high = given
     while not joins(high):

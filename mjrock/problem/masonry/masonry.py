@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
@@ -69,6 +70,7 @@ from .builders.in_space import (
 )
 from .builders.vaults import Span, barrel_of, bridge_of, groin_of
 from .drawing import (
+    FINE_TOLERANCE,
     NEARLY,
     WIDEST_TOLERANCE,
     along_lines,
@@ -156,6 +158,9 @@ class Masonry(Drawn):
             each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
+        gap: thickness of the mortar of brickwork that is drawn with its joints [m], 1e-9 to 0.1. Edges or faces are
+            then a joint that lie up to the gap and the tolerance apart. Blocks are what is drawn, without the mortar
+            and its mass. None is for blocks that touch.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
             the rigid wall above it, and a fixed block beside the stack as the side stop of the whole, see
             `Contacts.from_law`. A stack of 2 to 7 blocks that rocks as one then loses more than its wall at an impact:
@@ -197,6 +202,7 @@ class Masonry(Drawn):
     frequency: OfJoint | None
     points: OfCount
     tolerance: float
+    gap: float | None
     law: AnyLaw | str | None
     k_s: OfJoint | None
     bond: OfBond
@@ -217,15 +223,17 @@ class Masonry(Drawn):
         bond: OfBond = None,
         joints: AnyJoints | None = None,
         pairs: AnyPairs = None,
+        gap: Annotated[float | None, Within(1e-9, WIDEST_TOLERANCE, "m")] = None,
     ) -> None:
-        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance, pairs=required_pairs(pairs))
+        keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance, gap=gap)
+        keep(self, pairs=required_pairs(pairs))
         given = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
         keep(self, **properties_of(joints, given | {"bond": bond}))
         if not self.joints:
             side = "a face" if self.in_space else "an edge"
             raise ValueError(
-                f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
-                f"{smallest_gap(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
+                f"blocks: no two of them touch along {side} within {self._reach_said}; "
+                f"{smallest_gap(self.blocks, self.names, self.free, self._joints_within, self.reach)}"
             )
         if law is not None:
             keep(self, law=required_law(law))
@@ -306,15 +314,31 @@ class Masonry(Drawn):
     def joints(self) -> tuple[Joint | SpaceJoint, ...]:
         """The joints, in the order of the blocks: `Joint`, or `SpaceJoint` of blocks in space."""
         try:
-            return self._joints_within(self.tolerance)
+            return self._joints_within(self.reach)
         except OverlapError as error:
-            raise ValueError(f"{error}; {remedy(error.deepest, self._joints_within, self.blocks)}") from None
+            raise ValueError(f"{error}; {remedy(error.deepest, self._joints_with, self.blocks)}") from None
 
-    def _joints_within(self, tolerance: float, pairs: Integers | None = None) -> tuple[Joint | SpaceJoint, ...]:
-        """The joints of another tolerance [m], of all blocks or of some pairs."""
+    @property
+    def reach(self) -> float:
+        """Largest distance between edges or faces that are a joint [m]: the tolerance beyond `gap`."""
+        return self.tolerance + (self.gap or 0.0)
+
+    @property
+    def _reach_said(self) -> str:
+        """The largest distance between faces that are a joint, in words."""
+        return f"the {'tolerance' if self.gap is None else 'gap'} of {self.reach:g} m"
+
+    def _joints_within(self, gap: float, pairs: Integers | None = None) -> tuple[Joint | SpaceJoint, ...]:
+        """The joints of another gap [m], of all blocks or of some pairs."""
+        return self._joints_with(self.tolerance, gap, pairs)
+
+    def _joints_with(
+        self, tolerance: float, gap: float = 0.0, pairs: Integers | None = None
+    ) -> tuple[Joint | SpaceJoint, ...]:
+        """The joints of another tolerance and of a gap that is at least as much [m], of all blocks or of some pairs."""
         if self.in_space:
-            return joints_in_space(self.polyhedra, tolerance, pairs)
-        return joints_in_plane(self.polygons, tolerance, pairs)
+            return joints_in_space(self.polyhedra, tolerance, max(gap, tolerance), pairs)
+        return joints_in_plane(self.polygons, tolerance, max(gap, tolerance), pairs)
 
     @cached_property
     def table(self) -> JointTable:
@@ -1118,7 +1142,8 @@ class Masonry(Drawn):
                 drawn = {outline.name: outline.corners for outline in drawing.outlines}
                 raise with_sizes(error, drawn, given.matrix(drawing.unit or 1.0)) from None
         if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
-            warn_of(f"path = {path}: its header says that its unit is {drawing.unit:g} m; unit= takes another")
+            stated = f"its header says that its unit is {drawing.unit:g} m, which a template may have left there"
+            warn_of(f"path = {path}: {stated}; unit= takes another")
         return masonry
 
     def to_obj(self, path: AnyPath) -> Path:
@@ -1185,14 +1210,17 @@ class Masonry(Drawn):
         loose = [i for i in self.free if i not in touching]
         if loose:
             raise ValueError(
-                f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
-                f"{self.tolerance:g} m; "
-                f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
+                f"{named([self.names[i] for i in loose])} touch no other block within {self._reach_said}; "
+                f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.reach)}"
             )
         wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
-        apart = not_joined(self.blocks, self.joints, wider)
-        if odd := nearly([joint.name for joint in self._joints_within(wider, apart)], wider):
-            warn_of(odd, Implausible)
+        tries = [(wider, wider)] + ([(FINE_TOLERANCE, self.reach)] if self.tolerance > FINE_TOLERANCE else [])
+        for tolerance, gap in tries:
+            apart = not_joined(self.blocks, self.joints, gap)
+            with suppress(OverlapError):
+                found = self._joints_with(tolerance, gap, apart)
+                if odd := nearly([joint.name for joint in found], gap, self.tolerance):
+                    warn_of(odd, Implausible)
         return self
 
 
@@ -1210,10 +1238,12 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
             which = [f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}" for b in (block, blocks[0])]
             raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
     free = sum(not block.fixed for block in blocks)
+    name = names_of(blocks)[0] if blocks else ""
+    remedy = f"; of a file fixed=[{name!r}] names a support, and ground=True puts ground under all" * (free > 0)
     if not 0 < free < len(blocks) <= MOST_BODIES:
         raise ValueError(
             f"blocks = {free} free and {len(blocks) - free} fixed; at least one of each and at most {MOST_BODIES} are "
-            "needed"
+            f"needed{remedy}"
         )
     for name, number in Counter(names_of(blocks)).items():
         if number > 1:

@@ -96,7 +96,7 @@ class Compound:
         """Where the parts lie on each other; a ValueError says if they overlap or do not hang together."""
         find = joints_in_space if self.in_space else joints_in_plane
         try:
-            joints: tuple[Joint | SpaceJoint, ...] = find(_named(self.parts), PARTS_APART)  # type: ignore[arg-type]
+            joints: tuple[Joint | SpaceJoint, ...] = find(_named(self.parts), PARTS_APART, PARTS_APART)  # type: ignore[arg-type]
         except ValueError as error:
             raise ValueError(f"parts: {error}") from None
         labels = connected_parts([(joint.below, joint.above) for joint in joints], len(self.parts))

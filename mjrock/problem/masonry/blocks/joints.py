@@ -218,15 +218,17 @@ class Meetings(NamedTuple):
     travel: Array
 
 
-def joints_in_plane(blocks: Sequence[Flat], tolerance: float, pairs: Integers | None = None) -> tuple[Joint, ...]:
+def joints_in_plane(
+    blocks: Sequence[Flat], tolerance: float, gap: float, pairs: Integers | None = None
+) -> tuple[Joint, ...]:
     """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
 
-    Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance [m], which
-    is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none. Pairs are the
+    Two edges make a joint where they overlap along a line and are nowhere farther apart than the gap [m]. The tolerance
+    is the largest overlap of blocks [m]. The joint lies halfway between them. Two fixed blocks make none. Pairs are the
     numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
     names, edges = names_of(blocks), Edges.of(blocks)
-    pairs = neighbours(blocks, tolerance) if pairs is None else pairs
+    pairs = neighbours(blocks, gap) if pairs is None else pairs
     first, number = numbered_parts(blocks)
     of_parts = edges if number.max() == 1 else Edges.of(list(chain.from_iterable(block.parts for block in blocks)))
     joints: list[Joint] = []
@@ -237,9 +239,14 @@ def joints_in_plane(blocks: Sequence[Flat], tolerance: float, pairs: Integers | 
         depth = np.minimum(of_parts.sunk(both), of_parts.sunk(both[:, ::-1]))
         deep = depth > tolerance
         overlaps += [(how, i, j) for how, (i, j) in zip(depth[deep].tolist(), some[pair[deep]].tolist(), strict=True)]
-        joints += _joints(blocks, edges, meetings(edges, some, tolerance), names, tolerance)
+        joints += _joints(blocks, edges, meetings(edges, some, tolerance, gap), names, corner_within(tolerance, gap))
     require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
+
+
+def corner_within(tolerance: float, gap: float) -> float:
+    """Distance of a corner from an end of a joint, which lies amid the gap, up to which it is at that end [m]."""
+    return max(SHORTEST_JOINT * tolerance, gap)
 
 
 def unlike_named(joints: Sequence[AnyJoint]) -> tuple[AnyJoint, ...]:
@@ -252,8 +259,9 @@ def unlike_named(joints: Sequence[AnyJoint]) -> tuple[AnyJoint, ...]:
     return tuple(named)
 
 
-def meetings(edges: Edges, pairs: Integers, tolerance: float) -> Meetings:
-    """Where edges of the blocks of pairs lie on one another, no farther apart than the tolerance [m]."""
+def meetings(edges: Edges, pairs: Integers, tolerance: float, gap: float) -> Meetings:
+    """Where edges of the blocks of pairs lie on one another, no farther apart than the gap and no deeper in each other
+    than the tolerance [m]."""
     pair, edge, other = each_with_each(edges.first, edges.number, pairs)
     facing = _dot(edges.normal[edge], edges.normal[other]) <= 0
     facing &= np.abs(_cross(edges.normal[edge], edges.normal[other])) <= PARALLEL
@@ -264,7 +272,7 @@ def meetings(edges: Edges, pairs: Integers, tolerance: float) -> Meetings:
     span = np.column_stack([np.maximum(0.0, first), np.minimum(long, last)])
     rise = _dot(c - d, n) / (last - first)
     apart = _dot(d - a, n)[:, None] + rise[:, None] * (span - first[:, None])
-    lie = (span[:, 1] - span[:, 0] > SHORTEST_JOINT * tolerance) & (np.abs(apart) <= tolerance).all(axis=1)
+    lie = (span[:, 1] - span[:, 0] > SHORTEST_JOINT * tolerance) & ((-tolerance <= apart) & (apart <= gap)).all(axis=1)
     # ends are corners, without rounding, moved to the middle between the edges
     starts = np.where((first > 0)[:, None], d, a) + (np.where(first > 0, -0.5, 0.5) * apart[:, 0])[:, None] * n
     stops = np.where((last < long)[:, None], c, b) + (np.where(last < long, -0.5, 0.5) * apart[:, 1])[:, None] * n
@@ -275,9 +283,9 @@ def meetings(edges: Edges, pairs: Integers, tolerance: float) -> Meetings:
 
 
 def _joints(
-    blocks: Sequence[Flat], edges: Edges, met: Meetings, names: Sequence[str], tolerance: float
+    blocks: Sequence[Flat], edges: Edges, met: Meetings, names: Sequence[str], within: float
 ) -> Iterator[Joint]:
-    """The joints of edges that lie on one another."""
+    """The joints of edges that lie on one another; a corner so near an end of one is at it [m]."""
     n, fixed = met.normal, np.array([block.fixed for block in blocks])
     upwards = np.where(np.abs(n[:, 1]) > LEVEL, n[:, 1], n[:, 0]) > 0  # across a vertical joint, the right is above
     turned = np.where(upwards, fixed[met.pair[:, 1]], ~fixed[met.pair[:, 0]])
@@ -289,7 +297,7 @@ def _joints(
     joint = np.repeat(np.arange(len(pairs)), counts)
     corner = np.arange(len(joint)) + np.repeat(edges.first[pairs[:, 1]] - np.cumsum(counts) + counts, counts)
     away = np.hypot(*(edges.start[corner, None] - ends[joint]).transpose(2, 0, 1))
-    near = np.minimum.reduceat(away, np.cumsum(counts) - counts) < SHORTEST_JOINT * tolerance if len(pairs) else away
+    near = np.minimum.reduceat(away, np.cumsum(counts) - counts) < within if len(pairs) else away
     rows = zip(pairs.tolist(), sides.tolist(), ends.tolist(), met.travel.tolist(), near.tolist(), strict=True)
     for (below, above), (on, under), (start, end), (back_by, on_by), (first, last) in rows:
         yield Joint(

@@ -12,7 +12,7 @@ import numpy as np
 from ....geometry import convex
 from ....geometry.hull import Convex, Side
 from ....quantities import Array, Integers, frozen, short_repr
-from .joints import LEVEL, SHORTEST_JOINT, Shape, names_of, neighbours, require_apart, unlike_named
+from .joints import LEVEL, SHORTEST_JOINT, Shape, corner_within, names_of, neighbours, require_apart, unlike_named
 from .polyhedron import Vertices
 
 OPPOSITE = -1 + 1e-3
@@ -128,12 +128,14 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     return first, np.cross(normals, first)
 
 
-def joints_in_space(blocks: Sequence[Shape], tolerance: float, pairs: Integers | None = None) -> tuple[SpaceJoint, ...]:
+def joints_in_space(
+    blocks: Sequence[Shape], tolerance: float, gap: float, pairs: Integers | None = None
+) -> tuple[SpaceJoint, ...]:
     """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
 
-    Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
-    which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none. Pairs
-    are the numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
+    Two faces make a joint where they cover a common area and are nowhere in it farther apart than the gap [m]. The
+    tolerance is the largest overlap of blocks [m]. The joint lies halfway between them. Two fixed blocks make none.
+    Pairs are the numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
     names = names_of(blocks)
     faces = [facing(block.sides) for block in blocks]
@@ -141,14 +143,15 @@ def joints_in_space(blocks: Sequence[Shape], tolerance: float, pairs: Integers |
     solids = [block.solids for block in blocks]
     joints: list[SpaceJoint] = []
     overlaps: list[tuple[float, int, int]] = []
-    for i, j in (neighbours(blocks, tolerance) if pairs is None else pairs).tolist():
+    for i, j in (neighbours(blocks, gap) if pairs is None else pairs).tolist():
         deep = max(_depth(part, other, tolerance) for part in solids[i] for other in solids[j])
-        if deep < -tolerance:
+        if deep < -gap:
             continue
         if deep > tolerance:
             overlaps.append((deep, i, j))
         for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
-            joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), (side, other), names, tolerance)
+            facing_sides = faces[i][side], faces[j][other]
+            joints += _between(blocks, (i, j), facing_sides, (side, other), names, (tolerance, gap))
     require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
 
@@ -188,13 +191,13 @@ def _between(
     faces: tuple[Facing, Facing],
     sides: tuple[int, int],
     names: Sequence[str],
-    tolerance: float,
+    within: tuple[float, float],
 ) -> Iterator[SpaceJoint]:
-    """The joint between two faces that look at each other, if they touch."""
-    face, other = faces
+    """The joint between two faces that look at each other, if they touch within a tolerance and a gap [m]."""
+    (face, other), (tolerance, gap) = faces, within
     normal, origin, axes = face.normal, face.corners[0], face.axes
     heights = other.corners @ normal - face.offset
-    if heights.min() > tolerance or heights.max() < -tolerance:
+    if heights.min() > gap or heights.max() < -tolerance:
         return
     outline = convex.clipped((face.corners - origin) @ axes.T, ((other.corners - origin) @ axes.T)[::-1])
     outline = convex.cleaned(outline, tolerance)
@@ -202,7 +205,7 @@ def _between(
         return
     places = origin + outline @ axes
     gaps = (other.offset - places @ other.normal) / float(normal @ other.normal)
-    if np.abs(gaps).max() > tolerance:
+    if gaps.max() > gap or gaps.min() < -tolerance:
         return
     places = places + 0.5 * gaps[:, None] * normal  # counterclockwise about the normal out of the first block
     (below, above), upwards = pair, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
@@ -210,7 +213,7 @@ def _between(
         below, above, normal, places, sides = above, below, -normal, places[::-1], sides[::-1]
 
     def is_corner(block: Shape, place: Array) -> bool:
-        return bool(np.linalg.norm(block.corners - place, axis=1).min() < SHORTEST_JOINT * tolerance)
+        return bool(np.linalg.norm(block.corners - place, axis=1).min() < corner_within(tolerance, gap))
 
     yield SpaceJoint(
         below=below,

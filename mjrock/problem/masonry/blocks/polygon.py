@@ -190,7 +190,8 @@ def require_near(points: Array) -> None:
     """Raise a ValueError unless all coordinates of vertices lie within FARTHEST_VERTEX [m]."""
     if not (np.abs(points) <= FARTHEST_VERTEX).all():  # a NaN is not
         low, high = -FARTHEST_VERTEX, FARTHEST_VERTEX
-        raise ValueError(f"vertices holds a coordinate outside the valid range {low:g} to {high:g} m")
+        at = "; national coordinates? Subtract an origin near the masonry" if np.isfinite(points).all() else ""
+        raise ValueError(f"vertices holds a coordinate outside the valid range {low:g} to {high:g} m{at}")
 
 
 def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:

@@ -129,8 +129,13 @@ def names_of_list(what: str, given: Sequence[str]) -> Sequence[str]:
 
 def meshes_of(given: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) -> list[Mesh]:
     """Meshes by their names, as meshes; a TypeError or ValueError names what is wrong."""
-    if not isinstance(given, Mapping) or not given:
+    if not isinstance(given, Mapping):
         raise TypeError(f"meshes = {shown(given)} is not a dict of vertices and faces by name")
+    if not given:
+        raise ValueError(
+            "meshes is empty: the model has no element of the kind that was taken from it. Most models of IFC have "
+            "whole walls, IfcWall, and no IfcBuildingElementPart"
+        )
     meshes = []
     for name, mesh in given.items():
         what = f"meshes[{shown(name)}]"

@@ -49,8 +49,11 @@ def read_compas(path: Path) -> list[Mesh]:
     for key, part in pairs:
         try:
             meshes.append(_block(_inside(part), key, materials))
-        except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
-            raise ValueError(f"the element {key} is not a block with a mesh: {type(error).__name__} {error}") from None
+        except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError):
+            raise ValueError(
+                f"the element {key} is not a block with a mesh, which has x, y and z of each vertex, and faces that "
+                "list their vertices"
+            ) from None
     if not meshes:
         raise ValueError("it is a COMPAS model without elements")
     return meshes

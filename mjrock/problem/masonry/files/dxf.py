@@ -83,19 +83,23 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
         raise ValueError(f"it is {found_kinds[0]}, and no drawing in DXF; save it as text in DXF")
     document, auditor = _sound(recover.readfile, str(path))
     unit = None
-    if document.units:
+    if _sound(lambda: document.units):
         unit = _sound(lambda: units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters))
     space = document.modelspace()
     _sound(_require_few, document, space)
     entities = _sound(lambda: list(_inserted(space)))
-    found = {entity.dxf.layer: None for entity in entities}
+    found = _sound(lambda: {entity.dxf.layer: None for entity in entities})
     for layer in layers or ():
         if layer not in found:
             raise ValueError(f"layers = {layer!r} holds nothing; the layers are {named(list(found))}")
-    outlines, others = _outlines([each for each in entities if layers is None or each.dxf.layer in layers])
+    every, others = _outlines([each for each in entities if layers is None or each.dxf.layer in layers])
     if repairs := [*auditor.errors, *auditor.fixes]:
         said = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
         warn_of(f"path = {path} is damaged, and was repaired while it was read: {said}")
+    first: dict[bytes, Outline] = {}
+    if again := [one.name for one in every if first.setdefault(_places(one), one) is not one]:
+        warn_of(f"path = {path}: {len(again)} outlines are drawn twice, and read once: {named(again)}")
+    outlines = list(first.values())
     if left := {kind: count for kind, count in others.items() if kind in AREAS}:
         warn_of(f"path = {path}: only closed polylines are read; left out are {_counted(left)}")
     return DxfDrawing(outlines, unit)
@@ -119,6 +123,11 @@ def _outlines(entities: Sequence[DXFEntity]) -> tuple[list[Outline], Counter[str
         join = "; join its lines to closed polylines" if others["LINE"] > 2 else ""
         raise ValueError(f"it has no closed polyline; there is {_counted(others) or 'nothing'}{join}")
     return outlines, others
+
+
+def _places(outline: Outline) -> bytes:
+    """The corners of an outline without their order, the same for one that is drawn twice."""
+    return np.unique(outline.corners.round(9) + 0.0, axis=0).tobytes()
 
 
 def _counted(kinds: Mapping[str, int]) -> str:

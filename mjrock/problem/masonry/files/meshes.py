@@ -120,9 +120,11 @@ def read_ply(path: Path) -> list[Mesh]:
     if not end or not lines or lines[0] != ["ply"]:
         raise ValueError("it is not a PLY file, or is cut short: it has no header from ply to end_header")
     try:
+        elements = _elements(lines)
+        if not elements.get("face", (0,))[0]:
+            raise ValueError("it has no faces, as a cloud of points")
         order = PLY_ORDER[next(line[1] for line in lines if line[:1] == ["format"])]
         take = _words(body) if not order else _numbers(body[body.index(b"\n") + 1 :], order)
-        elements = _elements(lines)
         for name, (count, _) in elements.items():
             if not 0 <= count <= len(content):
                 raise ValueError(f"{count} of {name} in {len(content)} bytes")
@@ -133,7 +135,8 @@ def read_ply(path: Path) -> list[Mesh]:
         if not all(len(face) > 2 and min(face) >= 0 and max(face) < len(places) for face in faces):
             raise ValueError("a face is not three or more of the vertices")
     except (KeyError, IndexError, ValueError, TypeError, OverflowError, StopIteration, struct.error) as error:
-        raise ValueError(f"it is not a PLY file of faces, or is cut short: {type(error).__name__} {error}") from None
+        said = f": {error}" if type(error) is ValueError else ""
+        raise ValueError(f"it is not a PLY file of faces, or is cut short{said}") from None
     return [Mesh("body", places, faces)]
 
 

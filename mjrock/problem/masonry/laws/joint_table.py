@@ -265,6 +265,7 @@ class OtherOptions(TypedDict, total=False):
     bond: OfBond
     law: AnyLaw | str | None
     tolerance: float
+    gap: float | None
     pairs: AnyPairs
 
 
