@@ -277,3 +277,15 @@ def test_a_header_that_states_another_unit_than_the_drawing_has_is_named(tmp_pat
     path = drawing(tmp_path / "a.dxf", *outlines, unit=unit)
     with pytest.warns(UserWarning, match=f"a.dxf: its header says that its unit is {said}, which .*; unit= takes"):
         mr.Masonry.from_dxf(path, ground=True)
+
+
+def test_a_thing_of_no_kind_is_no_error_of_the_library(tmp_path):
+    """A damaged name of a kind, as of the text here, ended in an AttributeError of ezdxf."""
+    path = facade(tmp_path / "a.dxf")
+    for name in ("TEXT", "LINE", "LWPOLYLINE", "INSERT"):
+        for other in ("18", "?"):
+            (tmp_path / "b.dxf").write_text(path.read_text().replace(f"\n{name}\n", f"\n{other}\n"))
+            try:
+                mr.Masonry.from_dxf(tmp_path / "b.dxf", fixed=["rock"])
+            except ValueError as error:
+                assert "b.dxf" in str(error)
