@@ -13,6 +13,8 @@ from scripts.models import make_models
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 
+SMALLEST_MOTION = 1e-5
+"""Largest displacement below which what is compared is not a share of it [m]."""
 EVERY_DAY = {"figure3_one_sided", "corner_block"}
 """The models that the everyday tests run. The long tests run the others."""
 
@@ -46,8 +48,10 @@ def test_a_model_is_what_the_script_makes(model):
     lines = list(csv.reader(made["reference.csv"].splitlines()))
     assert lines[0] == header
     again = np.array(lines[1:], dtype=float)
-    # 1e-4 of the largest value of each column: what another SciPy may do to the contact law's many impacts
-    np.testing.assert_allclose(again / abs(stored).max(0), stored / abs(stored).max(0), atol=1e-4)
+    # 1e-4 of the largest value of each column: what another SciPy may do to the contact law's many impacts. Blocks in
+    # the plane of symmetry move sideways by rounding alone, some 1e-12 m, which is another number on another processor.
+    size = np.maximum(abs(stored).max(0), SMALLEST_MOTION)
+    np.testing.assert_allclose(again / size, stored / size, atol=1e-4)
 
 
 @pytest.mark.parametrize("model", models(make_models.ALL), ids=lambda m: m.name)
