@@ -14,7 +14,20 @@ from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
 from .picture import kind, listed, picture
-from .style import BLACK, GREEN, ORANGE, Picture, below_figure, figure_of, several, short, styles_of, wrapped
+from .style import (
+    BEHIND,
+    BLACK,
+    GREEN,
+    ORANGE,
+    Look,
+    Picture,
+    below_figure,
+    figure_of,
+    several,
+    short,
+    styles_of,
+    wrapped,
+)
 
 TIME = "time $t$ [s]"
 MOST = 6
@@ -38,21 +51,24 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     far = 4 * max(reached)  # a line there would flatten the motion
-    for limit in {case.overturning_rotation / case.wall.alpha for case, _ in (each.of_wall for each in responses)}:
-        if abs(limit - 1) > 0.01 and limit < far:
-            ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
-            ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=8, ha="right", va="top")
-            reached.append(limit)
+    limits = {case.overturning_rotation / case.wall.alpha for case, _ in (each.of_wall for each in responses)}
+    drawn = [limit for limit in sorted(limits) if abs(limit - 1) > 0.01 and limit < far]
+    for limit in drawn:
+        ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
+    if drawn:
+        place: Look = {"transform": ax.get_yaxis_transform(), "ha": "right", "va": "top"}
+        ax.text(0.99, drawn[0], "overturns", fontsize=8, bbox=BEHIND, **place)
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     ends = [(short(name), t) for name, t in zip(names, fallen, strict=True) if t is not None]
     if said := [f"{name}: beyond return from t = {t:.3g} s" for name, t in ends]:
-        top = max(1.2, 1.05 * max(reached))
-        inwards = min(float(share.min()) for share in shares)
-        ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
+        top = max(1.2, 1.05 * max([*reached, *drawn]))
+        inwards, room = min(float(share.min()) for share in shares), _share_of(ax, len(said))
+        bottom = max(-top, min(-0.08 * top, 1.08 * inwards))
+        ax.set_ylim(bottom, max(top, (max(drawn, default=0.0) - room * bottom) / (1 - room)))
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
         note = ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
-        note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0})
+        note.set_bbox(BEHIND)
     return ax
 
 
@@ -99,7 +115,7 @@ def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
             t = np.append(motion.dt * np.arange(len(motion.accel)), [motion.duration, max(until, motion.duration)])
             ax.plot(t, np.append(motion.accel, [0.0, 0.0]), color=color, linewidth=0.8, label=label)
     if len(case.grounds) > 1 or case.vertical is not None:
-        ax.legend(frameon=False, fontsize=8, loc="upper right", ncols=2)
+        _legend_above(ax)
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set(xlabel=TIME, ylabel="base [m/s²]")
     return ax
@@ -132,9 +148,15 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
             last = line, said
     if entries >= MOST:
         last[0].set_label(last[1] if entries == MOST else f"and {entries - MOST + 1} more")
+    ax.set_ylim(bottom=0.0)
     _legend_above(ax)
     ax.set(xlabel=TIME, ylabel="ties [kN]")
     return ax
+
+
+def _share_of(ax: Axes, rows: int) -> float:
+    """Share of the height of an Axes that rows of small text take [-]."""
+    return min(0.7, (0.1 + 0.15 * rows) * figure_of(ax).dpi / ax.bbox.height)
 
 
 def _legend_above(ax: Axes) -> None:
@@ -144,9 +166,8 @@ def _legend_above(ax: Axes) -> None:
     width = ax.bbox.width / figure.dpi  # [inch]
     columns = 2 if len(labels) > 2 and 2 * (0.06 * max(map(len, labels)) + 0.35) < width else 1
     rows = -(-len(labels) // columns)
-    top = max(float(np.max(line.get_ydata(), initial=0.0)) for line in ax.get_lines()) or 1.0
-    share = min(0.7, (0.1 + 0.15 * rows) * figure.dpi / ax.bbox.height)
-    ax.set_ylim(0.0, 1.08 * top / (1 - share))
+    top, low = max(float(np.max(line.get_ydata(), initial=0.0)) for line in ax.get_lines()) or 1.0, ax.get_ylim()[0]
+    ax.set_ylim(low, low + (1.08 * top - low) / (1 - _share_of(ax, rows)))
     ax.legend(frameon=False, fontsize=8, loc="upper right", ncols=columns, labelspacing=0.3, columnspacing=1.0)
 
 

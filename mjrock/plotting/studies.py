@@ -21,7 +21,20 @@ from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity, setting_text
 from .picture import equal_rows, kind, listed, mapping, picture
-from .style import BLUE, ORANGE, OWN, PALETTE, STYLES, folded, power_of_ten
+from .style import (
+    BEHIND,
+    BLUE,
+    ON_LINES,
+    ORANGE,
+    OWN,
+    PALETTE,
+    STYLES,
+    Look,
+    figure_of,
+    folded,
+    power_of_ten,
+    wrapped,
+)
 
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
@@ -118,9 +131,9 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
         ax.plot(levels, line, color=BLUE, linewidth=1.8, linestyle=style, marker=mark, label=label)
     ax.axhline(1, color="0.3", linewidth=0.6)
     ax.axhline(top, color="0.3", linewidth=0.6, linestyle=":")
-    ax.text(0.01 * levels.max(), top, "overturned", fontsize=8, va="top", color="0.3")
+    ax.text(0.01 * levels.max(), top, "overturned", fontsize=8, va="top", color="0.3", bbox=BEHIND)
     ax.set(xlim=(0, levels.max()), ylim=(0, 1.03 * top))
-    ax.legend(frameon=False, fontsize=8, loc="center left")
+    ax.legend(**ON_LINES, loc="center left")
     ax.set_title(STYLES.get(solver, {}).get("label", solver), fontsize=10)
     ax.set(xlabel="peak ground acceleration [g]", ylabel=PEAK)
     return ax
@@ -223,23 +236,18 @@ def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> 
 
 
 def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
-    """A triangle where ties of a curve yield and a cross where they break, those at one rotation with one text.
-
-    Texts of ties that yield stand above their place, and texts of ties that break below.
-    """
+    """A triangle where ties of a curve yield and a cross where they break, which the legend names from the left."""
     for line, curve in zip(list(ax.get_lines()), curves.values(), strict=False):
-        kinds = (("yield", "v", (4, 4)), ("break", "x", (4, -10)))
-        for (what, marker, beside), reached in zip(kinds, curve.ties, strict=True):
-            together: dict[float, list[str]] = {}
-            for name, rotation in reached.items():
-                together.setdefault(rotation, []).append(name)
-            for rotation, names in together.items():
-                near = int(np.searchsorted(curve.rotation, rotation))
-                at = rotation, float(curve.multiplier[max(near - 2, 0) : near + 1].max())  # before it falls
-                ax.plot(*at, marker, color=line.get_color(), markersize=6, zorder=5)
-                ax.set_ylim(top=max(ax.get_ylim()[1], 1.08 * at[1]))  # room for the text
-                said = f"{named(names)} {what}{'' if len(names) > 1 else 's'}"
-                ax.annotate(said, at, beside, textcoords="offset points", fontsize=8, color=line.get_color(), zorder=6)
+        for (what, marker), reached in zip((("yield", "v"), ("break", "x")), curve.ties, strict=True):
+            if not reached:
+                continue
+            names = sorted(reached, key=reached.__getitem__)
+            near = np.searchsorted(curve.rotation, [reached[name] for name in names])
+            heights = [float(curve.multiplier[max(i - 2, 0) : i + 1].max()) for i in near.tolist()]  # before it falls
+            said = folded(f"{named(names)} {what}{'' if len(names) > 1 else 's'}")
+            look: Look = {"color": line.get_color(), "markersize": 6, "zorder": 5, "label": said}
+            ax.plot([reached[name] for name in names], heights, marker, linestyle="", **look)
+    ax.legend(**ON_LINES)
 
 
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
@@ -251,7 +259,7 @@ def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: C
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
     if ax.get_legend_handles_labels()[1]:
-        ax.legend(frameon=False, fontsize=8)
+        ax.legend(**ON_LINES)
     ax.set(xlim=(0, None), ylim=(0, None), xlabel=r"rotation $\theta$ [rad]")
 
 
@@ -287,7 +295,8 @@ def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = Non
         ax.barh(i, high - low, left=low, color=colour, height=0.55)
         for end, x, side, shift in zip(ends, (low, high), ("right", "left"), (-4, 4), strict=True):
             text = found.written(end) if low == high else _apart(found, *ends)[end == ends[1]]
-            ax.annotate(text, (x, i), (shift, 0), textcoords="offset points", ha=side, va="center", fontsize=8)
+            look: Look = {"ha": side, "va": "center", "fontsize": 8, "bbox": BEHIND}
+            ax.annotate(text, (x, i), (shift, 0), textcoords="offset points", **look)
     if math.isfinite(found.base_value):
         ax.axvline(found.base_value, color="0.15", linewidth=1.0)
     if not np.isfinite(found.values).all():
@@ -298,7 +307,8 @@ def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = Non
     ax.set_xlim(least - 0.2 * width, edge + right * width)
     ax.set_xlabel(f"{said[found.measure]}{f' [{found.unit}]' if found.unit else ''}")
     governs = found.governs or ""
-    ax.set_title(found.sentence.replace(f"governed by {governs}", f"governed by {said.get(governs)}"), fontsize=10)
+    sentence = found.sentence.replace(f"governed by {governs}", f"governed by {said.get(governs)}")
+    ax.set_title(wrapped(sentence, 0.6 * figure_of(ax).get_figwidth(), 10), fontsize=10)  # names take the rest
     return ax
 
 

@@ -45,6 +45,10 @@ FINE = 200
 """Dots of a figure that is saved [1/inch]."""
 COARSE = 120
 """Dots of a figure in a notebook [1/inch]."""
+BEHIND: Look = {"facecolor": "white", "alpha": 0.9, "edgecolor": "none", "pad": 0.5}
+"""A box behind words that may lie on lines."""
+ON_LINES: Look = {"frameon": True, "framealpha": 0.8, "edgecolor": "none", "fancybox": False, "fontsize": 8}
+"""A legend that may lie on lines."""
 EDGE = 3.0
 """How far a word may go beyond the edge of a figure [pixel]."""
 
@@ -127,6 +131,14 @@ def wrapped(text: str, wide: float, size: float) -> str:
     """Text of a size [pt] on as many lines as a width [inch] needs."""
     most = max(1, int(72 * wide / (0.55 * size)))
     return "\n".join(line for row in text.splitlines() for line in textwrap.wrap(row, most))
+
+
+def width_of(figure: Figure, text: str, size: float) -> float:
+    """Width of a text of a size [pt] in a figure [inch]."""
+    written = figure.text(0.0, 0.0, text, fontsize=size)
+    width = float(written.get_window_extent().width) / figure.dpi
+    written.remove()
+    return width
 
 
 def power_of_ten(value: float) -> str:

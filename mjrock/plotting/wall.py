@@ -19,7 +19,7 @@ from ..quantities import require_flag, require_text
 from ..result.bodies import Moving
 from .bodies import FORCE, GROUND_COLOUR, STONE, Bodies, Update, anchored, outlines, still, together
 from .picture import anything, picture
-from .style import WIDEST, Look, Picture, figure_of, titled
+from .style import BEHIND, WIDEST, Look, Picture, figure_of, titled, width_of, wrapped
 
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
@@ -31,8 +31,10 @@ TALLEST, LARGEST = 3.4, 2.0
 """Largest height of a drawing, and largest width of the section [inch]."""
 POINTS = 4001
 """Rotations at which ties are looked at, up to the overturning."""
-LEADING, LETTER, APART, EDGE, LINE = 0.2, 0.06, 0.4, 0.15, 0.15
-"""Room for leaders, width of a letter, room between the drawings and at the edges, and height of a line [inch]."""
+LEADING, APART, EDGE, LINE = 0.2, 0.4, 0.15, 0.15
+"""Room for leaders, between the drawings and at the edges, and height of a line [inch]."""
+SMALL = 8.0
+"""Size of notes [pt]."""
 
 
 def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
@@ -66,7 +68,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
         at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
         look = {"fontsize": 8, "color": tie.colour, "va": "bottom", "zorder": 6}
         note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
-        note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
+        note.set_bbox(BEHIND)
     updates += [_force(ax, case, effect, force, moving) for effect, force in forces]
     updates += [_mass(ax, added, moving) for added in case.wall.masses if added.told is not None]
     if bodies.limits is not None:
@@ -185,23 +187,27 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
     wide, tall, long = (float(np.ptp(limits)) for limits in (left.get_xlim(), left.get_ylim(), right.get_xlim()))
     scale = min(TALLEST / tall, LARGEST / wide)  # [inch/m]
     column = EDGE + scale * wide + EDGE
-    letters = max((len(line) for _, text in notes for line in text.splitlines()), default=0)
-    beside = column + (LEADING + LETTER * letters if notes else 0.0) + APART + EDGE
+    beside = column + APART + EDGE
+    beside += LEADING + max(width_of(figure, text, SMALL) for _, text in notes) if notes else 0.0
+    said = wrapped("\n".join(openings), max(1.5, WIDEST - beside), SMALL)
+    written = width_of(figure, said, SMALL)
     smaller = min(scale, max(1.0, WIDEST - beside) / long)
-    width = min(WIDEST, max(5.0, beside + smaller * long))
-    below, room = EDGE + LINE * len(openings), LINE * sum(2 + text.count("\n") for _, text in notes)
+    across = max(smaller * long, written)
+    width = max(5.0, beside + across)
+    lines = len(said.splitlines())
+    below, room = EDGE + LINE * lines + 0.5 * LINE * bool(lines), LINE * sum(2 + text.count("\n") for _, text in notes)
     room = max(scale * tall, room)
     figure.set_size_inches(width, 1.0)
     height = below + room + 0.3 + titled(figure, title)
     figure.set_size_inches(width, height)
-    for ax, one, start in ((left, scale, EDGE), (right, smaller, width - EDGE - smaller * long)):
+    middle = width - EDGE - 0.5 * across
+    for ax, one, start in ((left, scale, EDGE), (right, smaller, middle - 0.5 * smaller * long)):
         (x0, x1), (low, high) = ax.get_xlim(), ax.get_ylim()
         bottom = below + (one - scale) * low
         ax.set_position((start / width, bottom / height, one * (x1 - x0) / width, one * (high - low) / height))
         ax.axis("off")
-    said, place = "\n".join(openings), (0.0, 72 * below - 3)
-    coordinates = ("data", "figure points")
-    right.annotate(said, place, xycoords=coordinates, fontsize=8, ha="center", va="top", annotation_clip=False)
+    place, coordinates = (72 * middle, 72 * (EDGE + LINE * lines)), "figure points"
+    right.annotate(said, place, xycoords=coordinates, fontsize=SMALL, ha="center", va="top", annotation_clip=False)
     _notes(left, notes, column, (below, below + room))
 
 
@@ -214,7 +220,7 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
     note = ax.annotate(text, middle, offset, textcoords="offset points", fontsize=8, rotation=turn, zorder=9)
     note.set(ha="center" if level else "right", va="top" if level else "center")
     if not level:
-        note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
+        note.set_bbox(BEHIND)
 
 
 def section(ax: Axes, case: Case, stop: str = "stop") -> None:
