@@ -18,7 +18,7 @@ import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -166,6 +166,36 @@ def shown(value: float, above: str) -> str:
     return f"{value:.2f}" if math.isfinite(value) else above
 
 
+class LeftOut(NamedTuple):
+    """Overturning intensity without an effect over that with it [-].
+
+    Args:
+        ratios: under each motion; where nothing overturns up to MOST, what it is less than.
+        bound: whether the median is such a bound.
+    """
+
+    ratios: list[float]
+    bound: bool
+
+    @classmethod
+    def of(cls, without: Sequence[float], with_it: Sequence[float]) -> LeftOut:
+        """The ratios of two rows of intensities [g]."""
+        ratios = [bare / min(own, MOST) for bare, own in zip(without, with_it, strict=True)]
+        return cls(ratios, math.isinf(statistics.median(with_it)))
+
+    @property
+    def median(self) -> float:
+        """Median over the motions [-]."""
+        return statistics.median(self.ratios)
+
+    @property
+    def texts(self) -> tuple[str, str]:
+        """The median, and the least and the largest ratio, which a bound has not."""
+        if self.bound:
+            return f"< {self.median:.2f}", "-"
+        return f"{self.median:.2f}", f"{min(self.ratios):.2f} to {max(self.ratios):.2f}"
+
+
 def answers(studied: Mapping[str, Facade], pairs: Sequence[Pair]) -> dict[str, tuple[list[float], list[float]]]:
     """Peaks over alpha and overturning intensities [g] of every façade under every motion."""
     found: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name in studied}
@@ -203,15 +233,23 @@ def vertical_in_theory(count: int) -> list[float]:
     return ratios
 
 
-def drawn(names: Sequence[str], times: Mapping[str, float], left_out: Sequence[float]) -> Figure:
-    """Bars: time on the left, what leaving an effect out makes of the overturning intensity on the right."""
+def drawn(names: Sequence[str], times: Mapping[str, float], left_out: Sequence[LeftOut]) -> Figure:
+    """Bars: time on the left, what leaving an effect out makes of the overturning intensity on the right.
+
+    A bound has no bar but an arrow from it to what it may be.
+    """
     figure = Figure(figsize=(7.4, 4.0), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     y = np.arange(len(names))
     left.barh(y, [times[name] for name in names], 0.6, color="0.6")
     left.set_xlabel("time of a run over that of the bare façade [-]", fontsize=9)
-    finite = np.nan_to_num(np.array(left_out), nan=1.0)
-    right.barh(y, finite - 1, 0.6, left=1, color=np.where(finite > 1, ORANGE, BLUE))
+    known = np.array([1.0 if one.bound else one.median for one in left_out])
+    right.barh(y, known - 1, 0.6, left=1, color=np.where(known > 1, ORANGE, BLUE))
+    for level, one in zip(y.tolist(), left_out, strict=True):
+        if one.bound:
+            right.annotate("", (0.0, level), (one.median, level), arrowprops={"arrowstyle": "-|>", "color": BLUE})
+            right.plot([one.median] * 2, [level - 0.3, level + 0.3], color=BLUE, linewidth=1.5)
+            right.text(one.median + 0.03, level, f"less than {one.median:.2f}", fontsize=8, va="center", color=BLUE)
     right.set_xlabel("overturning intensity without the effect\nover that with it [-]", fontsize=9)
     right.set_title("safe to leave out  ←  1  →  unsafe", fontsize=9, x=(1 - 0.0) / 1.5)
     right.set_xlim(0, 1.5)
@@ -235,16 +273,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     times = timed(studied, pairs[0], standing, 1 if args.quick else 7)
     rows, left_out = [["no ground motion", *(f"{ratio:.2f}" for ratio in times["no ground motion"]), *4 * ["-"]]], []
     for name, (peaks, least) in found.items():
-        ratios = [0.0 if math.isinf(own) else without / own for without, own in zip(bare[1], least, strict=True)]
-        left_out.append(statistics.median(ratios))
+        left_out.append(LeftOut.of(bare[1], least))
         rows.append(
             [
                 name,
                 *(f"{ratio:.2f}" for ratio in times[name]),
                 shown(statistics.median(peaks), "falls"),
                 shown(statistics.median(least), f"> {MOST:g}"),
-                f"{left_out[-1]:.2f}",
-                f"{min(ratios):.2f} to {max(ratios):.2f}",
+                *left_out[-1].texts,
             ]
         )
     plotting.save(
