@@ -187,7 +187,8 @@ class PairContact:
 
         Warns:
             ContactWarning: of other contacts that are stiffer or softer now, with k before and after. The elliptic cone
-                makes contacts with friction mu softer by 2 impratio / (mu^2 (1 + mu^2)), or stiffer for mu above 1.
+                makes contacts with friction mu softer by 2 impratio / (mu^2 (1 + mu^2)), or stiffer for mu above 1. And
+                of a solver that has too few iterations for the contact, or that does not converge with it.
         """
         PairContacts((self,)).apply(
             model, on_geoms=on_geoms, keep_others=keep_others, iterations=iterations, name_geoms=name_geoms
@@ -268,7 +269,8 @@ class PairContact:
             self._require_names()
             return replace(self, geom1=prefix + self.geom1, geom2=prefix + self.geom2).caveats(model)
         pair = self._pair_in(compiled_model(model))
-        return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
+        few = few_iterations(pair.model.opt, self.needs)
+        return (*missing(pair, self), *spoilers(pair, self), *few, *self.remarks)
 
     def __str__(self) -> str:
         """Its numbers as one line of text."""
@@ -382,6 +384,8 @@ class PairContacts:
         changed = [each for each in changed if not (keep_others and _keep(model, each))]
         if changed:
             warn_of(changes_said(changed), ContactWarning)
+        for sentence in dict.fromkeys(each for contact in self for each in few_iterations(whole.opt, contact.needs)):
+            warn_of(sentence, ContactWarning)
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
         """Reasons in a model for which the contacts differ from their numbers, equal sentences once with the geoms that
@@ -501,7 +505,6 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     if pair.is_uneven:
         yield uneven(contact.contacts)
     yield from step_spoilers(contact)
-    yield from few_iterations(model.opt, contact.needs)
 
 
 def weight_spoilers(contact: PairContact) -> Iterator[str]:

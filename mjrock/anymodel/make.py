@@ -1,24 +1,16 @@
-"""`contact_for` and `contacts_for`: a stiffness in N/m and a restitution for geoms of any MuJoCo model.
-
-How many iterations MuJoCo's solver needs for contacts is found by a trial. They are written into a copy of the model,
-on its pairs and its geoms. Geoms that are apart act at the distance at which they are, so that every contact carries.
-The copy steps with a solver that converges, from a state that moves in all of its joints. At each state the solver of
-the model solves the same equations. Where it ends at its last iteration or finds other forces, it has too few.
-"""
+"""`contact_for` and `contacts_for`: a stiffness in N/m and a restitution for geoms of any MuJoCo model."""
 
 from __future__ import annotations
 
-import copy
 import itertools
 import math
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fnmatch import fnmatchcase
 from typing import Annotated
 
 import mujoco
-import numpy as np
 
 from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_values, row
 from ..method import METHOD
@@ -26,14 +18,12 @@ from ..problem.damping.rebound import MOST_PULL, falling_damping, rebound_dampin
 from ..quantities import Array, Within, keep_declared, named, require_within, shown, spelt
 from .contact import PairContact, PairContacts, merged, soft_spoilers, spoilers, weight_spoilers
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
-from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms, posed_alike
+from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms
 from .notes import (
-    LINE_SEARCHES,
     LONG_STEP,
-    MOST_TURNS,
     UNSOUND,
     ContactWarning,
-    SolverNeed,
+    few_iterations,
     giving_way,
     holding,
     other_keyframes,
@@ -44,15 +34,10 @@ from .notes import (
     unknown,
 )
 from .row_of_model import Grip, Mixed, ModelRow, unused
+from .solver_trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
-STEPS = 50
-"""Steps of a trial of the solver."""
-MOVING = 0.1
-"""Largest speed of a joint at the start of a trial [m/s or rad/s]."""
-OTHER_FORCES = 0.01
-"""Change of the forces, as a share of the largest, from which they are others [-]."""
 Geom = str | int
 
 
@@ -193,15 +178,20 @@ def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> PairC
     """The requested contacts in a pose, with the iterations that they need and remarks on what lands with each."""
     found = [contact_of(pair, pose, each) for pair, each in asked]
     made = {frozenset(contact.ids): contact for contact, _ in found}
-    needs = solver_need(pose, PairContacts(tuple(made.values())))
+    landed = {
+        frozenset(pair.geoms): (contact, pose.along(each.normal).landing(pair))
+        for (pair, each), (contact, _) in zip(asked, found, strict=True)
+    }
+    needs = solver_need(pose, tuple(landed.values()))
     whole = (replace(beside(contact, neighbours, made), needs=needs) for contact, neighbours in found)
     return PairContacts(tuple(whole))
 
 
-def _sentences(model: mujoco.MjModel, contacts: Iterable[PairContact]) -> Iterator[tuple[PairContact, str]]:
+def _sentences(model: mujoco.MjModel, contacts: PairContacts) -> Iterator[tuple[PairContact, str]]:
     """Reasons for which contacts differ from the request, each with its contact."""
     for contact in contacts:
-        for sentence in (*spoilers(GeomPair(model, contact.ids), contact), *contact.remarks):
+        own = spoilers(GeomPair(model, contact.ids), contact)
+        for sentence in (*own, *few_iterations(model.opt, contact.needs, contacts.impratio), *contact.remarks):
             yield contact, sentence
 
 
@@ -447,73 +437,3 @@ def _row(
     if inertia > inertia_of(WITHIN[1], inverse_weight):
         raise ValueError(f"newmark_beta = {newmark_beta:g} asks for more inertia than MuJoCo represents; lower it")
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
-
-
-def solver_need(pose: Pose, contacts: PairContacts) -> SolverNeed:
-    """What contacts need of the solver of their model, by a trial in a pose.
-
-    Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
-    """
-    tried = _with(pose, contacts)
-    own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
-    cap, searches = max(own[0], MOST_TURNS), max(own[1], LINE_SEARCHES)
-    most, enough = _stepped(tried, pose, cap, searches)
-    if most < cap:
-        return SolverNeed(*own) if enough else SolverNeed(max(2 * most, own[0]), searches)
-    full = float(tried.opt.impratio) if contacts.has_friction else 1.0
-    for power in range(math.ceil(math.log10(full)) - 1, -1, -1):
-        tried.opt.impratio, (tried.opt.iterations, tried.opt.ls_iterations) = 10.0**power, own
-        most, _ = _stepped(tried, pose, cap, searches)
-        if 2 * most <= cap:
-            return SolverNeed(max(2 * most, own[0]), searches, converges=False, impratio=10.0**power)
-    return SolverNeed(*own, converges=False)
-
-
-def _stepped(tried: mujoco.MjModel, pose: Pose, cap: int, searches: int) -> tuple[int, bool]:
-    """The most iterations of a step, of `cap` with so many line searches, and whether those of the model find the same
-    forces."""
-    own = int(tried.opt.iterations), int(tried.opt.ls_iterations)
-    data, other = posed_alike(tried, pose.data), mujoco.MjData(tried)
-    data.qvel[:] = MOVING * np.cos(np.arange(tried.nv))
-    most, enough = 0, True
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        for _ in range(STEPS):
-            tried.opt.iterations, tried.opt.ls_iterations = own
-            mujoco.mj_copyData(other, tried, data)
-            mujoco.mj_forward(tried, other)
-            tried.opt.iterations, tried.opt.ls_iterations = cap, searches
-            mujoco.mj_step(tried, data)
-            if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
-                break
-            most = max(most, int(data.solver_niter.max(initial=0)))
-            enough &= _alike(other, data)
-    return most, enough
-
-
-def _with(pose: Pose, contacts: PairContacts) -> mujoco.MjModel:
-    """A copy of the model with contacts on its pairs and geoms, which act at the distance at which they are."""
-    tried = copy.copy(pose.model)
-    option = tried.opt
-    option.timestep = contacts.contacts[0].timestep
-    if contacts.has_friction:
-        option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-        option.impratio = max(float(option.impratio), contacts.impratio, 1.0)
-    for contact in contacts:
-        pair = GeomPair(tried, contact.ids)
-        contact.write_numbers(tried, pair)
-        here = max(0.0, pose.landing(GeomPair(pose.model, contact.ids)).distance) + contact.depth
-        if pair.explicit >= 0:
-            tried.pair_margin[pair.explicit] = here
-        else:
-            first, second = contact.ids
-            tried.geom_margin[first] = max(float(tried.geom_margin[first]), here - float(tried.geom_margin[second]))
-    return tried
-
-
-def _alike(other: mujoco.MjData, data: mujoco.MjData) -> bool:
-    """Whether the forces of two solutions of one state are the same."""
-    if other.nefc != data.nefc or not data.nefc:
-        return True
-    difference = np.abs(np.array(other.efc_force) - data.efc_force).max()
-    return bool(difference <= OTHER_FORCES * np.abs(data.efc_force).max())

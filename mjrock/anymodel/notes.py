@@ -110,20 +110,27 @@ class SolverNeed(NamedTuple):
         converges: whether the solver converges in `MOST` iterations.
         impratio: with which it converges where it does not with that of the contacts; infinity if none is found. A load
             that friction holds then creeps faster, as much as impratio is smaller.
+        tried: whether the contacts could be tried; the numbers are those of the model where not.
     """
 
     iterations: int = 1
     ls_iterations: int = 1
     converges: bool = True
     impratio: float = math.inf
+    tried: bool = True
 
 
 ENOUGH = SolverNeed()
 """What any solver has."""
 
 
-def few_iterations(option: mujoco.MjOption, needs: SolverNeed) -> Iterator[str]:
-    """What the solver of a model lacks, as a sentence."""
+def few_iterations(option: mujoco.MjOption, needs: SolverNeed, impratio: float = 0.0) -> Iterator[str]:
+    """What the solver of a model lacks, as a sentence. The contacts will raise impratio to what is given."""
+    if not needs.tried:
+        yield (
+            "whether the solver has enough iterations for it is not tried, because no contact in question carries a "
+            "force in the model as it is"
+        )
     solver = mujoco.mjtSolver(option.solver).name.removeprefix("mjSOL_")
     few = option.iterations < needs.iterations or option.ls_iterations < needs.ls_iterations
     if needs.converges and few:
@@ -136,7 +143,7 @@ def few_iterations(option: mujoco.MjOption, needs: SolverNeed) -> Iterator[str]:
             f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST_TURNS)} "
             "iterations, and with no smaller impratio; take Newton, or a smaller ratio of masses"
         )
-    elif not needs.converges and (few or option.impratio > needs.impratio):
+    elif not needs.converges and (few or max(option.impratio, impratio) > needs.impratio):
         yield (
             f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST_TURNS)} "
             f"iterations; with impratio = {needs.impratio:g} it does in {needs.iterations}, and friction creeps more: "
