@@ -12,7 +12,7 @@ import numpy as np
 
 from ..engine.solref import inertia_of
 from ..files import quoted
-from ..problem.damping.rebound import rebound_at, rebound_restitution
+from ..problem.damping.rebound import MOST_PULL, deepest, rebound_at, rebound_restitution
 from ..quantities import named, require_flag, require_text, short_repr, warn_of
 from .geoms import GeomPair, compiled_model, every_pair, geom_label, kept_apart
 from .notes import (
@@ -529,7 +529,7 @@ def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Ite
     if k < (1 - SCATTER_WARNED_OF) * model_k:
         yield (
             f"k = {k:.3g} N/m, the stiffest that a step of {h:g} s resolves, is softer than the contact that "
-            f"the model had, {model_k:.3g} N/m under the weight; "
+            f"the model had, {model_k:.3g} N/m under the weight, by a factor of {model_k / k:.2g}; "
             f"{rounded_down(h * math.sqrt(k / model_k))} s resolves as much"
         )
     if contact.depth > SOFT_DEPTH * thickness:
@@ -539,6 +539,25 @@ def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Ite
             f"step of {h:g} s resolves, {contact.depth / thickness:.0%} of their smallest half extent; "
             f"{rounded_down(resolving)} s resolves a hundredth of it"
         )
+
+
+def blow_spoilers(contact: PairContact, pair: GeomPair) -> Iterator[str]:
+    """Where a blow at the speed of the contact goes deeper than the smallest half extent of the geoms, as a sentence.
+    A plane and a height field have no other side."""
+    if contact.speed is None or pair.has_one_side:
+        return
+    pull = min(contact.gravity / (contact.frequency * contact.speed), MOST_PULL)
+    way, thickness, h = contact.speed * contact.timestep, pair.thickness, contact.timestep
+    deep = max(contact.speed / contact.frequency * deepest(min(contact.xi, 1e6), pull), way)
+    if deep <= thickness:
+        return
+    k = 1.01 * contact.k * (deep / thickness) ** 2
+    step = min(resolving_step(k, 2 * contact.xi * math.sqrt(k * contact.mass), contact.mass), h * thickness / way)
+    yield (
+        f"a blow at {contact.speed:g} m/s goes {deep:.2g} m deep, {deep / thickness:.2g} times the smallest half "
+        "extent of the geoms, from where MuJoCo may push it out on the other side; "
+        f"k = {k:.3g} N/m stops it within that, and {rounded_down(min(h, step))} s resolves it"
+    )
 
 
 def step_spoilers(contact: PairContact) -> Iterator[str]:

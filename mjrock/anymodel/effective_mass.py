@@ -91,6 +91,17 @@ class ModelSprings:
         return np.concatenate([joints, self.dry * np.abs(self.stretch @ motion)])
 
 
+def moved_or_sprung(model: mujoco.MjModel, data: mujoco.MjData) -> Flags:
+    """Which degrees of freedom an actuator moves, or a spring of a joint or a tendon, shape (nv,)."""
+    strings = _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv)
+    sprung = _coefficients(model, "tendon_stiffness", model.ntendon).any(axis=1)
+    drives = _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv)
+    act = model.actuator_trntype != int(mujoco.mjtTrn.mjTRN_BODY)  # adhesion of a body
+    act &= not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
+    joints = (_coefficients(model, "jnt_stiffness", model.njnt)[model.dof_jntid] != 0).any(axis=1)
+    return np.array(joints | (strings[sprung] != 0).any(axis=0) | (drives[act] != 0).any(axis=0))
+
+
 def _coefficients(model: mujoco.MjModel, name: str, count: int) -> Array:
     """The linear coefficient of springs or dampers and those of higher order, shape (count, 3); zeros where a flag
     of the model disables them."""

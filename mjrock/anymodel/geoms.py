@@ -27,6 +27,8 @@ ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPS
 """Geoms that meet any other convex geom in a single point."""
 FACED = (int(mujoco.mjtGeom.mjGEOM_BOX), int(mujoco.mjtGeom.mjGEOM_MESH))
 """Geoms with faces and corners."""
+BOUNDLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
+"""Geoms that fill all that is below them, and stay where they are."""
 NOT_CONVEX = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 """Geoms that are not convex."""
 
@@ -191,6 +193,11 @@ class GeomPair:
     def makes_several_points(self) -> bool:
         """Whether MuJoCo can make more than one contact of these geoms at a time."""
         return self.is_uneven or not any(self.model.geom_type[geom] in ONE_POINT for geom in self.geoms)
+
+    @property
+    def has_one_side(self) -> bool:
+        """Whether one of the geoms is a plane or a height field, which nothing comes out of on another side."""
+        return any(self.model.geom_type[geom] in BOUNDLESS for geom in self.geoms)
 
     @property
     def has_two_faces(self) -> bool:

@@ -22,10 +22,12 @@ from .notes import (
     UNSOUND,
     duplicates,
     holding,
+    idle,
     model_spoilers,
     other_keyframes,
     resolving_step,
     rounded_down,
+    shape_spoilers,
     turned,
     uneven,
     unknown,
@@ -177,11 +179,14 @@ def _notes(
 ) -> Iterator[str]:
     yield from duplicates(pair)
     yield from row.notes()
+    yield from shape_spoilers(pair, pose)
+    yield from idle(pair, pose)
     yield from turned(pair, pose, found.k)
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)
     if met.neighbours.level:
-        yield f"it lands together with {len(met.neighbours.level)} other contacts of its bodies, and shares the mass"
+        others = len(met.neighbours.level)
+        yield f"it lands together with {others} other contact{'s' * (others > 1)} of its bodies, and shares the mass"
     if pair.is_uneven:
         yield uneven(found.points)
     elif contacts == 1 and pair.makes_several_points:

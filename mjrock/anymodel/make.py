@@ -16,7 +16,7 @@ from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_v
 from ..method import METHOD
 from ..problem.damping.rebound import MOST_PULL, falling_damping, rebound_damping
 from ..quantities import Array, Within, keep_declared, named, require_within, shown, spelt
-from .contact import PairContact, PairContacts, merged, soft_spoilers, spoilers, weight_spoilers
+from .contact import PairContact, PairContacts, blow_spoilers, merged, soft_spoilers, spoilers, weight_spoilers
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
 from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms
 from .notes import (
@@ -26,9 +26,11 @@ from .notes import (
     few_iterations,
     giving_way,
     holding,
+    idle,
     other_keyframes,
     resolving_step,
     rounded_down,
+    shape_spoilers,
     stiffest,
     turned,
     unknown,
@@ -305,7 +307,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
     )
     if asked.mass is None and not met.effective.mass < math.inf:
         raise ValueError(
-            f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at {pose.label}, so that "
+            f"geom1 and geom2 = {pair.labels} cannot approach each other along their normal at {pose.label}, so that "
             "the model gives no mass for the restitution; give mass"
         )
     share = met.share if asked.mass is None else asked.mass / met.points
@@ -337,10 +339,11 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         pose=pose.label,
         load=pose.load(pair, met.points, asked.contacts),
     )
-    remarks = [*unused(asked.friction, grip), *turned(pair, pose, k)]
+    remarks = [*unused(asked.friction, grip), *shape_spoilers(pair, pose), *idle(pair, pose), *turned(pair, pose, k)]
     remarks += _remarks(pair, pose, asked, met, k, c, grip.sliding)
     if asked.restitution is not None:
         remarks += weight_spoilers(contact)
+    remarks += blow_spoilers(contact, pair)
     if asked.k is None:
         remarks += soft_spoilers(contact, ModelRow.of(pair).loaded(contact.load), pair.thickness)
     return replace(contact, remarks=tuple(remarks)), met.neighbours

@@ -14,16 +14,14 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
-from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass
-from .geoms import FARTHEST_GEOM, GeomPair, makes
+from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass, moved_or_sprung
+from .geoms import BOUNDLESS, FARTHEST_GEOM, GeomPair, makes
 
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
 one in a thousand meets in all of its points."""
 LANDING_HALVINGS = 40
 """Halvings of the way on which a landing is looked for."""
-DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
-"""Geoms that stay where they are."""
 KEY = mujoco.mjtObj.mjOBJ_KEY
 Keyframe = str | int | Sequence[str | int] | None
 """A keyframe by name or number, or several."""
@@ -33,6 +31,8 @@ SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
 TOUCHING_AT_REST = 1e-4
 """Distance within which geoms of a pose at rest touch [m]."""
+RIGID_AT_REST = ("eq_{}", "jnt_{}", "dof_{}", "tendon_{}_lim", "tendon_{}_fri")
+"""Fields of a model with the parameters of constraints that are no contacts: equality, limits, and dry friction."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
 
@@ -57,7 +57,7 @@ class Trial:
         about `away` [degrees]; shape (n, 3)."""
         bodies, geoms = list(pair.bodies), list(pair.geoms)
         self._let_meet(geoms, bodies, 1)
-        moves = 1 if self.model.geom_type[geoms[0]] in DIRECTIONLESS else 0
+        moves = 1 if self.model.geom_type[geoms[0]] in BOUNDLESS else 0
         place, frame = (np.array(values[geoms[moves]]) for values in (self.data.geom_xpos, self.data.geom_xmat))
         shift = (distance + self.pressed(pair)) * away
         if turn:
@@ -80,7 +80,7 @@ class Trial:
         """Where the first geom lands as it moves against `away`; if it passes the second, over the middle of that.
         None where it meets nothing."""
         geoms, place, radii = pair.geoms, self.data.geom_xpos, self.model.geom_rbound
-        apart, moved = place[geoms[0]] - place[geoms[1]], geoms[self.model.geom_type[geoms[0]] in DIRECTIONLESS]
+        apart, moved = place[geoms[0]] - place[geoms[1]], geoms[self.model.geom_type[geoms[0]] in BOUNDLESS]
         level, start = float(apart @ away), np.array(place[moved])
         for aside in (np.zeros(3), level * away - apart):
             place[moved] = start + (aside if moved == geoms[0] else -aside)
@@ -110,9 +110,10 @@ class Trial:
 
 
 def posed_alike(model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
-    """Data of a copy of a model in the pose of others."""
+    """Data of a copy of a model in the pose of others, with their controls."""
     made = mujoco.MjData(model)
     made.qpos[:], made.mocap_pos[:], made.mocap_quat[:] = data.qpos, data.mocap_pos, data.mocap_quat
+    made.ctrl[:], made.act[:] = data.ctrl, data.act
     return made
 
 
@@ -161,8 +162,10 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
     data = mujoco.MjData(model)
     if is_iterable(keyframe):
         for each in keyframe:
-            pose = model.key_qpos[keyframe_id(model, each)]
+            number = keyframe_id(model, each)
+            pose, controls = model.key_qpos[number], model.key_ctrl[number]
             data.qpos[:] = np.where(pose == model.qpos0, data.qpos, pose)
+            data.ctrl[:] = np.where(controls == 0, data.ctrl, controls)
     elif keyframe is not None:
         mujoco.mj_resetDataKeyframe(model, data, keyframe_id(model, keyframe))
         data.qvel[:] = 0
@@ -188,17 +191,23 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
 def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset[int], list[float]]:
     """Normal forces of all contact points of a pose at rest [N], by the numbers of their geoms.
 
-    They hold the bodies where they are: contacts that do not yield, within `TOUCHING_AT_REST` of touch. Joints beyond
-    the first body of each tree are held by a great armature, as servos hold a robot that stands.
+    Contacts within `TOUCHING_AT_REST` of touch, limits, equality constraints and dry friction hold the bodies, and do
+    not yield. Joints that an actuator or a spring moves are held by a great armature, as servos hold a robot that
+    stands, and what actuators give at the controls of the pose presses. No other joint is held: pads, trailers and
+    rockers on joints that turn freely find their balance.
     """
     held, option = copy.copy(model), mujoco.mjtEnableBit
     held.opt.enableflags = int(held.opt.enableflags & ~int(option.mjENBL_SPECULATIVE) | int(option.mjENBL_OVERRIDE))
     held.opt.o_solref[:], held.opt.o_solimp[:3], held.opt.o_margin = 0, (0.9999, 0.9999, 0.001), TOUCHING_AT_REST
     held.opt.solver, held.opt.cone = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtCone.mjCONE_ELLIPTIC
-    held.opt.iterations, held.opt.ls_iterations, held.opt.impratio = 100, 50, 1
-    held.body_invweight0[:] *= 1e-4  # of the regularisation
-    first = held.dof_bodyid[held.tree_dofadr[held.dof_treeid]]
-    held.dof_armature[held.dof_bodyid != first] += 1e6 * float(held.body_mass.sum())
+    held.opt.iterations, held.opt.ls_iterations, held.opt.tolerance = 100, 50, 0.0
+    held.opt.impratio = 1e-4  # friction carries what the normal forces cannot
+    for name in RIGID_AT_REST:
+        getattr(held, name.format("solref"))[:] = 0
+        getattr(held, name.format("solimp"))[..., :3] = 0.9999, 0.9999, 0.001
+    for name in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
+        getattr(held, name)[:] *= 1e-6  # of the regularisation
+    held.dof_armature[moved_or_sprung(model, data)] += 1e6 * float(held.body_mass.sum())
     state = posed_alike(held, data)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -275,8 +284,13 @@ class Pose:
 
     @cached_property
     def resting(self) -> dict[frozenset[int], list[float]]:
-        """Normal forces of the contact points of geoms that touch, in the pose at rest [N]; see `forces_at_rest`."""
-        return forces_at_rest(self.model, self.data)
+        """Normal forces of the contact points of geoms that touch, in the pose at rest [N]; see `forces_at_rest`.
+        Positions that are given without a keyframe have no controls, and no actuator presses in them."""
+        if not self.exact:
+            return forces_at_rest(self.model, self.data)
+        model = copy.copy(self.model)
+        model.actuator_gainprm[:], model.actuator_biasprm[:] = 0, 0
+        return forces_at_rest(model, self.data)
 
     def load(self, pair: GeomPair, points: int, contacts: int | None) -> float:
         """Static load of each contact point [N]: that of the pose at rest where the geoms touch, otherwise the weight

@@ -18,7 +18,7 @@ import numpy as np
 from ..problem.damping.rebound import rebound_at, rebound_restitution
 from ..quantities import Array, named
 from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, effective_mass
-from .geoms import GeomPair
+from .geoms import FACING, GeomPair
 from .meeting import TOUCHING_AT_REST, PairMeeting, Pose, keyframe_names, meeting_of_geoms
 
 SCATTER_WARNED_OF = 0.02
@@ -35,6 +35,9 @@ FOREIGN = 1.2
 """Ratio of the masses of two poses from which a warning names the pose that the contact is made for [-]."""
 IMMOVABLE = 10.0
 """Effective mass over that of all that moves from which a body is reported as hardly able to move [-]."""
+IDLE, LEAST_LOAD = 1e-3, 1e-6
+"""Force at rest as a share of the weight of the lighter body up to which a contact carries nothing [-], and the weight
+from which it is looked at [N]."""
 TURN = 0.01
 """Turn about the normal with which the points of two faces are counted again [degrees]."""
 CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
@@ -222,6 +225,38 @@ def turned(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
             f"joint then has {k * after:.3g} N/m for {k * before:.3g} N/m, and as much more "
             "damping; faces of which one lies within the other, and meshes in place of boxes, keep their points"
         )
+
+
+def shape_spoilers(pair: GeomPair, pose: Pose) -> Iterator[str]:
+    """What MuJoCo's contact detection does to the shapes of two geoms, one sentence each."""
+    model, here = pair.model, pose.landing(pair)
+    kinds = [mujoco.mjtGeom(model.geom_type[geom]) for geom in pair.geoms]
+    if {*kinds} == {mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER}:
+        cylinder = pair.geoms[kinds.index(mujoco.mjtGeom.mjGEOM_CYLINDER)]
+        upright = abs(float(pose.data.geom_xmat[cylinder].reshape(3, 3)[:, 2] @ here.away)) > FACING
+        if upright and pair.can_turn(pose.data, here.away):
+            yield (
+                "MuJoCo throws a cylinder that stands on a plane and turns about its axis: by rounding it finds "
+                "contact points up to the radius deep; take a box in place of the plane"
+            )
+    flag = int(DISABLE.mjDSBL_MULTICCD)
+    if len(here.first) == 1 and pair.makes_several_points and model.opt.disableflags & flag:
+        option = pose.ground.model.opt
+        option.disableflags &= ~flag
+        found = len(pose.ground.points(pair, here.away, here.distance))
+        option.disableflags |= flag
+        if found > 1:
+            yield (
+                f"the two faces meet in one point, where the multiccd flag gives them {found}: a face on one point has "
+                "no stiffness against turning; enable multiccd"
+            )
+
+
+def idle(pair: GeomPair, pose: Pose) -> Iterator[str]:
+    """A sentence where geoms touch in the pose, and carry nothing of what gravity and actuators press."""
+    forces = pose.resting.get(frozenset(pair.geoms))
+    if forces is not None and sum(forces) <= IDLE * pair.load and pair.load > LEAST_LOAD:
+        yield "the geoms touch in the pose and carry nothing at rest, so that load and depth are zero"
 
 
 def holding(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float = 1.0) -> Iterator[str]:

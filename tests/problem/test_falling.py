@@ -5,7 +5,13 @@ import math
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjrock.problem.damping.rebound import falling_damping, falling_rebound, rebound_damping, rebound_restitution
+from mjrock.problem.damping.rebound import (
+    deepest,
+    falling_damping,
+    falling_rebound,
+    rebound_damping,
+    rebound_restitution,
+)
 
 
 def integrated(xi, pull, share=1.0):
@@ -72,3 +78,15 @@ def test_without_gravity_it_is_the_formula():
 def test_what_cannot_be_is_refused(call, complaint):
     with pytest.raises(ValueError, match=complaint):
         call()
+
+
+@pytest.mark.parametrize("xi", [0.0, 0.1, 0.7, 1.0, 3.0])
+@pytest.mark.parametrize("pull", [0.0, 0.05, 2.0])
+def test_how_deep_a_blow_goes(xi, pull):
+    """Beside an integration of x'' = pull - x - 2 xi x', and the closed form without weight."""
+    solved = solve_ivp(
+        lambda t, y: (y[1], pull - y[0] - 2 * xi * y[1]), (0, 100), (0.0, 1.0), rtol=1e-8, atol=1e-10, max_step=0.05
+    )
+    assert deepest(xi, pull) == pytest.approx(solved.y[0].max(), rel=1e-3)
+    if xi < 1 and pull == 0:
+        assert deepest(xi) == pytest.approx(math.exp(-xi * math.acos(xi) / math.sqrt(1 - xi**2)), rel=1e-12)

@@ -172,6 +172,26 @@ def falling_rebound(xi: float, pull: float, share: float = 1.0) -> Rebound:
     return Rebound(math.sqrt(climbs) if climbs > 0 and speed(end) < 0 else 0.0, end)
 
 
+def deepest(xi: float, pull: float = 0.0) -> float:
+    """Largest indentation of a blow in units of v / omega [-], with the arguments of `falling_rebound`.
+
+    Without gravity it is exp(-xi acos(xi) / sqrt(1 - xi^2)) for xi < 1. Where the mass comes to rest from above, it is
+    the indentation at rest.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
+    """
+    xi = require_within("damping ratio xi", xi, 0.0, 1e6)
+    pull = require_within("pull g / (omega v)", pull, 0.0, MOST_PULL)
+    x, speed, _ = _motion(xi, pull)
+    late = 1.0
+    while speed(late) >= 0:  # the mass comes back for longer than it goes in, so that no doubling misses it
+        if late > 1e9:
+            return pull
+        late *= 2
+    return x(_crossing(lambda t: -speed(t), 0.0, late))
+
+
 def falling_damping(restitution: float, pull: float) -> float:
     """Damping ratio with which a mass rebounds with e, above 0 to 1, under gravity [-]; inverts `falling_rebound`.
 
