@@ -132,6 +132,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/drawn_in_space.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
 	$(BIN)/python scripts/measure/plain_throughput.py --out docs/figures
+	$(BIN)/python scripts/measure/rebound_phase.py --out docs/figures
 	$(BIN)/python scripts/measure/step_cost.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py
 

@@ -14,7 +14,7 @@ from ..engine.solref import inertia_of
 from ..files import quoted
 from ..problem.damping.rebound import MOST_PULL, deepest, rebound_at, rebound_restitution
 from ..quantities import named, require_flag, require_text, short_repr, warn_of
-from .geoms import GeomPair, compiled_model, every_pair, geom_label, kept_apart
+from .geoms import NO_LOAD, GeomPair, compiled_model, every_pair, geom_label, kept_apart
 from .notes import (
     ENOUGH,
     SCATTER_WARNED_OF,
@@ -276,10 +276,11 @@ class PairContact:
         """Its numbers as one line of text."""
         with_gravity = "" if self.speed is None else f" at {self.speed:g} m/s with gravity"
         grip = f"; friction {self.friction[0]:g}, impratio {self.impratio:.2g}" if self.condim > 1 else ""
+        at_rest = f"depth {self.depth:.3g} m under the weight" if self.load > NO_LOAD else "carries nothing at rest"
         return (
             f"{self.label}: k = {self.k:.4g} N/m, c = {self.c:.4g} N s/m at {self.contacts} "
             f"point{'s' * (self.contacts > 1)} of {self.mass:.4g} kg; e = {self.restitution:.3g}{with_gravity}, "
-            f"xi = {self.xi:.3g}; depth {self.depth:.3g} m under the weight{grip}; timestep {self.timestep:g} s"
+            f"xi = {self.xi:.3g}; {at_rest}{grip}; timestep {self.timestep:g} s"
         )
 
     def _pair_in(self, model: mujoco.MjModel) -> GeomPair:

@@ -23,6 +23,8 @@ TOUCHING_SHARE, BESIDE_THE_LINE = 1e-3, 1e-2
 direction. It is then looked for with one of them moved aside by the other share."""
 FACING = 0.999
 """Cosine from which a direction is the normal of a face [-]; 2.6 degrees."""
+NO_LOAD = 1e-9
+"""Load of a contact that carries nothing [N]."""
 ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 """Geoms that meet any other convex geom in a single point."""
 FACED = (int(mujoco.mjtGeom.mjGEOM_BOX), int(mujoco.mjtGeom.mjGEOM_MESH))
@@ -182,7 +184,7 @@ class GeomPair:
         option = self.model.opt
         pull = 0.0 if option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY) else np.linalg.norm(option.gravity)
         mass = self.model.body_mass * (1 - self.model.body_gravcomp)
-        return max(1e-9, min((abs(float(mass[bodies].sum())) for bodies in self.trees), default=0.0) * float(pull))
+        return max(NO_LOAD, min((abs(float(mass[bodies].sum())) for bodies in self.trees), default=0.0) * float(pull))
 
     @property
     def thickness(self) -> float:

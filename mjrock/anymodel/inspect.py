@@ -15,14 +15,13 @@ import numpy as np
 
 from ..problem.damping.rebound import rebound_at, rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within, short_repr
-from .geoms import GeomPair, compiled_model, every_pair, geom_label
+from .geoms import NO_LOAD, GeomPair, compiled_model, every_pair, geom_label
 from .meeting import Keyframe, PairMeeting, Pose, meeting_of_geoms
 from .notes import (
     IMMOVABLE,
     UNSOUND,
     duplicates,
     holding,
-    idle,
     model_spoilers,
     other_keyframes,
     resolving_step,
@@ -180,7 +179,8 @@ def _notes(
     yield from duplicates(pair)
     yield from row.notes()
     yield from shape_spoilers(pair, pose)
-    yield from idle(pair, pose)
+    if frozenset(pair.geoms) in pose.resting and found.load <= NO_LOAD < pair.load:
+        yield "it touches in this pose and carries nothing at rest"
     yield from turned(pair, pose, found.k)
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)

@@ -26,7 +26,6 @@ from .notes import (
     few_iterations,
     giving_way,
     holding,
-    idle,
     other_keyframes,
     resolving_step,
     rounded_down,
@@ -339,7 +338,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         pose=pose.label,
         load=pose.load(pair, met.points, asked.contacts),
     )
-    remarks = [*unused(asked.friction, grip), *shape_spoilers(pair, pose), *idle(pair, pose), *turned(pair, pose, k)]
+    remarks = [*unused(asked.friction, grip), *shape_spoilers(pair, pose), *turned(pair, pose, k)]
     remarks += _remarks(pair, pose, asked, met, k, c, grip.sliding)
     if asked.restitution is not None:
         remarks += weight_spoilers(contact)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
 from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass, moved_or_sprung
-from .geoms import BOUNDLESS, FARTHEST_GEOM, GeomPair, makes
+from .geoms import BOUNDLESS, FARTHEST_GEOM, NO_LOAD, GeomPair, makes
 
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
@@ -29,6 +29,8 @@ NEARLY_LEVEL = 0.05
 """Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
 SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
+IDLE = 1e-3
+"""Force at rest as a share of the weight of the lighter body up to which a contact carries nothing [-]."""
 TOUCHING_AT_REST = 1e-4
 """Distance within which geoms of a pose at rest touch [m]."""
 RIGID_AT_REST = ("eq_{}", "jnt_{}", "dof_{}", "tendon_{}_lim", "tendon_{}_fri")
@@ -298,7 +300,8 @@ class Pose:
         forces = self.resting.get(frozenset(pair.geoms))
         if forces is None:
             return pair.load / points
-        return max(1e-9, sum(forces)) / (contacts or len(forces))
+        carried = sum(forces) if sum(forces) > IDLE * pair.load else 0.0
+        return max(NO_LOAD, carried) / (contacts or len(forces))
 
     @cached_property
     def ground(self) -> Trial:

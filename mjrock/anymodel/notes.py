@@ -35,9 +35,6 @@ FOREIGN = 1.2
 """Ratio of the masses of two poses from which a warning names the pose that the contact is made for [-]."""
 IMMOVABLE = 10.0
 """Effective mass over that of all that moves from which a body is reported as hardly able to move [-]."""
-IDLE, LEAST_LOAD = 1e-3, 1e-6
-"""Force at rest as a share of the weight of the lighter body up to which a contact carries nothing [-], and the weight
-from which it is looked at [N]."""
 TURN = 0.01
 """Turn about the normal with which the points of two faces are counted again [degrees]."""
 CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
@@ -250,13 +247,6 @@ def shape_spoilers(pair: GeomPair, pose: Pose) -> Iterator[str]:
                 f"the two faces meet in one point, where the multiccd flag gives them {found}: a face on one point has "
                 "no stiffness against turning; enable multiccd"
             )
-
-
-def idle(pair: GeomPair, pose: Pose) -> Iterator[str]:
-    """A sentence where geoms touch in the pose, and carry nothing of what gravity and actuators press."""
-    forces = pose.resting.get(frozenset(pair.geoms))
-    if forces is not None and sum(forces) <= IDLE * pair.load and pair.load > LEAST_LOAD:
-        yield "the geoms touch in the pose and carry nothing at rest, so that load and depth are zero"
 
 
 def holding(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float = 1.0) -> Iterator[str]:

@@ -33,7 +33,7 @@ OTHER_FORCES = 0.01
 """Change of the forces, as a share of the largest, from which they are others [-]."""
 LARGEST_ACCELERATION = 1e10
 """Acceleration beyond which a trial ends [m/s2 or rad/s2], that of MuJoCo's own check."""
-POSITION, NEWTON = int(mujoco.mjtStage.mjSTAGE_POS), int(mujoco.mjtSolver.mjSOL_NEWTON)
+POSITION = int(mujoco.mjtStage.mjSTAGE_POS)
 
 
 Landed = tuple[PairContact, Landing]
@@ -152,13 +152,14 @@ class SolverTrial:
         A solver that ends at its last iteration may only miss its tolerance. Half of the iterations, and so on, count
         then where they find the forces of Newton's method.
         """
+        exact = int(mujoco.mjtSolver.mjSOL_NEWTON)
         self._forces(data, cap, searches)
         turns = int(data.solver_niter.max(initial=0))
-        right = self._forces(data, MOST_TURNS, LINE_SEARCHES, NEWTON)
+        right = self._forces(data, MOST_TURNS, LINE_SEARCHES, exact)
         if turns == cap:
             while turns > 1 and _alike(self._forces(data, turns // 2, searches), right):
                 turns //= 2
-            right = self._forces(data, MOST_TURNS, LINE_SEARCHES, NEWTON)
+            right = self._forces(data, MOST_TURNS, LINE_SEARCHES, exact)
         return turns, right
 
     def _place(self, data: mujoco.MjData) -> None:

@@ -66,6 +66,7 @@ WRITES = {
     "in_the_viewer": {"viewer.png"},
     "in_the_browser": {"view.png"},
     "plain_throughput": {"plain_throughput.txt"},
+    "rebound_phase": {"rebound_phase.txt"},
     "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
     "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
@@ -289,6 +290,7 @@ LONG = {
     "in_the_viewer",
     "in_the_browser",
     "plain_throughput",
+    "rebound_phase",
 }
 """Scripts that take a while even with --quick."""
 
