@@ -68,8 +68,8 @@ class PairContact:
         speed: speed of approach for which the contact was made [m/s], or None where it leaves out gravity.
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         pose: the pose in which they meet: `qpos0`, a keyframe, or `qpos`.
-        load: static load of each contact point [N], that of the pose at rest, or the weight of the
-            lighter tree of bodies where the geoms are apart.
+        load: static load of each contact point [N], that of gravity and actuators in the pose at rest, or the weight of
+            the lighter tree of bodies where the geoms are apart.
         needs: iterations of the solver that the contact needs, found by a trial in the pose.
         remarks: reasons in this pose for which the contact differs from the request, one sentence each.
     """

@@ -93,10 +93,12 @@ def contact_for(
         contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None counts
             them, with those of other geoms of the two bodies that land together with these: the four balls of a foot
             share its mass. Another number than is counted refers to the centres of mass, unless `at` is given.
-        keyframe: name or number of the keyframe in which the geoms meet. Or several, each for the joints that it moves
-            from `qpos0`: robots that are attached bring keyframes of their own.
+        keyframe: name or number of the keyframe in which the geoms meet, and at whose `ctrl` actuators press. Or
+            several, each for the joints that it moves from `qpos0`: robots that are attached bring keyframes of their
+            own.
         qpos: positions of the joints in which they meet, shape (nq,). It is not given together with `keyframe`.
-        speed: speed of the approach for which `restitution` holds with gravity [m/s], positive.
+        speed: speed of the approach for which `restitution` holds with gravity [m/s], positive. The depth of a blow at
+            this speed is compared with the geoms.
         timestep: MuJoCo's step [s], positive. None takes the model's.
         newmark_beta: Newmark's beta of the contact row [-], not negative; 1/4 is average acceleration.
 
@@ -110,8 +112,9 @@ def contact_for(
     Warns:
         ContactWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what
             else holds the bodies, of geoms that MuJoCo keeps apart, of geoms that share the mass, of a keyframe in
-            which the contact stops another mass, of faces to which a small turn gives more points, and without k of a
-            contact that is soft.
+            which the contact stops another mass, of faces to which a small turn gives more points or that meet in one,
+            of a cylinder that stands on a plane, of a blow at `speed` that is deeper than the geoms, of a solver that
+            has too few iterations, does not converge or is not tried, and without k of a contact that is soft.
     """
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)

@@ -128,8 +128,8 @@ def few_iterations(option: mujoco.MjOption, needs: SolverNeed, impratio: float =
     """What the solver of a model lacks, as a sentence. The contacts will raise impratio to what is given."""
     if not needs.tried:
         yield (
-            "whether the solver has enough iterations for it is not tried, because no contact in question carries a "
-            "force in the model as it is"
+            "whether the solver has enough iterations for it is not tried: no contact in question carries a force in "
+            "the model as it is, or its memory is too small for them"
         )
     solver = mujoco.mjtSolver(option.solver).name.removeprefix("mjSOL_")
     few = option.iterations < needs.iterations or option.ls_iterations < needs.ls_iterations

@@ -47,7 +47,10 @@ def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
     """
     trial = SolverTrial(pose, landed)
     own, cap, searches = trial.own, max(trial.own[0], MOST_TURNS), max(trial.own[1], LINE_SEARCHES)
-    found = trial.run(cap, searches)
+    try:
+        found = trial.run(cap, searches)
+    except mujoco.FatalError:  # the memory of the model is too small for the contacts
+        found = Found()
     if not found.carried:
         return SolverNeed(*own, tried=False)
     if found.most < cap:

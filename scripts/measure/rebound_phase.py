@@ -46,9 +46,15 @@ class Fall:
         self.law = float(mr.solve_compliant(case, contacts).restitution[0])
         self.start = 0.5 * wall.alpha
 
+    def fall(self) -> None:
+        """Step until the touch is near."""
+        while self.data.qpos[2] > NEAR * self.start:
+            mujoco.mj_step(self.model, self.data)
+
     def rebound(self) -> float:
         """|e| of the first rebound from the state of the data, by the energy at the peak [-]."""
         model, data, alpha = self.model, self.data, self.wall.alpha
+        self.fall()
         while data.qvel[2] <= 0:
             mujoco.mj_step(model, data)
         while data.qvel[2] > 0:
@@ -61,8 +67,7 @@ class Fall:
         """|e| of touches that are spread evenly over one step, shape (count,)."""
         model, data, h = self.model, self.data, self.timestep
         mujoco.mj_resetDataKeyframe(model, data, 0)
-        while data.qpos[2] > NEAR * self.start:
-            mujoco.mj_step(model, data)
+        self.fall()
         kind = mujoco.mjtState.mjSTATE_INTEGRATION
         state = np.zeros(mujoco.mj_stateSize(model, kind))
         mujoco.mj_getState(model, data, state, kind)
