@@ -74,7 +74,7 @@ if TYPE_CHECKING:
     from .problem.wall.case import Case
     from .problem.wall.effects import AddedMass, Damper, FrictionDamper, Load, SideStop, Thrust
     from .problem.wall.section import Gable, Opening
-    from .problem.wall.tie import Tie, strengths_of_bar
+    from .problem.wall.tie import Tie, strengths_of_anchor, strengths_of_bar
     from .problem.wall.wedge import Corner, Wedge
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
@@ -98,6 +98,7 @@ if TYPE_CHECKING:
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
     from .study.loading.code import Code
     from .study.loading.code_check import DynamicCheck, MechanismCheck, dynamic_check, mechanism_check
+    from .study.loading.design import Design, design
     from .study.loading.limit_analysis import LimitCurve, collapse_multiplier, limit_curve
     from .study.loading.push import Push, push
     from .study.loading.pushover import pushover
@@ -110,24 +111,24 @@ if TYPE_CHECKING:
 __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
     "Analysis", "Block", "Bond", "Capacity", "Case", "Code", "CodeSpectrum", "Collapse", "Comparison", "Compound",
-    "ContactParameters", "ContactWarning", "Contacts", "Corner", "CoulombFriction", "Damper", "DampingLaw", "Dry",
-    "DynamicCheck", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion",
-    "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "LimitCurve",
-    "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType",
-    "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome", "PairContact", "PairContacts",
+    "ContactParameters", "ContactWarning", "Contacts", "Corner", "CoulombFriction", "Damper", "DampingLaw", "Design",
+    "Dry", "DynamicCheck", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid",
+    "GroundMotion", "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger",
+    "LimitCurve", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse",
+    "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome", "PairContact", "PairContacts",
     "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response",
     "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum", "ScatteredRestitution", "Scene",
     "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie",
     "VerticalBending", "Wedge", "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign",
     "code_spectrum", "collapse_multiplier", "compare", "components_in", "contact_for", "contact_parameters",
-    "contact_stiffness", "contacts_for", "crushed_inset", "dynamic_check", "fit_capacities", "fit_fragility",
+    "contact_stiffness", "contacts_for", "crushed_inset", "design", "dynamic_check", "fit_capacities", "fit_fragility",
     "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes", "joint_stiffness", "layered_stiffness",
-    "limit_curve", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry",
-    "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio",
-    "push", "pushover", "records_in", "reference_frequency", "report", "response_spectrum", "results",
-    "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of",
-    "sensitivity", "simulate", "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range",
-    "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "limit_curve", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact",
+    "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover",
+    "records_in", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
+    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical",
+    "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_anchor", "strengths_of_bar", "wall_mjcf",
+    "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (\([^)]*|.+)", re.MULTILINE)

@@ -14,12 +14,13 @@ from ..problem.wall.case import Case
 from ..result.compare import Comparison
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
+from ..study.loading.design import Design
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity
 from .histories import history
 from .masonry import blocks, mechanism
-from .studies import fragility, push, pushover, tornado
+from .studies import design, fragility, push, pushover, tornado
 from .style import figure_of, png, wrapped
 from .wall import sketch
 
@@ -35,6 +36,7 @@ PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Push: lambda curve, said: push({"": curve}),
     PushoverCurve: lambda curve, said: pushover({"": curve}),
     Fragility: lambda fit, said: fragility(fit),
+    Design: lambda found, said: design(found),
     Sensitivity: lambda found, said: tornado(found),
 }
 """The function that draws each type, from it and the text that it prints as. It returns None for no picture."""

@@ -17,6 +17,7 @@ from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import SpectrumOfCode, response_spectrum
 from ..quantities import GRAVITY, named, require_kind, require_row, require_text
 from ..study.intensity.fragility import Fragility
+from ..study.loading.design import Design
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity, setting_text
@@ -36,6 +37,8 @@ from .style import (
     wrapped,
 )
 
+LETTERS_OF_AXIS = 60
+"""Letters below an axis from which on its labels are turned."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
@@ -309,6 +312,44 @@ def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = Non
     governs = found.governs or ""
     sentence = found.sentence.replace(f"governed by {governs}", f"governed by {said.get(governs)}")
     ax.set_title(wrapped(sentence, 0.6 * figure_of(ax).get_figwidth(), 10), fontsize=10)  # names take the rest
+    return ax
+
+
+@picture()
+def design(ax: Axes, found: Design) -> Axes:
+    """Capacity over demand of every condition for each value that was tried, the first that holds as a band.
+
+    Conditions hold on the line of 1 and above it. A value that cannot be built has no points.
+
+    Args:
+        ax: where to draw.
+        found: what `mjrock.design` returns.
+    """
+    require_kind("found", found, Design)
+    values = [trial.value for trial in found.trials]
+    numbers = all(isinstance(value, int | float) for value in values) and len(set(values)) == len(values)
+    places = values if numbers else list(range(len(values)))
+    lines = dict[str, list[tuple[float, float]]]()
+    for place, trial in zip(places, found.trials, strict=True):
+        for condition in trial.conditions:
+            lines.setdefault(condition.said, []).append((place, condition.verdict.ratio))
+    for number, (said, points) in enumerate(lines.items()):
+        marker = "osD^vP*X"[number % 8]
+        ax.plot(*np.transpose(points), marker=marker, markersize=5, linewidth=1.3, label=said)
+    ax.axhline(1.0, color="0.15", linewidth=1.0, linestyle="--")
+    if found.chosen is not None:
+        at = places[found.trials.index(found.chosen)]
+        ax.axvline(at, color=BLUE, alpha=0.18, linewidth=12, zorder=0)
+    ax.set_xticks(places, [trial.label for trial in found.trials])
+    if max(len(trial.label) for trial in found.trials) * len(values) > LETTERS_OF_AXIS:
+        ax.tick_params(axis="x", labelrotation=45)
+        for label in ax.get_xticklabels():
+            label.set(ha="right", rotation_mode="anchor")
+    finite = [ratio for points in lines.values() for _, ratio in points if math.isfinite(ratio)]
+    ax.set_ylim(0.0, 1.1 * max([1.0, *finite]))
+    ax.set_ylabel("capacity over demand [-]")
+    ax.set_title(wrapped(found.sentence, figure_of(ax).get_figwidth() - 0.6, 10), fontsize=10)
+    ax.legend(fontsize=8)
     return ax
 
 

@@ -362,7 +362,7 @@ def described(effect: Told, words: Words) -> str:
         if value is None or value == math.inf or key not in texts():
             continue
         if isinstance(value, str):
-            said.append(words(key, value=words(f"governed_{value}")))
+            said.append(words(key, value=words(f"governed_{value}".replace(" ", "_"))))
         elif isinstance(value, tuple):
             said.append(words(key, value="; ".join(words.number(x) for x in value)))
         else:

@@ -1,6 +1,7 @@
-"""The pictures of the first pages: every effect with its arguments, a façade with and without a tie, a record.
+"""The pictures of the first pages: effects with their arguments, a façade with and without a tie, a record, a design.
 
-Writes effects.png, tutorial.png and record.png, and prints how far the tie was drawn out and where the record ends.
+Writes effects.png, tutorial.png, record.png and design.png. It prints how far the tie was drawn out, which thickness is
+chosen and where the record ends.
 """
 
 from __future__ import annotations
@@ -50,6 +51,13 @@ def of_a_record() -> list[mr.GroundMotion]:
     return [motion, motion.corrected("linear"), motion.corrected("linear", (0.1, 25.0))]
 
 
+def how_thick() -> mr.Design:
+    """The thickness of a wall 4 m high by the code check."""
+    site = mr.code_spectrum("NTC 2018", ag=2.06, F0=2.45, Tc=0.33, soil="C")
+    thicknesses = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+    return mr.design(lambda t: mr.Case(mr.Block.from_size(t, 4.0), 0.0, 1.0), thicknesses, site)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Draw them."""
     args = cli.parser(__doc__, "first_pictures").parse_args(argv)
@@ -59,6 +67,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(plotting.history(responses, labels=["with the tie", "without the tie"]), out / "tutorial.png")
     for response in responses:
         print(response.message)
+    found = how_thick()
+    ax = plotting.design(found)
+    ax.set_xlabel("thickness [m]")
+    plotting.save(ax, out / "design.png")
+    print(found.sentence)
     motions = of_a_record()
     plotting.save(plotting.record(motions), out / "record.png")
     for motion in motions:

@@ -56,13 +56,13 @@ CALLS = OF_NUMBERS | {
     "Block": (mr.Block,
         {
             "b": 0.3, "h": 2.1, "length": 1.0, "density": 2000.0, "inset": 0.0, "openings": (), "profile": None,
-            "masses": (),
+            "masses": (), "plumb": "outer",
         },
     ),
     "Wedge": (mr.Wedge, {"angle": 0.4, "thickness": 0.5, "height": 4.0, "number": 2, "density": None}),
     "Corner": (mr.Corner, {"thickness": 0.5, "height": 4.0, "angle": 0.4, "density": 2000.0}),
     "HorizontalBending": (mr.HorizontalBending, {"wall": WALL, "thrust": 1e4, "crack": None}),
-    "VerticalBending": (mr.VerticalBending, {"wall": WALL, "load": 2e4, "bearing": None, "crack": None}),
+    "VerticalBending": (mr.VerticalBending, {"wall": WALL, "load": 2e4, "bearing": None, "crack": None, "effects": ()}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
     "ScatteredRestitution": (mr.ScatteredRestitution, {"mean": E, "sd": 0.01, "seed": 1}),
     "Case": (
@@ -97,6 +97,10 @@ CALLS = OF_NUMBERS | {
             "diameter": 0.02, "yield_stress": 235e6, "plate": 0.3, "thickness": 0.5, "shear_strength": 3e4,
             "compressive_strength": 2e6, "number": 2, "spacing": 1.0,
         },
+    ),
+    "strengths_of_anchor": (
+        mr.strengths_of_anchor,
+        {"hole": 0.05, "length": 0.6, "bond_strength": 3e5, "shear_strength": 3e4, "number": 2},
     ),
     "crushed_inset": (mr.crushed_inset, {"wall": WALL, "f_c": 2e6, "load": 1e3}),
     "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),

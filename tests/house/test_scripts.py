@@ -103,7 +103,7 @@ WRITES = {
     "fragility_coverage": {"fragility_coverage.txt"},
     "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},
     "sketch": {"sketch.png"},
-    "first_pictures": {"effects.png", "tutorial.png", "record.png"},
+    "first_pictures": {"effects.png", "tutorial.png", "record.png", "design.png"},
     "speed": {"speed.txt"},
     "step_cost": {"step_cost.csv", "step_cost.txt"},
     "step_vectors": {f"step_vectors.{ending}" for ending in ("csv", "txt")},

@@ -110,6 +110,13 @@ PICTURES = {
     "damping_curves": lambda: plotting.single(
         lambda ax: law_pictures.damping_curves(ax, [(1e-2, (RISING, RISING**2), (RISING, RISING**1.9))])
     ),
+    "design": lambda: plotting.design(
+        mr.design(
+            lambda t: mr.Case(mr.Block.from_size(t, 4.0), 0.0, 1.0),
+            [0.4, 0.6, 0.9],
+            mr.code_spectrum("NTC 2018", ag=2.06, F0=2.45, Tc=0.33, soil="C"),
+        )
+    ),
     "displacement": lambda: plotting.displacement([swung()]),
     "energy": lambda: plotting.energy([shaken()]),
     "fragility": lambda: plotting.fragility(fitted(), [0.2, 0.3, 0.4, 0.5], [0.0, 0.33, 0.67, 1.0], "MuJoCo"),

@@ -106,3 +106,23 @@ def test_walls_of_some_thickness_hold_a_plate(thickness, taken):
         return
     with pytest.raises(ValueError, match=r"thickness of the wall = .* is outside the valid range 0.05 to 10 m"):
         mr.Tie.of_bar(**BAR | {"thickness": thickness})
+
+
+@pytest.mark.parametrize(("bears", "strength", "name"), [(50e3, 50e3, "other end"), (70e3, 64.8e3, "punching")])
+def test_the_other_end_may_govern(bears, strength, name):
+    tie = mr.Tie.of_bar(**BAR, other_end=bears)
+    assert (tie.strength, tie.governed_by) == (pytest.approx(strength), name)
+
+
+def test_a_grouted_anchor_by_hand():
+    """600 mm in a hole of 50 mm: a surface of pi x 0.05 x 0.6 m2, and a cone that is pi (0.05 + 0.6) round at half the
+    depth and 0.6 m deep."""
+    found = mr.strengths_of_anchor(0.05, 0.6, 0.3e6, 60e3, number=2)
+    assert found == {
+        "bond": pytest.approx(2 * 0.3e6 * math.pi * 0.05 * 0.6),
+        "cone": pytest.approx(2 * 60e3 * math.pi * 0.65 * 0.6),
+    }
+    tie = mr.Tie.of_bar(**BAR, other_end=min(mr.strengths_of_anchor(0.05, 0.6, 0.3e6, 60e3).values()))
+    assert tie.strength == pytest.approx(0.3e6 * math.pi * 0.03)
+    with pytest.raises(ValueError, match="diameter of the hole = 1 m is outside"):
+        mr.strengths_of_anchor(1.0, 0.6, 0.3e6, 60e3)

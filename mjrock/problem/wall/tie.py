@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 from ...quantities import Within, keep, require_array, require_one_of, require_real, require_within, within_ranges
 from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, LinkLaw, PointOf
 
-GOVERNING = ("bar", "punching", "bearing")
+GOVERNING = ("bar", "punching", "bearing", "other end")
 """What the strength of a tie with an anchor plate may be that of."""
 Diameter = Annotated[float, Within(0.004, 0.2, "m", "diameter of the bar")]
 YieldStress = Annotated[float, Within(50e6, 2e9, "Pa", "yield_stress of the bar")]
@@ -44,8 +44,8 @@ class Tie(Anchored):
             plane the end lies `length` to the left.
         prestress: its force at rest [N], 0 to 1e9 and below the strength; without slack. It pulls with so much before
             anything moves.
-        governed_by: what its strength is that of, "bar", "punching" or "bearing", for sketch and report; `of_bar` sets
-            it. None does not say.
+        governed_by: what its strength is that of, "bar", "punching", "bearing" or "other end", for sketch and report;
+            `of_bar` sets it. None does not say.
 
     Raises:
         ValueError: for a value outside its range, an `ultimate` without a finite strength, or a prestress that the
@@ -107,6 +107,7 @@ class Tie(Anchored):
         elastic_modulus: Annotated[float, Within(5e10, 3e11, "Pa", "elastic_modulus of the bar")] = 210e9,
         number: Count = 1,
         spacing: float | None = None,
+        other_end: Annotated[float | None, Within(1, 1e9, "N", "other_end of the tie")] = None,
         **options: Any,
     ) -> Tie:
         """Ties of round steel bars with anchor plates on a wall, from what is known of them.
@@ -131,6 +132,8 @@ class Tie(Anchored):
             elastic_modulus: E of the steel [Pa], 5e10 to 3e11.
             number: n of equal ties at this height, 1 to 1000.
             spacing: s of several ties between centres, along the side a [m], from a to 1000; None is far apart.
+            other_end: what holds the other end bears of all of them [N]: the least of `strengths_of_bar` of a plate on
+                the wall there, or of `strengths_of_anchor`; None does not govern.
             options: other fields of `Tie`, such as `slack` and `ultimate`.
 
         Raises:
@@ -139,6 +142,8 @@ class Tie(Anchored):
         masonry = (thickness, shear_strength, compressive_strength)
         strengths = strengths_of_bar(diameter, yield_stress, plate, *masonry, number=number, spacing=spacing)
         stiffness = number * elastic_modulus * area_of_bar(diameter) / length
+        if other_end is not None:
+            strengths["other end"] = other_end
         least = min(strengths, key=lambda name: strengths[name])
         return cls(height, stiffness, length=length, strength=strengths[least], governed_by=least, **options)
 
@@ -220,4 +225,38 @@ def strengths_of_bar(
         punched = min(punched, around + (number - 1) * apart)
     bar, bearing = number * yield_stress * area_of_bar(diameter), number * compressive_strength * a * b
     strengths = bar, shear_strength * 2 * thickness * punched, bearing
-    return dict(zip(GOVERNING, strengths, strict=True))
+    return dict(zip(GOVERNING, strengths, strict=False))
+
+
+@within_ranges
+def strengths_of_anchor(
+    hole: Annotated[float, Within(0.008, 0.3, "m", "diameter of the hole")],
+    length: Annotated[float, Within(0.05, 20, "m", "length of the anchor")],
+    bond_strength: Annotated[float, Within(1e4, 1e7, "Pa", "bond_strength of the grout")],
+    shear_strength: ShearStrength,
+    *,
+    number: Count = 1,
+) -> dict[str, float]:
+    """Strengths of equal anchors that are grouted into holes in a wall [N], by what gives way, for `Tie.of_bar`.
+
+    "bond" is n f_b pi D l, on the surface of the hole. "cone" is n f_v0 pi (D + l) l: masonry that is drawn out at 45
+    degrees, cut at half the depth, as under the plates of `Tie.of_bar`. The bar itself is that of the tie. All are
+    without partial factors, and both are usual practice and from no clause. Holes are farther apart than their length.
+
+    Args:
+        hole: D [m], 0.008 to 0.3.
+        length: l that is grouted [m], 0.05 to 20.
+        bond_strength: f_b of grout on masonry [Pa], 1e4 to 1e7.
+        shear_strength: f_v0 of the masonry [Pa], 1e3 to 5e6.
+        number: n of equal anchors, 1 to 1000.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
+
+    Examples:
+        >>> found = mr.strengths_of_anchor(0.05, 0.6, 0.3e6, 60e3)
+        >>> {name: round(force / 1e3, 1) for name, force in found.items()}
+        {'bond': 28.3, 'cone': 73.5}
+    """
+    bond = number * bond_strength * math.pi * hole * length
+    return {"bond": bond, "cone": number * shear_strength * math.pi * (hole + length) * length}

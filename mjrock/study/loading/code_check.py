@@ -515,6 +515,11 @@ def _warn_of_ties(case: Case, name: str, capacity: float, alone: float, breaking
         )
 
 
+def required_demands(demand: Demand | Mapping[str, Demand], code: Code | str | None = None) -> Mapping[str, Demand]:
+    """The demand of each limit state of a code; a TypeError or ValueError says what is wrong with it."""
+    return _by_limit_state(demand, code_of(USUAL_CODE if code is None else code))
+
+
 def _by_limit_state(demand: Demand | Mapping[str, Demand], code: Code) -> Mapping[str, Demand]:
     """The demand of each limit state."""
     demands = demand if isinstance(demand, Mapping) else dict.fromkeys(code.states, demand)

@@ -1,0 +1,219 @@
+"""The inverse of a check: the first of some values, such as bars, plates or thicknesses, for which it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...files import aligned
+from ...notebook import Drawn
+from ...quantities import is_iterable, ratio_said, require_one_of, shown
+from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands
+
+METHODS = "linear", "nonlinear", "dynamic"
+"""The methods of a code whose conditions may count alone."""
+Check = MechanismCheck | DynamicCheck
+Built = Checked | Check
+"""What is built with a value: a mechanism, or a check of one."""
+
+
+class Condition(NamedTuple):
+    """A condition of a check: the name of its mechanism, empty where there is one alone, and what it demands."""
+
+    mechanism: str
+    verdict: Verdict
+
+    @property
+    def said(self) -> str:
+        """Which it is, in words."""
+        return ": ".join(filter(None, (self.mechanism, f"{self.verdict.what}, {self.verdict.limit_state}")))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trial:
+    """A value that was tried.
+
+    Args:
+        value: the value.
+        label: the same as a short text.
+        checks: the checks of what is built with it, by the name of the mechanism; none where it cannot be built.
+        refused: why it cannot be built or checked, in words.
+        method: the one whose conditions count, as of `design`; None counts all.
+    """
+
+    value: Any
+    label: str
+    checks: Mapping[str, Check]
+    refused: str = ""
+    method: str | None = None
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """Every condition of every check, or those of the method that counts."""
+        all_of_them = [Condition(name, one) for name, check in self.checks.items() for one in check.verdicts]
+        return tuple(one for one in all_of_them if self.method is None or one.verdict.what.startswith(self.method))
+
+    @property
+    def governs(self) -> Condition | None:
+        """The condition with the least ratio; None where the value cannot be built."""
+        return min(self.conditions, key=lambda one: one.verdict.ratio, default=None)
+
+    @property
+    def ratio(self) -> float:
+        """The least capacity over demand [-]; NaN where the value cannot be built."""
+        return np.nan if self.governs is None else self.governs.verdict.ratio
+
+    @property
+    def holds(self) -> bool:
+        """Whether every condition holds."""
+        return self.governs is not None and all(one.verdict.holds for one in self.conditions)
+
+    def __repr__(self) -> str:
+        if self.governs is None:
+            return f"<Trial {self.label}: {self.refused}>"
+        return f"<Trial {self.label}: {ratio_said(self.ratio)} {_word(self)}, {self.governs.said}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Design(Drawn):
+    """The values that were tried, in their order.
+
+    Args:
+        trials: one for each value.
+    """
+
+    trials: tuple[Trial, ...]
+
+    @property
+    def chosen(self) -> Trial | None:
+        """The first for which every condition holds; None where none does."""
+        return next((trial for trial in self.trials if trial.holds), None)
+
+    @property
+    def value(self) -> Any:
+        """The first value for which every condition holds; None where none does."""
+        return None if self.chosen is None else self.chosen.value
+
+    @property
+    def governs(self) -> Condition | None:
+        """The condition with the least ratio, of the chosen value, or of the best one where none holds."""
+        built = [trial for trial in self.trials if trial.governs is not None]
+        return (self.chosen or max(built, key=lambda trial: trial.ratio)).governs
+
+    def table(self) -> str:
+        """Each value with its least ratio and the condition that it is of, as text."""
+        rows = [("value", "ratio", "", "governed by", "clause")]
+        for trial in self.trials:
+            if trial.governs is None:
+                rows.append((trial.label, "-", "-", trial.refused, ""))
+            else:
+                last = trial.governs.said, trial.governs.verdict.clause
+                rows.append((trial.label, ratio_said(trial.ratio), _word(trial), *last))
+        return "\n".join(line.rstrip() for line in [*aligned(rows, "<><<<"), self.sentence])
+
+    @property
+    def sentence(self) -> str:
+        """The result in one sentence."""
+        method = self.trials[0].method
+        if self.chosen is not None:
+            every = f"every {method} condition" if method else "every condition"
+            return f"{self.chosen.label} is the first of {len(self.trials)} values for which {every} holds"
+        best = max((trial for trial in self.trials if trial.checks), key=lambda trial: trial.ratio)
+        return f"none of {len(self.trials)} values holds; {best.label} comes nearest, {ratio_said(best.ratio)}"
+
+    def __repr__(self) -> str:
+        return f"<Design: {self.sentence}>"
+
+
+def design(
+    build: Callable[[Any], Built | Mapping[str, Built]],
+    values: Sequence[Any],
+    demand: Demand | Mapping[str, Demand] | None = None,
+    *,
+    method: str | None = None,
+    **options: Any,
+) -> Design:
+    """The first of some values for which every condition of the check holds, with the checks of all.
+
+    Values are tried in their order, from the least effort to the largest. All are checked, so that the table shows what
+    each would bring.
+
+    Args:
+        build: `build(value)` makes the mechanism of a value, what `mechanism_check` takes: a `Case`, a bending, the
+            `limit_curve` of masonry. It may make a check instead, such as one with a demand of its own or by dynamic
+            runs, or a mapping of names to several, all of which have to hold.
+        values: the values to try: bars, plates, spacings, thicknesses, or pairs and mappings of them.
+        demand: as of `mechanism_check`; None where `build` makes checks.
+        method: "linear", "nonlinear" or "dynamic" where the conditions of this method alone count: a code may have
+            several for one limit state, of which the designer takes one. None counts all.
+        options: further arguments of `mechanism_check`, such as `confidence_factor` and `code`.
+
+    Returns:
+        The `Design`: `value`, `table()` and what `governs`; `mjrock.plotting.design` draws ratio against value.
+
+    Raises:
+        TypeError: for a build that is not a function, values that are not a sequence, or what cannot be checked.
+        ValueError: for no values, or where none of them can be built and checked, with the reason of the first. A value
+            that cannot be built among others that can is a row of the table with its reason.
+
+    Examples:
+        >>> slv = mr.code_spectrum("NTC 2018", ag=1.5, F0=2.5, Tc=0.33, soil="B")
+        >>> walls = [0.4, 0.6, 0.8, 1.0]
+        >>> mr.design(lambda t: mr.Case(mr.Block.from_size(t, 4.0), 0.0, 1.0), walls, slv).value
+        0.8
+    """
+    if not callable(build):
+        raise TypeError(f"build = {shown(build)} is not a function of a value")
+    if not is_iterable(values) or isinstance(values, str | Mapping):
+        raise TypeError(f"values = {shown(values)} is not a sequence of values")
+    given = list(values)
+    if not given:
+        raise ValueError("values is empty; at least one is needed")
+    if demand is not None:
+        required_demands(demand, options.get("code"))
+    if method is not None:
+        require_one_of("method", method, METHODS)
+    trials = tuple(replace(_tried(build, value, demand, options), method=method) for value in given)
+    if any(trial.checks and not trial.conditions for trial in trials):
+        raise ValueError(f"method = {method!r}: the checks have no condition of it")
+    if not any(trial.checks for trial in trials):
+        raise ValueError(f"none of the values can be built and checked; {trials[0].label}: {trials[0].refused}")
+    return Design(trials)
+
+
+def _tried(build: Callable[[Any], Any], value: Any, demand: Any, options: Mapping[str, Any]) -> Trial:
+    """The checks of a value, or why there are none."""
+    try:
+        built = build(value)
+        named = built if isinstance(built, Mapping) else {"": built}
+        checks = {name: _checked(one, demand, options) for name, one in named.items()}
+    except ValueError as error:
+        return Trial(value, label_of(value), {}, str(error))
+    if not checks:
+        raise TypeError(f"build({label_of(value)}) is an empty mapping; it has one check at least")
+    return Trial(value, label_of(value), checks)
+
+
+def _checked(built: Any, demand: Any, options: Mapping[str, Any]) -> Check:
+    """The check of what was built, or that which was built."""
+    if isinstance(built, MechanismCheck | DynamicCheck):
+        return built
+    if demand is None:
+        raise TypeError("demand is None, and build makes no check; give a demand")
+    return mechanism_check(built, demand, **options)
+
+
+def label_of(value: Any) -> str:
+    """A value as a short text."""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {label_of(one)}" for name, one in value.items())
+    if isinstance(value, tuple | list):
+        return ", ".join(map(label_of, value))
+    return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)[:60]
+
+
+def _word(trial: Trial) -> str:
+    return "HOLDS" if trial.holds else "FAILS"
