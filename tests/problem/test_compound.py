@@ -144,3 +144,57 @@ def test_the_left_end_is_that_of_the_parts_that_reach_so_high():
     """An L turned round: its foot lies to the left, and only low down."""
     turned = mr.Compound([box(0, 1, 0, 3), box(-1, 0, 0, 1)])
     assert [turned.left_at(z) for z in (0.5, 2.0, 2.9)] == [-1.0, 0.0, 0.0]
+
+
+BAY, THICK, HIGH, DEEP, WIDE, UP = 3.0, 0.25, 2.4, 0.40, 0.40, 2.0
+"""A bay of a garden wall, its thickness and height, and depth, width and height of its buttress [m]."""
+
+
+def with_buttress():
+    wall = box(0, THICK, 0, HIGH, length=BAY, density=1800.0)
+    return mr.Compound([box(-DEEP, 0, 0, UP, length=WIDE, density=1800.0), wall], name="wall")
+
+
+def test_parts_of_the_plane_have_their_own_lengths():
+    """By volumes: 3 x 0.25 x 2.4 m3 of the wall and 0.4 x 0.4 x 2.0 m3 of the buttress."""
+    unit = with_buttress()
+    volumes = np.array([BAY * THICK * HIGH, WIDE * DEEP * UP])
+    assert unit.mass == pytest.approx(1800 * volumes.sum())
+    x, z = volumes @ (THICK / 2, -DEEP / 2) / volumes.sum(), volumes @ (HIGH / 2, UP / 2) / volumes.sum()
+    np.testing.assert_allclose(unit.centroid, (x, z))
+    about = volumes @ (
+        (THICK**2 + HIGH**2) / 12 + (THICK / 2 - x) ** 2 + (HIGH / 2 - z) ** 2,
+        (DEEP**2 + UP**2) / 12 + (-DEEP / 2 - x) ** 2 + (UP / 2 - z) ** 2,
+    )
+    assert unit.inertia == pytest.approx(1800 * about)
+    ground = box(-3, 3, -0.5, 0, fixed=True, name="ground", length=BAY)
+    masonry = mr.Masonry([ground, unit], k_n=1e9, friction=0.7)
+    lengths = {(round(joint.width, 3), joint.length) for joint in masonry.joints}
+    assert lengths == {(THICK, BAY), (DEEP, WIDE)}
+    assert masonry.lines.k.sum() == pytest.approx(1e9 * (BAY * THICK + WIDE * DEEP))
+    for way, arm in ((1, THICK - x), (-1, DEEP + x)):
+        assert mr.collapse_multiplier(masonry, way).multiplier == pytest.approx(arm / z, rel=1e-9)
+
+
+def test_in_space_they_are_as_long():
+    unit = in_space(with_buttress())
+    assert unit.mass == pytest.approx(with_buttress().mass)
+    ground = in_space(box(-3, 3, -0.5, 0, fixed=True, name="ground", length=2 * BAY))
+    masonry = mr.Masonry([ground, unit], k_n=1e9, friction=0.7)
+    flat = mr.Masonry([box(-3, 3, -0.5, 0, fixed=True, name="ground", length=BAY), with_buttress()], friction=0.7)
+    for way in (1, -1):
+        found = mr.collapse_multiplier(masonry, (way, 0)).multiplier
+        assert found == pytest.approx(mr.collapse_multiplier(flat, way).multiplier, rel=1e-6)
+
+
+def test_a_wall_with_buttresses_rocks_alike_in_mujoco_and_explicit_steps():
+    ground = box(-3, 3, -0.5, 0, fixed=True, name="ground", length=BAY)
+    masonry = mr.Masonry([ground, with_buttress()], k_n=1e9, friction=0.7)
+    t = np.arange(0, 0.6, 0.005)
+    pulse = mr.GroundMotion(-3.0 * np.sin(np.pi * t / 0.3) * (t < 0.3), 0.005)
+    case = mr.MasonryCase(masonry, 0.6, motion=pulse)
+    one, other = mr.solve_explicit(case), mr.simulate(case)
+    np.testing.assert_allclose(
+        np.interp(one.t, other.t, other.pose[:, 0, 2]), one.pose[:, 0, 2], atol=0.02 * np.abs(one.pose[:, 0, 2]).max()
+    )
+    assert np.abs(one.pose[:, 0, 2]).max() > 5e-3

@@ -31,15 +31,16 @@ class Compound:
     makes no difference to joints in the plane where a unit is cut.
 
     Args:
-        parts: the convex parts, all `Polygon` of one length or all `Polyhedron`, 2 to 1000, none of them fixed. Each
-            touches another along an edge or a face within 1e-5 m, and none overlaps another by more. Their names are
-            not used, and their densities may differ.
+        parts: the convex parts, all `Polygon` or all `Polyhedron`, 2 to 1000, none of them fixed. Each touches another
+            along an edge or a face within 1e-5 m, and none overlaps another by more. Their names are not used, and
+            their densities may differ, and so may the lengths of polygons out of the plane, as those of a wall and of
+            its buttresses. A joint has the length of the part that makes it.
         fixed: whether the unit belongs to the ground.
         name: as of a `Polygon`.
 
     Raises:
         TypeError: for parts that are not blocks of one kind.
-        ValueError: for parts that overlap or do not hang together, of different lengths, or a value outside its range.
+        ValueError: for parts that overlap or do not hang together, or a value outside its range.
 
     Examples:
         >>> upright, foot = mr.Polygon([(0, 0), (1, 0), (1, 3), (0, 3)]), mr.Polygon([(1, 0), (2, 0), (2, 1), (1, 1)])
@@ -88,8 +89,8 @@ class Compound:
 
     @property
     def length(self) -> float:
-        """Length out of the plane [m]; in space the extent along y."""
-        return float(np.ptp(self.corners[:, 1])) if self.in_space else self.polygons[0].length
+        """Length out of the plane, of the longest part [m]; in space the extent along y."""
+        return float(np.ptp(self.corners[:, 1])) if self.in_space else max(part.length for part in self.polygons)
 
     @cached_property
     def joined(self) -> tuple[Joint | SpaceJoint, ...]:
@@ -188,9 +189,6 @@ def checked_parts(parts: Sequence[Polygon | Polyhedron]) -> tuple[Polygon | Poly
             raise TypeError(f"parts[{i}] is a {type(part).__name__}, and parts[0] is not; give parts of one kind")
         if part.fixed:
             raise ValueError(f"parts[{i}] is fixed; a unit is fixed as a whole, by fixed=True of the Compound")
-    lengths = {part.length for part in parts if isinstance(part, Polygon)}
-    if len(lengths) > 1:
-        raise ValueError(f"parts have lengths out of the plane from {min(lengths):g} to {max(lengths):g} m; give one")
     return tuple(parts)
 
 

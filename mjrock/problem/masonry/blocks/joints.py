@@ -75,7 +75,7 @@ class Joint:
         below, above: numbers of the two blocks. The normal points from `below` to `above`. Of the two blocks of a joint
             that is not vertical, `above` lies higher. A fixed block is always `below`.
         start, end: ends of the joint [m], with the normal to the left of the way from start to end.
-        length: length out of the plane, that of the shorter block [m].
+        length: length out of the plane, that of the shorter block or part of one [m].
         travel: how far the block above can slide from end to start, and from start to end, before the two edges no
             longer overlap [m].
         corners: whether an end is a corner of the block above, for start and end.
@@ -305,12 +305,17 @@ def _joints(
             above=above,
             start=tuple(start),
             end=tuple(end),
-            length=min(blocks[below].length, blocks[above].length),
+            length=min(_length_of(blocks[below], on), _length_of(blocks[above], under)),
             travel=(back_by, on_by),
             corners=(first, last),
             name=f"{names[below]}|{names[above]}",
             sides=(on, under),
         )
+
+
+def _length_of(block: Flat, side: int) -> float:
+    """Length out of the plane of the part of a block that has a side [m]."""
+    return float(block.parts[block.sides[side].parts[0]].length)
 
 
 def _dot(a: Array, b: Array) -> Array:

@@ -39,7 +39,7 @@ class Surface(NamedTuple):
 def surface_in_plane(parts: Sequence[Polygon], joined: Sequence[Joint], close: float) -> Surface:
     """The surface of parts in the plane from where they lie on each other, which is within a distance [m].
 
-    What is shorter than the shortest joint is left out.
+    What is shorter than the shortest joint is left out. Parts of unlike lengths have sides of their own.
     """
     covered = [[list[Array]() for _ in part.sides] for part in parts]
     for joint in joined:
@@ -50,7 +50,8 @@ def surface_in_plane(parts: Sequence[Polygon], joined: Sequence[Joint], close: f
         left = [_uncovered(side, covered[i][j], SHORTEST_JOINT * close) for j, side in enumerate(part.sides)]
         inside.append(np.array([not len(some) for some in left]))
         pieces += [Side(ends, side.normal, (i,)) for side, some in zip(part.sides, left, strict=True) for ends in some]
-    loops = [_straightened(loop, close) for loop in _loops(pieces)]
+    lengths = [part.length for part in parts]
+    loops = [_straightened(loop, lengths, close) for loop in _loops(pieces)]
     sides = tuple(side for loop in loops for side in loop)
     outer = max(range(len(loops)), key=lambda k: _area(loops[k]))
     ring = [side.corners[0] for side in loops[outer]]
@@ -106,14 +107,18 @@ def _loops(pieces: Sequence[Side]) -> list[list[Side]]:
     return loops
 
 
-def _straightened(loop: Sequence[Side], close: float) -> list[Side]:
-    """The pieces of a loop, those that lie on one line as one."""
-    if len(loop) > 1 and _goes_on(loop[-1], loop[0], close):
-        turns = [i for i in range(len(loop)) if not _goes_on(loop[i - 1], loop[i], close)]
+def _straightened(loop: Sequence[Side], lengths: Sequence[float], close: float) -> list[Side]:
+    """The pieces of a loop, those that lie on one line and are of parts of one length as one."""
+
+    def goes_on(side: Side, piece: Side) -> bool:
+        return _goes_on(side, piece, close) and lengths[side.parts[0]] == lengths[piece.parts[0]]
+
+    if len(loop) > 1 and goes_on(loop[-1], loop[0]):
+        turns = [i for i in range(len(loop)) if not goes_on(loop[i - 1], loop[i])]
         loop = [*loop[turns[0] :], *loop[: turns[0]]]
     sides = [loop[0]]
     for piece in loop[1:]:
-        if _goes_on(sides[-1], piece, close):
+        if goes_on(sides[-1], piece):
             last = sides.pop()
             x, z = along = piece.corners[1] - last.corners[0]
             normal = np.array([z, -x]) / np.hypot(*along) + 0.0
