@@ -509,7 +509,7 @@ def test_every_public_entry_is_tried():
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
-        "Code", "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
+        "Code", "Design", "design", "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "LimitCurve", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",

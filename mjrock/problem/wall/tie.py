@@ -132,8 +132,8 @@ class Tie(Anchored):
             elastic_modulus: E of the steel [Pa], 5e10 to 3e11.
             number: n of equal ties at this height, 1 to 1000.
             spacing: s of several ties between centres, along the side a [m], from a to 1000; None is far apart.
-            other_end: what holds the other end bears of all of them [N]: the least of `strengths_of_bar` of a plate on
-                the wall there, or of `strengths_of_anchor`; None does not govern.
+            other_end: what holds the other end of all of them bears [N], 1 to 1e9: the least of `strengths_of_bar` of a
+                plate on the wall there, or of `strengths_of_anchor`; None does not govern.
             options: other fields of `Tie`, such as `slack` and `ultimate`.
 
         Raises:

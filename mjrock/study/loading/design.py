@@ -163,7 +163,7 @@ def design(
         >>> slv = mr.code_spectrum("NTC 2018", ag=1.5, F0=2.5, Tc=0.33, soil="B")
         >>> walls = [0.4, 0.6, 0.8, 1.0]
         >>> mr.design(lambda t: mr.Case(mr.Block.from_size(t, 4.0), 0.0, 1.0), walls, slv).value
-        0.8
+        0.6
     """
     if not callable(build):
         raise TypeError(f"build = {shown(build)} is not a function of a value")
