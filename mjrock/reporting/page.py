@@ -7,14 +7,16 @@ import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
 from .._version import __version__
-from ..files import write_text
+from ..files import csv_text, write_text
 from ..plotting.histories import required_labels
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
+from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_kind, require_path, require_text, shown
@@ -22,11 +24,11 @@ from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code import code_of
 from ..study.loading.code_check import signals_of
-from . import subject, verdicts
+from . import inputs, subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .pictures import PANELS, Run, by_variant, capacity_curves, histories, strip
 from .subject import Reported, reported
-from .texts import DASH, MINUS, Words
+from .texts import DASH, FOUND, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
 
 HEADS = ("project", "client", "author", "date", "place")
@@ -41,8 +43,8 @@ def report(
     *,
     title: str | None = None,
     labels: Sequence[str] | None = None,
-    e: Restitution | None = None,
-    contacts: Contacts | None = None,
+    e: Restitution | Mapping[str, Restitution] | None = None,
+    contacts: Contacts | Mapping[str, Contacts] | None = None,
     checks: Check | Sequence[Check] | Mapping[str, Check | Sequence[Check]] | None = None,
     project: Mapping[str, str] | None = None,
     language: str = "en",
@@ -60,11 +62,11 @@ def report(
     Args:
         case: the wall or masonry and its effects, for the drawing and the inputs.
         responses: of walls of this size or of this masonry, by any solver, under any motions. A mapping gives those of
-            each variant, such as a wall without ties and with them.
+            each variant, such as a wall without ties and with them. None, `()`, for a report of checks alone.
         path: where to, an .html, or a .pdf, which WeasyPrint makes.
         title: of the page; None is that of the language.
         labels: what each response is called, one for each; variants need none.
-        e, contacts: what the responses were computed with, for the inputs.
+        e, contacts: what the responses were computed with, for the inputs, or a mapping of those of each variant.
         checks: of `mechanism_check` and `dynamic_check`, by the names of their mechanisms or variants: one or several
             of each, at most one of them kinematic.
         project: "project", "client", "author", "date" and "place" of the title block, which leaves room for what is not
@@ -92,19 +94,19 @@ def report(
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html or .pdf")
     words = Words(language)
     require_text("notes", notes, 100_000)
-    require_kind("e", e, Restitution, type(None))
-    require_kind("contacts", contacts, Contacts, type(None))
-    case.require_own_joints(e, contacts)
     whole = reported(case)
     heading = words(f"title_{whole.KIND}") if title is None else require_text("title", title)
-    runs = required_runs(case, responses, labels, whole, words)
+    runs = required_runs(Asked(case, responses, labels, not (checks or sections)), whole, words)
     mechanisms = required_checks(checks, words(f"kind_{whole.KIND}"))
-    given = [
-        (words(f"kind_{whole.KIND}"), whole.inputs(words)),
-        (words("effects"), subject.of_effects(case, words)),
-        (words("contacts"), subject.of_contacts(e, contacts, words)),
-    ]
-    rests = required_texts("basis", basis, [row.key for _, rows in given for row in rows])
+    parts_of = inputs.subjects(words(f"kind_{whole.KIND}"), case, mechanisms, runs)
+    given = {
+        words("seismic_action"): inputs.of_demands(mechanisms, words),
+        words("what_stands"): [inputs.Section(name, inputs.of_subject(one, words)) for name, one in parts_of],
+        words("contacts"): of_impacts(case, e, contacts, words),
+    }
+    keys = [row.key for sections in given.values() for section in sections for row in section.rows]
+    rests = required_texts("basis", basis, keys)
+    lists = lists_of([one for _, one in parts_of], path, words)
     block = required_texts("project", project, HEADS)
     parts = [
         element("h1", heading),
@@ -116,6 +118,7 @@ def report(
         *[part for name, pieces in required_sections(sections).items() for part in section(name, pieces, words)],
         *judged(whole, runs, mechanisms, words),
         *appendix(given, rests, words),
+        *(part for one in lists for part in listed_blocks(one, words)),
         *every_run(whole, runs, words),
     ]
     text = page(words, heading, block.get("project", ""), f"mjrock {__version__}", parts)
@@ -123,11 +126,31 @@ def report(
         write_pdf(path, text)
     else:
         write_text(path, text)
+    for one in lists:
+        if one.file is not None:
+            write_text(one.file, csv_text(one.listing.columns, one.listing.rows))
     return path
 
 
-def required_runs(case: AnyCase, responses: object, labels: object, whole: Reported, words: Words) -> list[Run]:
-    """The runs of at least one response, each of what the case is of; TypeError or ValueError for others."""
+class Asked(NamedTuple):
+    """What a report is asked for beside its checks.
+
+    Args:
+        case: the wall or masonry.
+        responses, labels: as they are given.
+        bare: whether neither checks nor sections are given, so that responses have to be.
+    """
+
+    case: AnyCase
+    responses: object
+    labels: object
+    bare: bool
+
+
+def required_runs(asked: Asked, whole: Reported, words: Words) -> list[Run]:
+    """The runs of the responses, each of what the case is of; TypeError or ValueError for others, or for none in a
+    report without checks."""
+    case, responses, labels, bare = asked
     if isinstance(responses, Mapping) and labels is not None:
         raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
     given: list[tuple[str, Response]] = []
@@ -141,20 +164,39 @@ def required_runs(case: AnyCase, responses: object, labels: object, whole: Repor
             require_kind(f"{name}[{i}]", response, Response)
             require_same(f"{name}[{i}]", response, case)
         given += [(variant, response) for response in several]
-    if not given:
-        raise ValueError("responses is empty; at least one response is needed")
+    if not given and bare:
+        raise ValueError("responses is empty; give responses, or checks or sections, of which a report may be alone")
     answers = [response for _, response in given]
     motions = [DASH if (motion := response.case.motion) is None else motion.name for response in answers]
-    records = [name.removesuffix(REVERSED) for name in motions]
-    names = records if isinstance(responses, Mapping) else required_labels(answers, labels)
-    if names is None or not (labels or isinstance(responses, Mapping)):
+    records = named_records([response.case.motion for response in answers], words)
+    by_record = DASH not in records and len({response.solver for response in answers}) == 1
+    alone = isinstance(responses, Mapping) or (labels is None and by_record and len(answers) > 1)
+    names = records if alone else required_labels(answers, labels)
+    if names is None or not (labels or alone):
         own = names or [response.solver for response in answers]
         names = [in_words(name, response.solver, words) for name, response in zip(own, answers, strict=True)]
     signals = signals_of([response.case for response in answers])
+    turned = [motion.endswith(REVERSED) for motion in motions]
     return [
-        Run(response, variant, names[i], signals[i][0], records[i], motions[i] != records[i], whole.largest(response))
+        Run(response, variant, names[i], signals[i][0], records[i], turned[i], whole.largest(response))
         for i, (variant, response) in enumerate(given)
     ]
+
+
+def named_records(motions: Sequence[GroundMotion | None], words: Words) -> list[str]:
+    """What records are called: station, component and factor where their headers have them and no two are alike."""
+    own = [DASH if motion is None else motion.name.removesuffix(REVERSED) for motion in motions]
+    told = {}
+    for motion, name in zip(motions, own, strict=True):
+        base, _, factor = name.rpartition(" x ")
+        if motion is not None and re.fullmatch(r"[\d.e+-]+", factor):
+            header, number = motion.header, words.number(float(factor), FOUND)
+            if header.get("STATION_CODE") and header.get("STREAM"):
+                base = words("station", code=header["STATION_CODE"], stream=header["STREAM"])
+            told[name] = words("scaled_record", name=base, factor=number)
+    if len(set(told.values())) < len(told):
+        return own
+    return [told.get(name, name) for name in own]
 
 
 def in_words(name: str, solver: str, words: Words) -> str:
@@ -197,12 +239,14 @@ def title_block(block: Mapping[str, str], words: Words) -> Markup:
 
 def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The answer and the drawing."""
-    found = verdicts.answers(mechanisms, words) if mechanisms else []
+    others = [whole.case, *(some[0].response.case for some in by_variant(runs).values())]
+    found = verdicts.answers(mechanisms, others, words) if mechanisms else []
     codes = verdicts.codes_of(mechanisms, words.language)
     methods = verdicts.sentences(codes, "methods", words) if codes else [words("no_check")]
-    said = [*methods, outcomes(runs, words)]
-    parts = [element("h2", words("answer")), *found, *(element("p", one) for one in said)]
-    return [*parts, picture(whole.at_rest(words), words(f"drawing_{whole.KIND}"), words)]
+    said = [*methods, *([outcomes(runs, words)] if runs else [])]
+    figure, caption = whole.at_rest(words)
+    drawn = picture(figure, caption, words)
+    return [element("h2", words("answer")), *found[:-1], drawn, *found[-1:], *(element("p", one) for one in said)]
 
 
 def outcomes(runs: Sequence[Run], words: Words) -> str:
@@ -219,7 +263,7 @@ def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     parts: list[Markup] = []
     if (figure := capacity_curves(mechanisms, words)) is not None:
         codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
-        parts += [element("h2", words("checks"), kind="page")]
+        parts += [element("h2", words("checks"))]
         parts += [element("p", said) for said in verdicts.sentences(codes, "kinematic", words)]
         parts += [*verdicts.kinematic_steps(mechanisms, words), picture(figure, words("curves_said"), words)]
     if dynamic := verdicts.dynamic_steps(mechanisms, words):
@@ -230,14 +274,16 @@ def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
 
 
 def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """The runs as pictures."""
+    """The runs as pictures; nothing without runs."""
+    if not runs:
+        return []
     limits, limit = {}, whole.limit()
     if limit is not None:
         limits["d₀"] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     solved = subject.solved_with([run.response for run in runs], words)
-    parts = [element("h2", words("runs"), kind="page"), *[element("p", said) for said in solved]]
+    parts = [element("h2", words("runs")), *[element("p", said) for said in solved]]
     drawn = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
     parts.append(picture(drawn, words(f"strip_{whole.KIND}"), words))
     drawn = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
@@ -249,7 +295,11 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
 
 def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """What governs, what the results do not say, and what the code asks to be said of a program."""
-    parts = [element("h2", words("governing")), verdicts.governing(mechanisms, words)] if mechanisms else []
+    parts = (
+        [element("h2", words("governing")), verdicts.governing(verdicts.ranked(mechanisms), words)]
+        if mechanisms
+        else []
+    )
     if broken := subject.broken_ties(runs, words):
         parts.append(listed(broken))
     parts += [element("h2", words("limits")), listed([*verdicts.limits(mechanisms, words), *whole.limits(runs, words)])]
@@ -297,26 +347,76 @@ def tables(text: str) -> list[Markup]:
     return parts
 
 
-def appendix(
-    given: Sequence[tuple[str, Sequence[subject.Input]]], rests: Mapping[str, str], words: Words
-) -> list[Markup]:
+def of_impacts(case: AnyCase, e: object, contacts: object, words: Words) -> list[inputs.Section]:
+    """Restitution and contacts, of all responses or of each variant; TypeError for anything else."""
+    given = {"e": (e, Restitution), "contacts": (contacts, Contacts)}
+    found: dict[str, dict[str, Any]] = {}
+    for name, (one, kind) in given.items():
+        found[name] = dict(one) if isinstance(one, Mapping) else {"": one}
+        for variant, own in found[name].items():
+            require_kind(f"{name}[{variant!r}]" if variant else name, own, kind, type(None))
+            case.require_own_joints(own)
+    sections = []
+    for variant in dict.fromkeys((*found["e"], *found["contacts"])):
+        rows = inputs.of_contacts(found["e"].get(variant), found["contacts"].get(variant), words)
+        sections.append(inputs.Section(variant, rows))
+    return sections
+
+
+class Listed(NamedTuple):
+    """The blocks or joints of masonry, and the file beside the page that has them where they are many."""
+
+    listing: inputs.Listing
+    file: Path | None
+
+
+def lists_of(subjects: Sequence[object], path: Path, words: Words) -> list[Listed]:
+    """Blocks and joints of each masonry, in the page or in a file beside it."""
+    built = [masonry for one in subjects if (masonry := inputs.masonry_in(one)) is not None]
+    found = []
+    for i, masonry in enumerate(one for n, one in enumerate(built) if one not in built[:n]):
+        many = max(len(masonry.blocks), len(masonry.joints)) > inputs.LISTED
+        for one in inputs.listings(masonry, words, "{:.12g}".format if many else words.number):
+            name = f"{path.stem}_{one.key}{f'_{i + 1}' if i else ''}.csv"
+            found.append(Listed(one, path.with_name(name) if many else None))
+    return found
+
+
+def listed_blocks(one: Listed, words: Words) -> list[Markup]:
+    """Blocks or joints as a table, or the name of the file that has them."""
+    heading = element("p", element("b", one.listing.heading))
+    if one.file is not None:
+        return [heading, element("p", words("in_a_file", count=len(one.listing.rows), file=one.file.name))]
+    return [heading, table(one.listing.columns, one.listing.rows, kind="runs")]
+
+
+def appendix(given: Mapping[str, Sequence[inputs.Section]], rests: Mapping[str, str], words: Words) -> list[Markup]:
     """The inputs and what they rest on."""
     parts = [element("h2", words("inputs"), kind="page")]
-    heads = [words(f"input_{key}") for key in ("name", "value", "basis")]
-    for name, rows in given:
-        if rows:
-            own = [words("computed" if row.computed else "not_given") for row in rows]
-            cells = [(row.name, row.value, rests.get(row.key, said)) for row, said in zip(rows, own, strict=True)]
-            parts += [element("p", element("b", name)), table(heads, cells, kind="inputs")]
+    for heading, sections in given.items():
+        for some in inputs.beside([section for section in sections if section.rows]):
+            cells = []
+            for row in some.rows:
+                one = next(cell for cell in row if cell is not None)
+                rest = rests.get(one.key, words("computed" if one.computed else "not_given"))
+                cells.append((one.name, *(DASH if cell is None else cell.value for cell in row), rest))
+            names = some.names if any(some.names) else [words("input_value")]
+            kind = "inputs" if len(names) == 1 else ""
+            parts.append(element("p", element("b", heading)))
+            parts.append(table([words("input_name"), *names, words("input_basis")], cells, kind=kind))
     return parts
 
 
 def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup]:
     """The records, every run, and the versions of the programs."""
     responses = [run.response for run in runs]
+    versions = [element("h2", words("versions")), table((), subject.versions(words), kind="block")]
+    if not runs:
+        return versions
     parts = []
     if motions := subject.of_motions(responses, words):
-        heads = [words(f"motion_{key}") for key in ("name", "direction", "peak", "peak_g", "duration", "step")]
+        keys = ("name", "direction", "peak", "peak_g", "duration", "step", "origin")
+        heads = [words(f"motion_{key}") for key in keys]
         parts += [element("h2", words("motions")), table(heads, motions, right=(2, 3, 4, 5))]
     variants, ties = any(run.variant for run in runs), any(run.response.ties for run in runs)
     columns = ["variant"] * variants + ["run", "polarity", *whole.COLUMNS] + ["force", "drawn", "broke"] * ties
@@ -331,4 +431,4 @@ def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup
     if forces := subject.forces_kept(runs, words):
         heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
         parts.append(table(heads, forces, right=(1, 2)))
-    return [*parts, element("h2", words("versions")), table((), subject.versions(words), kind="block")]
+    return [*parts, *versions]

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..plotting.bodies import Bodies
-from ..plotting.style import OWN, Look, legend_below, several
+from ..plotting.style import OWN, Look, figure_of, legend_below, several
 from ..plotting.wall import elevation, section
 from ..problem.wall.case import Case
 from ..problem.wall.effects import constant_forces_of
@@ -29,7 +29,11 @@ WIDE = 7.0
 SMALL = 8.0
 """Size of the least type [pt]."""
 TALL = 2.9
-"""Height of the drawing of a wall [inch]."""
+"""Most height of the drawing of a wall [inch]."""
+BELOW, ABOVE, AT_SIDES, LEAST = 0.36, 0.22, 1.5, 1.2
+"""Room below, above and beside a drawing, and least height of a wall in it [inch]."""
+LINE = 10.0
+"""Height of a line of text [pt]."""
 PANELS = 12
 """Most records whose motion is drawn."""
 FAR = 2.0
@@ -42,6 +46,10 @@ OPENED = 0.06
 """Rotation at which the mechanism is drawn [rad]."""
 HOLDS, FAILS = "#0b7a4b", "#b3261e"
 """Colours of what holds and of what fails, which differ in lightness too."""
+
+
+LABEL: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
+"""How the labels of a drawing are written."""
 
 
 class Run(NamedTuple):
@@ -76,34 +84,82 @@ def by_variant(runs: Sequence[Run]) -> dict[str, list[Run]]:
     return {name: [run for run in runs if run.variant == name] for name in dict.fromkeys(run.variant for run in runs)}
 
 
-def wall_drawn(case: Case, words: Words) -> Figure:
+class Drawing(NamedTuple):
+    """Section and elevation of a wall.
+
+    Args:
+        figure: with both.
+        one_scale: whether both have one scale.
+    """
+
+    figure: Figure
+    one_scale: bool
+
+
+def wall_drawn(case: Case, words: Words) -> Drawing:
     """Section and elevation with sizes, the hinge, the mechanism that opens about it, and the names of the effects."""
     figure = Figure(figsize=(WIDE, TALL))
-    left, right = figure.add_axes((0.0, 0.0, 0.55, 0.94)), figure.add_axes((0.55, 0.0, 0.45, 0.94))
+    left, right = figure.add_axes((0.0, 0.0, 0.5, 1.0)), figure.add_axes((0.5, 0.0, 0.5, 1.0))
     section(left, case, words("stop"))
     loaded = any(force[0] == 0 for _, force in constant_forces_of(case.effects).values())
-    left.set_ylim(-0.13 * 2 * case.block.h, left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h)
-    elevation(right, case, left.get_ylim())
+    high = left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h
+    elevation(right, case, (0.0, high))
     opened = Bodies.of_moving(Moving(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None]))
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
-    look: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
-    left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **look)
+    scale, one_scale = _placed(left, right, high)
+    left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **LABEL)
+    _named_effects(left, case, scale, words)
+    for ax, title in ((left, "section"), (right, "elevation")):
+        ax.axis("off")
+        ax.set_title(words(title), fontsize=SMALL, loc="left")
+        for text in ax.texts:
+            text.set_fontsize(max(SMALL, text.get_fontsize()))
+    return Drawing(figure, one_scale)
+
+
+def _placed(left: Axes, right: Axes, high: float) -> tuple[float, bool]:
+    """Place section and elevation side by side up to a height [m] in one scale, which is returned [inch/m].
+
+    Where the elevation is so long that the section would be too small to read, each has a scale of its own, and the
+    second value is False.
+    """
+    figure = figure_of(left)
+    wide, long = (float(np.ptp(ax.get_xlim())) for ax in (left, right))
+    scale = min((TALL - BELOW - ABOVE) / high, (WIDE - AT_SIDES) / (wide + long))
+    one_scale = scale * high >= LEAST
+    if not one_scale:
+        scale = (TALL - BELOW - ABOVE) / high
+    tall, scales = scale * high + BELOW + ABOVE, (scale, scale)
+    if not one_scale:
+        scales = scale, (WIDE - AT_SIDES - scale * wide) / long
+    figure.set_size_inches(WIDE, tall)
+    starts = 0.3 * AT_SIDES, WIDE - scales[1] * long
+    if one_scale:  # in the middle of what is left
+        starts = starts[0], 0.5 * (starts[1] + 0.7 * AT_SIDES + scale * wide)
+    for ax, start, own, span in zip((left, right), starts, scales, (wide, long), strict=True):
+        low = BELOW / own
+        ax.set_ylim(-low, high)
+        ax.set_position((start / WIDE, 0.0, own * span / WIDE, own * (high + low) / tall))
+    return scale, one_scale
+
+
+def _named_effects(ax: Axes, case: Case, scale: float, words: Words) -> None:
+    """Write the names of the effects, each on a line of its own; `scale` is that of the section [inch/m]."""
+    lines: dict[bool, list[float]] = {True: [], False: []}
     for name, effect in case.named.items():
         if effect.told is None:
             continue
-        x, beside = (left.get_xlim()[0], (12, 3)) if effect.on_face else (case.block.b, (26, -10))
-        said, z = told_name(name, effect, words), effect.height
+        inside = effect.on_face or len(effect.outline) > 0
+        x, beside = (ax.get_xlim()[0], (2, 3)) if inside else (case.block.b, (26, -10))
+        said, z = f"{told_name(name, effect, words)}, {effect.height:.4g} m", effect.height
         if len(effect.outline):  # below the crack of wedges there is room
-            x, z, beside, said = left.get_xlim()[0], 0.15 * z, (2, 0), fill(said, 12)
-        note = left.annotate(said, (x, z), beside, **look)
+            z, beside, said = 0.15 * z, (2, 0), fill(said, 12)
+        level = 72 * scale * z + beside[1]
+        while any(abs(level - other) < LINE for other in lines[inside]):
+            level -= LINE
+        lines[inside].append(level)
+        note = ax.annotate(said, (x, z), (beside[0], level - 72 * scale * z), **LABEL)
         note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
-    for ax, title in ((left, "section"), (right, "elevation")):
-        ax.axis("off")
-        ax.set_aspect("equal", anchor="S")
-        ax.set_title(words(title), fontsize=SMALL)
-        for text in ax.texts:
-            text.set_fontsize(max(SMALL, text.get_fontsize()))
-    return figure
 
 
 def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | None:

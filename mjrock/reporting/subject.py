@@ -5,12 +5,12 @@ Effects, contacts, motions, solvers and versions are written alike for both.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Protocol
+from textwrap import fill
+from typing import Any, ClassVar, Protocol
 
 import matplotlib
 import mujoco
@@ -20,43 +20,27 @@ from matplotlib.figure import Figure
 
 from .._version import __version__
 from ..plotting.masonry import blocks
-from ..problem.damping.contacts import Contacts
-from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..problem.wall.effect import Told
-from ..quantities import GRAVITY, NAMED, Array, declared
+from ..quantities import GRAVITY, NAMED, Array
 from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code_check import d_0_of, displaced
+from .inputs import of_header
 from .markup import Markup, element, table
 from .pictures import SMALL, WIDE, Run, by_variant, wall_drawn
-from .texts import DASH, FOUND, GIVEN, Words, texts
-from .verdicts import REVERSED, effect_name, told_name
+from .texts import DASH, FOUND, GIVEN, Words
+from .verdicts import REVERSED, effect_name
 
+TITLE = 48
+"""Longest line of a title of half a page [characters]."""
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
 ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
 """Statistics of runs that a report names, with their units and their digits."""
-
-
-class Input(NamedTuple):
-    """An input of the report.
-
-    Args:
-        key: its name in the program, by which `basis` names it.
-        name: in words.
-        value: with its unit.
-        computed: whether it follows from others, and rests on nothing of its own.
-    """
-
-    key: str
-    name: str
-    value: str
-    computed: bool = False
 
 
 class Reported(Protocol):
@@ -65,13 +49,13 @@ class Reported(Protocol):
     Attributes:
         KIND: "wall" or "masonry".
         COLUMNS: keys of the columns of the table of runs.
+        case: what it is.
     """
+
+    case: Any
 
     KIND: ClassVar[str]
     COLUMNS: ClassVar[tuple[str, ...]]
-
-    def inputs(self, words: Words) -> list[Input]:
-        """What it is."""
 
     def largest(self, response: Response) -> float:
         """Its largest displacement in a response [m], infinite where it overturned or blocks fell."""
@@ -91,8 +75,8 @@ class Reported(Protocol):
     def by_hand(self, words: Words) -> list[tuple[str, ...]]:
         """Steps of a check by hand, where there is one."""
 
-    def at_rest(self, words: Words) -> Figure:
-        """It as it stands."""
+    def at_rest(self, words: Words) -> tuple[Figure, str]:
+        """It as it stands, and the caption."""
 
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure | None:
         """It as responses end."""
@@ -105,39 +89,6 @@ class ReportedWall(Reported):
     case: Case
     KIND = "wall"
     COLUMNS = "outcome", "largest", "share", "impacts"
-
-    def inputs(self, words: Words) -> list[Input]:
-        """The wall."""
-        case = self.case
-        block, wall = case.block, case.wall
-        given = {
-            "thickness": (2 * block.b, "m"),
-            "height": (2 * block.h, "m"),
-            "length": (block.length, "m"),
-            "density": (block.density, "kg/m3"),
-            "inset": (block.inset, "m"),
-        }
-        found = {
-            "mass": (wall.mass, "kg"),
-            "centroid_height": (wall.centroid_height, "m"),
-            "alpha": (wall.alpha, "rad"),
-            "overturning_rotation": (case.overturning_rotation, "rad"),
-            "p": (wall.p, "rad/s"),
-        }
-        rows = [Input(key, words(f"in_{key}"), words.quantity(*value)) for key, value in given.items()]
-        if block.gable is not None:
-            sizes = {"height": words.quantity(block.gable.height, "m"), "top": words.quantity(block.gable.top, "m")}
-            rows.append(Input("gable", words("in_gable"), words("gable", **sizes)))
-        for opening in block.openings:
-            name = "round_opening" if opening.round else "opening"
-            sizes = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}
-            rows.append(Input(name, words(f"in_{name}"), words("opening", **sizes)))
-        top = case.stop_top
-        stop = words("no_stop") if top is None else words("stop_up_to", top=words.quantity(top, "m"))
-        rows.append(Input("side_stop", words("in_side_stop"), stop))
-        return rows + [
-            Input(key, words(f"in_{key}"), words.quantity(*value, FOUND), True) for key, value in found.items()
-        ]
 
     def largest(self, response: Response) -> float:
         """Of the centroid as the wall turns about its toe, as the dynamic check has it."""
@@ -170,7 +121,7 @@ class ReportedWall(Reported):
             "limit_rigid": True,
             "limit_polarity": self.case.one_sided and records > both,
             "limit_one_record": len(records) == 1,
-            "limit_release": not shaken,
+            "limit_release": bool(runs) and not shaken,
             "limit_theory": {run.response.solver for run in runs} == {"analytical"},
         }
         said = [words(key) for key, holds in applies.items() if holds]
@@ -203,9 +154,10 @@ class ReportedWall(Reported):
         ]
         return [*rows, (words("hand_alpha"), words.number(holding / turning, FOUND))]
 
-    def at_rest(self, words: Words) -> Figure:
+    def at_rest(self, words: Words) -> tuple[Figure, str]:
         """Section and elevation."""
-        return wall_drawn(self.case, words)
+        drawn = wall_drawn(self.case, words)
+        return drawn.figure, words("drawing_wall" if drawn.one_scale else "drawing_wall_scales")
 
     def at_end(self, runs: Sequence[Run], words: Words) -> None:
         """Nothing: the histories show it."""
@@ -218,31 +170,6 @@ class ReportedMasonry(Reported):
     case: MasonryCase
     KIND = "masonry"
     COLUMNS = "outcome", "largest", "opening", "sliding", "fallen"
-
-    def inputs(self, words: Words) -> list[Input]:
-        """Masonry."""
-        masonry = self.case.masonry
-        mass = float(sum(masonry.blocks[i].mass for i in masonry.free))
-        free, fixed = len(masonry.free), len(masonry.blocks) - len(masonry.free)
-        points = self._span(masonry.table.points.astype(float), "", words)
-        rows = [
-            Input("blocks", words("in_blocks"), words("blocks_said", free=free, fixed=fixed)),
-            Input("joints", words("in_joints"), words("joints_said", count=len(masonry.joints), points=points)),
-            Input("mass", words("in_mass"), words.quantity(mass, "kg", FOUND), True),
-            Input("k_n", words("in_k_n"), self._span(masonry.joint_stiffness, "N/m3", words)),
-            Input("k_s", words("in_k_s"), self._span(masonry.joint_shear, "N/m3", words)),
-            Input("friction", words("in_friction"), self._span(masonry.joint_friction, "", words)),
-        ]
-        return [*rows, Input("damping", words("in_damping"), self._span(masonry.retardation, "s", words))]
-
-    @staticmethod
-    def _span(values: Array, unit: str, words: Words) -> str:
-        """The lowest and the highest of values."""
-        low, high = (float(end) for end in (values.min(), values.max()))
-        if np.isinf(low):
-            return words("sticks")
-        said = [words.quantity(value, unit) for value in (low, high)]
-        return said[0] if low == high else words("range", low=said[0], high=said[1])
 
     def largest(self, response: Response) -> float:
         """Of the farthest block."""
@@ -267,10 +194,10 @@ class ReportedMasonry(Reported):
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
-        said = [words("limit_rigid_blocks"), words("limit_margin")]
+        said = [words("limit_rigid_blocks"), *([words("limit_margin")] if runs else [])]
         if len({run.record for run in runs if run.response.case.motion is not None}) == 1:
             said.append(words("limit_one_record"))
-        if "explicit" not in {run.response.solver for run in runs}:
+        if runs and "explicit" not in {run.response.solver for run in runs}:
             said.append(words("limit_faces"))
         return said
 
@@ -278,9 +205,9 @@ class ReportedMasonry(Reported):
         """None."""
         return []
 
-    def at_rest(self, words: Words) -> Figure:
+    def at_rest(self, words: Words) -> tuple[Figure, str]:
         """The blocks."""
-        return self._drawn([(self.case.masonry, "")])
+        return self._drawn([(self.case.masonry, "")]), words("drawing_masonry")
 
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
         """The blocks as the runs with the largest motion end."""
@@ -297,7 +224,7 @@ class ReportedMasonry(Reported):
         for i, (piece, title) in enumerate(pieces):
             ax = figure.add_subplot(rows, columns, i + 1, projection="3d" if self.case.in_space else None)
             blocks(ax, piece)
-            ax.set_title(title, fontsize=SMALL)
+            ax.set_title(fill(title, TITLE), fontsize=SMALL)
         return figure
 
 
@@ -342,52 +269,6 @@ def reported(case: AnyCase) -> Reported:
     return ReportedMasonry(case) if isinstance(case, MasonryCase) else ReportedWall(case)
 
 
-def of_effects(case: AnyCase, words: Words) -> list[Input]:
-    """The effects."""
-    told = [(name, effect.told, told_name(name, effect, words)) for name, effect in case.named.items()]
-    return [Input(name, said, described(effect, words)) for name, effect, said in told if effect is not None]
-
-
-def described(effect: Told, words: Words) -> str:
-    """An effect in words: each of its numbers with its name; its own text where the report has no words for it."""
-    if not words.or_else(f"effect_{effect.label}", ""):
-        return effect.said.replace("\n", " ")
-    kind: Any = type(effect)  # mypy takes a class for a thing without a hash
-    units = {name: "" if within.whole else within.unit for name, (within, _) in declared(kind).items()}
-    units["strength"] = "N"
-    said = []
-    for field in dataclasses.fields(kind):
-        value, own = getattr(effect, field.name), f"field_{effect.label}_{field.name}"
-        key = own if own in texts() else f"field_{field.name}"
-        if value is None or value == math.inf or key not in texts():
-            continue
-        if isinstance(value, str):
-            said.append(words(key, value=words(f"governed_{value}".replace(" ", "_"))))
-        elif isinstance(value, tuple):
-            said.append(words(key, value="; ".join(words.number(x) for x in value)))
-        else:
-            unit = "m" if field.name in ("height", "anchor_height") else units.get(field.name, "")
-            said.append(words(key, value=words.quantity(value, unit)))
-    return ", ".join(said)
-
-
-def of_contacts(e: Restitution | None, contacts: Contacts | None, words: Words) -> list[Input]:
-    """Restitution, stiffness and damping."""
-    rows = []
-    if e is not None:
-        for name in ("base", "side", "lumped"):
-            rows.append(Input(f"e_{name}", words(f"in_e_{name}"), words.number(getattr(e, name), FOUND)))
-    if contacts is not None:
-        law = words.or_else(f"law_{contacts.law.lower()}", contacts.law)
-        rows.append(Input("law", words("in_law"), law))
-        for name, face in (("base", contacts.base), ("side", contacts.side)):
-            if face is not None:
-                friction = words("sticks") if face.friction is None else words.number(face.friction)
-                values = {"k": words.quantity(face.k_n, "N/m3"), "xi": words.share(face.xi), "points": face.points}
-                rows.append(Input(f"k_{name}", words(f"in_k_{name}"), words("face", friction=friction, **values)))
-    return rows
-
-
 def of_motions(responses: Sequence[Response], words: Words) -> list[tuple[str, ...]]:
     """The ground motions of the responses, each once, in one polarity."""
     rows: dict[tuple[str, str], tuple[str, ...]] = {}
@@ -397,7 +278,8 @@ def of_motions(responses: Sequence[Response], words: Words) -> list[tuple[str, .
             sizes = words.quantity(peak, "m/s2", FOUND), words.quantity(peak / GRAVITY, "g", FOUND)
             name = motion.name.removesuffix(REVERSED)
             times = words.quantity(motion.duration, "s"), words.quantity(motion.dt, "s")
-            rows.setdefault((direction, name), (name, words(f"ground_{direction}"), *sizes, *times))
+            origin = "".join(row.value for row in of_header(motion, words)) or DASH
+            rows.setdefault((direction, name), (name, words(f"ground_{direction}"), *sizes, *times, origin))
     return list(rows.values())
 
 

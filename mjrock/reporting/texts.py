@@ -32,8 +32,10 @@ POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits of a power."""
 DASH, MINUS = "\u2013", "\u2212"
 """What stands where there is no value, and the sign of a negative one."""
-GIVEN, FOUND = 4, 3
+GIVEN, FOUND = 7, 3
 """Digits of what was given, and of what was found."""
+SHARED = 4
+"""Digits of a share."""
 
 
 @cache
@@ -99,4 +101,4 @@ class Words:
 
     def share(self, value: float) -> str:
         """A share in per cent."""
-        return f"{self.number(100 * value)}\u00a0%"
+        return f"{self.number(100 * value, SHARED)}\u00a0%"

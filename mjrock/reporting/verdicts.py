@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,22 @@ class Mechanism(NamedTuple):
     name: str
     kinematic: MechanismCheck | None
     dynamic: tuple[DynamicCheck, ...]
+
+    @property
+    def subjects(self) -> list[object]:
+        """What its checks are of, where they know it."""
+        checked = [self.kinematic.mechanism] if self.kinematic else []
+        return [one for one in (*checked, *(check.case for check in self.dynamic)) if one is not None]
+
+    @property
+    def least(self) -> Verdict:
+        """The condition with the least ratio."""
+        return min(self.verdicts, key=lambda verdict: verdict.ratio)
+
+    @property
+    def held(self) -> int:
+        """How many conditions hold."""
+        return sum(verdict.holds for verdict in self.verdicts)
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
@@ -83,21 +99,59 @@ def sentences(codes: Sequence[Code], key: str, words: Words) -> list[str]:
     return [text for code in codes if (text := code.text(key, words.language))]
 
 
-def answers(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """What holds, mechanism by mechanism, with every condition."""
-    rows, columns = [], ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
-    names: dict[str, list[str]] = {"holds": [], "part": [], "fails": []}
-    for mechanism in mechanisms:
-        verdicts = mechanism.verdicts
-        held = sum(verdict.holds for verdict in verdicts)
-        names["holds" if held == len(verdicts) else "part" if held else "fails"].append(mechanism.name)
-        said = words("conditions_held", held=held, count=len(verdicts))
-        name = element("td", element("b", mechanism.name), Markup("<br>"), said, rowspan=str(len(verdicts)))
-        for i, verdict in enumerate(verdicts):
+def answers(mechanisms: Sequence[Mechanism], others: Sequence[object], words: Words) -> list[Markup]:
+    """What holds: a sentence for what governs as it is, one for each proposal, and all conditions, the worst first.
+
+    Args:
+        mechanisms: at least one.
+        others: further cases of the report, beside which a mechanism may be a proposal.
+        words: of the report.
+    """
+    order = ranked(mechanisms)
+    bases = [*others, *(one for mechanism in mechanisms for one in mechanism.subjects)]
+    proposals = [one for one in order if any(_adds(subject, base) for subject in one.subjects for base in bases)]
+    present = [one for one in order if one not in proposals]
+    said = [(present[0], "governs" if present[1:] else "alone", bool(proposals))] if present else []
+    lines = [_sentence(one, f"lead_{kind}", words, now) for one, kind, now in said]
+    lines += [_sentence(one, "lead_proposed", words, False) for one in proposals]
+    columns = ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
+    rows = []
+    for mechanism in order:
+        held, count = mechanism.held, len(mechanism.verdicts)
+        said_of = words("conditions_held", held=held, count=count)
+        name = element("td", element("b", mechanism.name), Markup("<br>"), said_of, rowspan=str(count))
+        for i, verdict in enumerate(mechanism.verdicts):
             rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
-    held_by = [(element("span", words(kind), kind=kind), "; ".join(of)) for kind, of in names.items() if of]
-    lines = [element("p", mark, " ", of) for mark, of in held_by]
     return [*lines, table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))]
+
+
+def ranked(mechanisms: Sequence[Mechanism]) -> list[Mechanism]:
+    """Mechanisms, that with the least ratio first."""
+    return sorted(mechanisms, key=lambda one: one.least.ratio)
+
+
+def _adds(subject: Any, base: Any) -> bool:
+    """Whether a case is another one of the same wall or masonry with further effects: a proposal."""
+    if type(subject) is not type(base) or not hasattr(subject, "built") or subject.built != base.built:
+        return False
+    return len(base.effects) < len(subject.effects) and all(one in subject.effects for one in base.effects)
+
+
+def _sentence(mechanism: Mechanism, key: str, words: Words, now: bool) -> Markup:
+    """What holds of a mechanism, with its least ratio and the conditions that refuse it."""
+    least, verdicts = mechanism.least, mechanism.verdicts
+    kind = "holds" if mechanism.held == len(verdicts) else "part" if mechanism.held else "fails"
+    refused = "; ".join(_of(verdict, words) for verdict in verdicts if not verdict.holds)
+    said = words(f"lead_{kind}", refused=refused)
+    start = words(f"{key}_now" if now else key, name=mechanism.name)
+    numbers = {"ratio": words.ratio(least.ratio), "check": _of(least, words)}
+    end = words("lead_ratio", held=mechanism.held, count=len(verdicts), **numbers)
+    return element("p", element("span", words(kind), kind=kind), " ", element("b", f"{start} {said}"), f" {end}")
+
+
+def _of(verdict: Verdict, words: Words) -> str:
+    """Which check and limit state a condition is of."""
+    return ", ".join(filter(None, (words(verdict.what), verdict.limit_state)))
 
 
 def _conditions(verdict: Verdict, words: Words) -> list[str]:
@@ -116,18 +170,18 @@ def _conditions(verdict: Verdict, words: Words) -> list[str]:
 def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
     """The least ratio of each mechanism with its check, and the record with the largest displacement."""
     rows = []
+    shaken = any(mechanism.dynamic for mechanism in mechanisms)
     for mechanism in mechanisms:
-        least = min(mechanism.verdicts, key=lambda verdict: verdict.ratio)
+        least = mechanism.least
         runs = [run for check in mechanism.dynamic for run in check.runs]
-        record = d = DASH
+        worst = [DASH, DASH]
         if runs:
-            worst = max(runs, key=lambda run: run.d)
-            record = worst.name.removesuffix(REVERSED)
-            record += f" ({words('reversed')})" if record != worst.name else ""
-            d = words("overturned") if math.isinf(worst.d) else words.quantity(worst.d, "m", FOUND)
-        what = f"{words(least.what)}, {least.limit_state}"
-        rows.append((mechanism.name, words.ratio(least.ratio), what, record, d))
-    columns = ("verdict_mechanism", "least_ratio", "verdict_check", "worst_record", "run_largest")
+            run = max(runs, key=lambda one: one.d)
+            name = run.name.removesuffix(REVERSED)
+            d = words("overturned") if math.isinf(run.d) else words.quantity(run.d, "m", FOUND)
+            worst = [name + (f" ({words('reversed')})" if name != run.name else ""), d]
+        rows.append((mechanism.name, words.ratio(least.ratio), _of(least, words), *worst * shaken))
+    columns = ["verdict_mechanism", "least_ratio", "verdict_check", *["worst_record", "run_largest"] * shaken]
     return table([words(name) for name in columns], rows, right=(1, 4))
 
 

@@ -67,7 +67,8 @@ class GroundMotion:
         accel: accelerations [m/s2], shape (n,), n at least 2.
         dt: time step of the samples [s], 1e-5 to 1.
         name: its name in tables and pictures.
-        header: the fields of the header of its file, such as the event and the station, where that has some.
+        header: the fields of the header of its file, such as the event and the station, where that has some; FLOOR has
+            the modes of the building that it came through, and SCALED_TO the spectrum that it was scaled to.
 
     Raises:
         TypeError, ValueError: for accelerations, a step or a name that are not valid.
@@ -294,7 +295,8 @@ class GroundMotion:
         Raises:
             TypeError, ValueError: for a value outside its range, or shapes that differ.
         """
-        periods, xi, motions = building_modes(period, damping, participation, height)
+        modes = building_modes(period, damping, participation, height)
+        periods, xi, motions = modes.period, modes.damping, modes.motion
         parts = oscillator_steps(self.dt, float(periods.min()))
         h, rings = self.dt / parts, math.log(100.0) * float(periods.max()) / (2 * math.pi * xi)
         steps = parts * (len(self.accel) - 1 + math.ceil(rings / self.dt))
@@ -305,7 +307,7 @@ class GroundMotion:
         floor = (1 - motions.sum()) * ground
         for Tk, motion in zip(periods.tolist(), motions.tolist(), strict=True):
             floor = floor + motion * total_acceleration(ground, h, Tk, xi)
-        return GroundMotion(floor, h, f"{self.name} on a floor", self.header)
+        return GroundMotion(floor, h, f"{self.name} on a floor", {**self.header, "FLOOR": modes.label})
 
     @classmethod
     @within_ranges

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -52,10 +53,36 @@ def one_or_row(name: str, values: ArrayLike, low: float, high: float, unit: str 
     return row
 
 
-def building_modes(
-    period: ArrayLike, damping: float, participation: ArrayLike, height: ArrayLike
-) -> tuple[Array, float, Array]:
-    """Periods of the modes of a building [s], its damping ratio, and gamma_k psi_k of each mode [-].
+class Modes(NamedTuple):
+    """Modes of a building as a floor has them.
+
+    Args:
+        period: T_k [s], shape (k,).
+        damping: of the building [-].
+        participation: gamma_k of each mode [-], shape (k,).
+        height: psi_k, the shape of each mode at the floor over that at the top [-], shape (k,).
+    """
+
+    period: Array
+    damping: float
+    participation: Array
+    height: Array
+
+    @property
+    def motion(self) -> Array:
+        """gamma_k psi_k of each mode [-], shape (k,)."""
+        return self.participation * self.height
+
+    @property
+    def label(self) -> str:
+        """Periods [s], damping [-], gamma and psi on one line."""
+        rows = (", ".join(f"{value:.10g}" for value in row) for row in (self.period, self.participation, self.height))
+        period, gamma, psi = rows
+        return f"T_k = {period} s, xi = {self.damping:.10g}, gamma_k = {gamma}, psi_k = {psi}"
+
+
+def building_modes(period: ArrayLike, damping: float, participation: ArrayLike, height: ArrayLike) -> Modes:
+    """The modes of a building.
 
     Args:
         period: of the modes T_k [s], 0.01 to 100, shape (k,) or one.
@@ -78,4 +105,4 @@ def building_modes(
             f"period has {len(periods)} values, participation {len(gammas)} and height {len(shapes)}; "
             "each mode needs one of each"
         )
-    return periods, require_within("damping", damping, 0.005, 0.3), gammas * shapes
+    return Modes(periods, require_within("damping", damping, 0.005, 0.3), gammas, shapes)

@@ -22,7 +22,7 @@ from ...quantities import Array, keep, named, require_kind, require_path, requir
 from .formats import recognised
 from .motion import GroundMotion, motion_of
 from .records import NoRecordError, Wanted, read, table_traces
-from .spectrum import SpectrumOfCode, factor_to_spectrum, response_spectrum
+from .spectrum import SpectrumOfCode, factor_to_spectrum, response_spectrum, scaled_by
 
 VERTICAL = re.compile(r"(?:[A-Z][GHLNJ])?[ZVU]|UP|DO?W?N|VERT?(?:ICAL)?|VRT|U-?D|VT", re.IGNORECASE)
 CHANNEL_CODE = re.compile(r"([A-Z][GHLNJ])([ENXYLTZVU123])", re.IGNORECASE)
@@ -428,4 +428,4 @@ def scaled_together(
         raise ValueError(f"motions has no horizontal component, but {motions[0].header['STREAM']}")
     factors = [factor_to_spectrum(motion, periods, target, damping) for motion in level[:2]]
     factor = float(np.exp(np.log(factors).mean()))
-    return tuple(motion.scaled(factor) for motion in motions)
+    return tuple(scaled_by(factor, motion, periods, target) for motion in motions)

@@ -89,6 +89,9 @@ class CodeSpectrum:
         amplification: largest amplification F_0 at 5 % damping [-].
         TB, TC, TD, TE: corner periods [s]. TE is infinite where the displacement is S_e (T/2 pi)^2 at any period.
         damping: damping ratio that is taken where none is given [-].
+        soil: ground type; empty where it is not known, here and below.
+        topography: its category, of NTC 2018 alone.
+        Tc: T_C* of the limit state, of NTC 2018 alone [s].
     """
 
     code: str
@@ -100,6 +103,9 @@ class CodeSpectrum:
     TD: float
     TE: float
     damping: float = 0.05
+    soil: str = ""
+    topography: str = ""
+    Tc: float | None = None
 
     def __repr__(self) -> str:
         corners = ", ".join(f"{getattr(self, name):.3g}" for name in ("TB", "TC", "TD", "TE"))
@@ -160,7 +166,8 @@ class FloorSpectrum:
         ground: spectrum on the ground.
         period: of the modes T_k [s], shape (k,).
         damping: of the building xi_k [-].
-        motion: gamma_k psi_k of each mode [-], shape (k,).
+        participation: gamma_k of each mode [-], shape (k,).
+        height: psi_k, the shape of each mode at the floor over that at the top [-], shape (k,).
 
     Warns:
         Implausible: for a floor that is accelerated less than the ground, of which C7.2.5 takes nothing up to T_1.
@@ -169,7 +176,8 @@ class FloorSpectrum:
     ground: CodeSpectrum | PointSpectrum
     period: Array
     damping: float
-    motion: Array
+    participation: Array
+    height: Array
 
     __repr__ = short_repr
 
@@ -180,6 +188,11 @@ class FloorSpectrum:
                 "to T_1 C7.2.5 takes the modes alone; give more modes, or check the mechanism on the ground too",
                 Implausible,
             )
+
+    @property
+    def motion(self) -> Array:
+        """gamma_k psi_k of each mode [-], shape (k,)."""
+        return self.participation * self.height
 
     @property
     def first(self) -> float:
@@ -335,7 +348,7 @@ def code_spectrum(
         own = [given or usual for given, usual in zip(national, recommended, strict=False)]
         if not own[1] < own[2] < own[3]:
             raise ValueError(f"TB, TC, TD = {own[1]:g}, {own[2]:g}, {own[3]:g} s do not increase")
-        return CodeSpectrum(code, ag, own[0], 2.5, own[1], own[2], own[3], recommended[4], damping)
+        return CodeSpectrum(code, ag, own[0], 2.5, own[1], own[2], own[3], recommended[4], damping, soil)
     for name, value in (("S", S), ("TB", TB), ("TC", TC), ("TD", TD)):
         if value is not None:
             raise ValueError(f"{name} = {spelt(value)} is of a national annex of EC8; NTC 2018 takes soil, F0 and Tc")
@@ -344,7 +357,8 @@ def code_spectrum(
     first, second, least, most, factor, power, TE = SITE_NTC[soil]
     S = min(max(first - second * F0 * ag / GRAVITY, least), most) * TOPOGRAPHY_NTC[topography]
     TC = factor * Tc**power * Tc
-    return CodeSpectrum(code, ag, S, F0, TC / 3, TC, 4.0 * ag / GRAVITY + 1.6, TE, damping)
+    periods = TC / 3, TC, 4.0 * ag / GRAVITY + 1.6, TE
+    return CodeSpectrum(code, ag, S, F0, *periods, damping, soil, topography, Tc)
 
 
 @within_ranges
@@ -458,7 +472,20 @@ def scaled_to_spectrum(
         TypeError, ValueError: for a value outside its range, shapes that differ, or a motion at rest.
     """
     factor = factor_to_spectrum(motion, periods, target, damping)  # refuses what is no motion
-    return motion.scaled(factor)
+    return scaled_by(factor, motion, periods, target)
+
+
+def scaled_by(
+    factor: float, motion: GroundMotion, periods: ArrayLike, target: ArrayLike | SpectrumOfCode
+) -> GroundMotion:
+    """The motion scaled by the factor of a target spectrum, whose header names both."""
+    ground = target.ground if isinstance(target, FloorSpectrum) else target
+    given = f"{ground.code}, ag = {ground.ag:.6g} m/s2" if isinstance(ground, CodeSpectrum) else "spectrum of points"
+    given += " on a floor" if isinstance(target, FloorSpectrum) else ""
+    at = ", ".join(f"{period:.6g}" for period in np.atleast_1d(np.asarray(periods, dtype=float)))
+    scaled = motion.scaled(factor)
+    header = {**motion.header, "SCALED_TO": f"{given}; factor {factor:.6g} over T = {at} s"}
+    return GroundMotion(scaled.accel, scaled.dt, scaled.name, header)
 
 
 def factor_to_spectrum(

@@ -585,6 +585,7 @@ class DynamicCheck:
             campaign.
         natural: whether the records are natural ones; None if it is not known.
         code: what it is checked after, which has a check by dynamic runs.
+        case: that of the first run, whose wall or masonry and effects all runs have; None where it is not known.
     """
 
     limit_state: str
@@ -593,6 +594,7 @@ class DynamicCheck:
     restitution: tuple[float, ...]
     natural: bool | None
     code: Code = field(default_factory=code_of)
+    case: AnyCase | None = None
 
     @property
     def share(self) -> float:
@@ -767,7 +769,7 @@ def dynamic_check(
     )
     impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
     known = tuple(e for e in impacts if not math.isnan(e))
-    check = DynamicCheck(limit_state, d_0, found, known, natural, code)
+    check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0])
     if check.lacking:
         warn_of(f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}", Implausible)
     return check

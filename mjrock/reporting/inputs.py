@@ -1,0 +1,415 @@
+"""The inputs of a report: every wall, masonry, effect, contact and seismic action, by which a run can be repeated."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.restitution import Restitution
+from ..problem.ground.motion import GroundMotion
+from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
+from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.masonry.masonry import Masonry
+from ..problem.wall.bending import HorizontalBending, VerticalBending
+from ..problem.wall.block import Block
+from ..problem.wall.case import Case
+from ..problem.wall.effect import Effect, Told
+from ..problem.wall.effects import named_effects
+from ..problem.wall.wedge import Corner
+from ..quantities import GRAVITY, Array, declared, named
+from ..study.loading.code_check import Demand
+from ..study.loading.limit_analysis import LimitCurve
+from .pictures import Run, by_variant
+from .texts import DASH, FOUND, Words, texts
+from .verdicts import Mechanism, told_name
+
+LISTED = 60
+"""Most blocks, and most joints, that stand in a table of the report. More of them stand in a file beside it."""
+ABREAST = 3
+"""Things whose inputs stand beside each other in one table."""
+MADE = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM", "SCALED_TO", "FLOOR")
+"""Fields of the header of a motion that a report names."""
+
+
+class Input(NamedTuple):
+    """An input of the report.
+
+    Args:
+        key: its name in the program, by which `basis` names it.
+        name: in words.
+        value: with its unit.
+        computed: whether it follows from others, and rests on nothing of its own.
+    """
+
+    key: str
+    name: str
+    value: str
+    computed: bool = False
+
+
+class Section(NamedTuple):
+    """Inputs of one thing, under its name."""
+
+    heading: str
+    rows: list[Input]
+
+    @property
+    def numbered(self) -> dict[tuple[str, str, int], Input]:
+        """The inputs by key, name, and the number among those of this key and name, such as several openings."""
+        found: dict[tuple[str, str, int], Input] = {}
+        for row in self.rows:
+            number = sum(1 for key, name, _ in found if (key, name) == (row.key, row.name))
+            found[row.key, row.name, number] = row
+        return found
+
+
+class Beside(NamedTuple):
+    """Inputs of several things beside each other.
+
+    Args:
+        names: of the things.
+        rows: an input of each thing in a row, None where it has none.
+    """
+
+    names: list[str]
+    rows: list[list[Input | None]]
+
+
+def beside(sections: Sequence[Section]) -> list[Beside]:
+    """Inputs of several things beside each other, some in a table."""
+    found = []
+    for start in range(0, len(sections), ABREAST):
+        columns = [section.numbered for section in sections[start : start + ABREAST]]
+        order: list[tuple[str, str, int]] = []
+        for column in columns:
+            at = 0
+            for one in column:
+                if one not in order:
+                    order.insert(at, one)
+                at = order.index(one) + 1
+        names = [section.heading for section in sections[start : start + ABREAST]]
+        found.append(Beside(names, [[column.get(one) for column in columns] for one in order]))
+    return found
+
+
+class Listing(NamedTuple):
+    """The blocks or the joints of masonry.
+
+    Args:
+        key: "blocks" or "joints".
+        heading: in words.
+        columns: what stands above each.
+        rows: a row for each.
+    """
+
+    key: str
+    heading: str
+    columns: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+
+def subjects(own: str, case: AnyCase, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[tuple[str, object]]:
+    """What a report is of, with the names that each has: the case, whose own name is given, what its checks are of, and
+    what its runs are of."""
+    called: list[tuple[str, object]] = [(own, case)]
+    called += [(mechanism.name, subject) for mechanism in mechanisms for subject in mechanism.subjects]
+    called += [(variant or own, some[0].response.case) for variant, some in by_variant(runs).items()]
+    return grouped(called, alike)
+
+
+def grouped(called: Iterable[tuple[str, Any]], same: Callable[[Any, Any], bool]) -> list[tuple[str, Any]]:
+    """Things with their names, each once, with all names that it has."""
+    groups: list[tuple[dict[str, None], Any]] = []
+    for name, one in called:
+        names = next((names for names, other in groups if same(one, other)), None)
+        if names is None:
+            groups.append(({name: None}, one))
+        else:
+            names[name] = None
+    return [("; ".join(names), one) for names, one in groups]
+
+
+def alike(one: Any, other: Any) -> bool:
+    """Whether two cases are of one wall or masonry with the same effects, or two other things are equal."""
+    if type(one) is not type(other):
+        return False
+    if hasattr(one, "built"):
+        parts = ("built", "side_stop", "effects")
+        return all(getattr(one, part, None) == getattr(other, part, None) for part in parts)
+    return bool(one == other)
+
+
+def of_subject(subject: object, words: Words) -> list[Input]:
+    """What a mechanism is of, with what acts on it."""
+    return INPUTS_OF[type(subject)](subject, words)
+
+
+def of_vertical_bending(bending: VerticalBending, words: Words) -> list[Input]:
+    """A wall that bends between floors."""
+    given = [("load", bending.load, "N"), ("bearing", bending.lever, "m"), ("crack_height", bending.crack_height, "m")]
+    return [*of_block(bending.wall, words), *_rows(given, words), *of_effects(bending.effects, words)]
+
+
+def of_horizontal_bending(bending: HorizontalBending, words: Words) -> list[Input]:
+    """A wall that bends between side walls."""
+    crack = 0.5 * bending.wall.length if bending.crack is None else bending.crack
+    return [*of_block(bending.wall, words), *_rows([("thrust", bending.thrust, "N"), ("crack", crack, "m")], words)]
+
+
+def of_corner(corner: Corner, words: Words) -> list[Input]:
+    """A corner that turns along its diagonal."""
+    units = {"thickness": "m", "height": "m", "angle": "rad", "density": "kg/m3"}
+    return _rows(((key, getattr(corner, key), unit) for key, unit in units.items()), words)
+
+
+def _rows(values: Iterable[tuple[str, float, str]], words: Words, *, computed: bool = False) -> list[Input]:
+    """Numbers with their keys and units as inputs; those that are computed have fewer digits."""
+    digits = (FOUND,) if computed else ()
+    said = ((key, words.quantity(value, unit, *digits)) for key, value, unit in values)
+    return [Input(key, words(f"in_{key}"), value, computed) for key, value in said]
+
+
+def of_block(block: Block, words: Words) -> list[Input]:
+    """A wall: its sizes and parts."""
+    sizes = (
+        ("thickness", 2 * block.b, "m"),
+        ("height", 2 * block.h, "m"),
+        ("length", block.length, "m"),
+        ("density", block.density, "kg/m3"),
+        ("inset", block.inset, "m"),
+    )
+    rows = _rows(sizes, words)
+    if block.profile is not None:
+        steps = [words("profile", z=words.quantity(z, "m"), t=words.quantity(t, "m")) for z, t in block.profile]
+        rows.append(Input("profile", words("in_profile"), "; ".join(steps)))
+        rows.append(Input("plumb", words("in_plumb"), words(f"plumb_{block.plumb}")))
+    if block.gable is not None:
+        given = {"height": words.quantity(block.gable.height, "m"), "top": words.quantity(block.gable.top, "m")}
+        rows.append(Input("gable", words("in_gable"), words("gable", **given)))
+    for opening in block.openings:
+        name = "round_opening" if opening.round else "opening"
+        given = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}
+        place = "" if opening.at is None else ", " + words("opening_at", at=words.quantity(opening.at, "m"))
+        rows.append(Input(name, words(f"in_{name}"), words("opening", **given) + place))
+    rows += [Input("mass", words("effect_mass"), described(mass, words)) for mass in block.masses]
+    return rows
+
+
+def of_case(case: Case, words: Words) -> list[Input]:
+    """A wall that overturns."""
+    wall, top = case.wall, case.stop_top
+    stop = words("no_stop") if top is None else words("stop_up_to", top=words.quantity(top, "m"))
+    found = (
+        ("mass", wall.mass, "kg"),
+        ("centroid_height", wall.centroid_height, "m"),
+        ("alpha", wall.alpha, "rad"),
+        ("overturning_rotation", case.overturning_rotation, "rad"),
+        ("p", wall.p, "rad/s"),
+    )
+    given = [*of_block(case.block, words), Input("side_stop", words("in_side_stop"), stop)]
+    return [*given, *_rows(found, words, computed=True), *of_effects(case.effects, words)]
+
+
+def of_masonry(masonry: Masonry, words: Words) -> list[Input]:
+    """Masonry: how many blocks and joints, and the ranges of what joints have."""
+    mass = float(sum(masonry.blocks[i].mass for i in masonry.free))
+    free, fixed = len(masonry.free), len(masonry.blocks) - len(masonry.free)
+    points = _span(masonry.table.points.astype(float), "", words)
+    return [
+        Input("blocks", words("in_blocks"), words("blocks_said", free=free, fixed=fixed)),
+        Input("joints", words("in_joints"), words("joints_said", count=len(masonry.joints), points=points)),
+        Input("mass", words("in_mass"), words.quantity(mass, "kg", FOUND), True),
+        Input("k_n", words("in_k_n"), _span(masonry.joint_stiffness, "N/m3", words)),
+        Input("k_s", words("in_k_s"), _span(masonry.joint_shear, "N/m3", words)),
+        Input("friction", words("in_friction"), _span(masonry.joint_friction, "", words)),
+        Input("damping", words("in_damping"), _span(masonry.retardation, "s", words)),
+    ]
+
+
+def of_masonry_case(case: MasonryCase, words: Words) -> list[Input]:
+    """Masonry with what acts on it."""
+    return [*of_masonry(case.masonry, words), *of_effects(case.effects, words)]
+
+
+def of_limit_curve(curve: LimitCurve, words: Words) -> list[Input]:
+    """Masonry whose mechanism goes on, and what moves in it."""
+    masonry = curve.start.masonry
+    found = [] if masonry is None else of_masonry(masonry, words)
+    moving = Input("moving", words("in_moving"), named(curve.start.moving), True)
+    return [*found, moving, *of_effects(curve.effects, words)]
+
+
+def masonry_in(subject: Any) -> Masonry | None:
+    """The masonry of a subject, if it has one."""
+    start = getattr(subject, "start", subject)
+    found = getattr(start, "masonry", start)
+    return found if hasattr(found, "joint_stiffness") else None
+
+
+def _span(values: Array, unit: str, words: Words) -> str:
+    """The lowest and the highest of values."""
+    low, high = (float(end) for end in (values.min(), values.max()))
+    if np.isinf(low):
+        return words("sticks")
+    said = [words.quantity(value, unit) for value in (low, high)]
+    return said[0] if low == high else words("range", low=said[0], high=said[1])
+
+
+def listings(masonry: Masonry, words: Words, written: Callable[[float], str]) -> list[Listing]:
+    """The blocks of masonry with their vertices, and its joints with what each has, in SI units, as `written` writes
+    them."""
+    blocks: list[tuple[str, ...]] = []
+    for name, block in zip(masonry.names, masonry.blocks, strict=True):
+        for part in block.parts:
+            vertices = " ".join(f"({'; '.join(written(x) for x in vertex)})" for vertex in part.vertices)
+            length = written(part.length) if hasattr(part, "length") else DASH
+            fixed = words("fixed" if block.fixed else "free")
+            blocks.append((name, written(part.density), length, fixed, vertices))
+    table, joints = masonry.table, list[tuple[str, ...]]()
+    for i, joint in enumerate(masonry.joints):
+        bond = table.bonds[i]
+        numbers = (table.k_n[i], table.k_s[i], table.friction[i], table.xi[i], table.frequency[i], table.points[i])
+        held = DASH if bond is None else "; ".join(written(x) for x in dataclasses.astuple(bond) if x is not None)
+        joints.append((joint.name, *(written(float(x)) for x in numbers), held))
+    heads = {
+        "blocks": ("block", "density", "length", "fixed", "vertices"),
+        "joints": ("joint", "k_n", "k_s", "friction", "xi", "frequency", "points", "bond"),
+    }
+    return [
+        Listing(key, words(f"list_{key}"), tuple(words(f"col_{name}") for name in heads[key]), rows)
+        for key, rows in (("blocks", blocks), ("joints", joints))
+    ]
+
+
+def of_effects(effects: Sequence[Effect], words: Words) -> list[Input]:
+    """The effects."""
+    told = [(name, one.told, told_name(name, one, words)) for name, one in named_effects(effects).items()]
+    return [Input(name, said, described(effect, words)) for name, effect, said in told if effect is not None]
+
+
+def described(effect: Told, words: Words) -> str:
+    """An effect in words: each of its numbers with its name; its own text where the report has no words for it."""
+    if not words.or_else(f"effect_{effect.label}", ""):
+        return effect.said.replace("\n", " ")
+    kind: Any = type(effect)  # mypy takes a class for a thing without a hash
+    units = {name: "" if within.whole else within.unit for name, (within, _) in declared(kind).items()}
+    units["strength"] = "N"
+    said = []
+    for field in dataclasses.fields(kind):
+        value, own = getattr(effect, field.name), f"field_{effect.label}_{field.name}"
+        key = own if own in texts() else f"field_{field.name}"
+        if value is None or value == math.inf or key not in texts():
+            continue
+        if isinstance(value, str):
+            said.append(words(key, value=words(f"governed_{value}".replace(" ", "_"))))
+        elif isinstance(value, tuple):
+            said.append(words(key, value="; ".join(words.number(x) for x in value)))
+        else:
+            unit = "m" if field.name in ("height", "anchor_height") else units.get(field.name, "")
+            said.append(words(key, value=words.quantity(value, unit)))
+    return ", ".join(said)
+
+
+def of_contacts(e: Restitution | None, contacts: Contacts | None, words: Words) -> list[Input]:
+    """Restitution, stiffness and damping."""
+    rows = []
+    if e is not None:
+        for name in ("base", "side", "lumped"):
+            rows.append(Input(f"e_{name}", words(f"in_e_{name}"), words.number(getattr(e, name), FOUND)))
+    if contacts is not None:
+        law = words.or_else(f"law_{contacts.law.lower()}", contacts.law)
+        rows.append(Input("law", words("in_law"), law))
+        for name, face in (("base", contacts.base), ("side", contacts.side)):
+            if face is not None:
+                friction = words("sticks") if face.friction is None else words.number(face.friction)
+                values = {"k": words.quantity(face.k_n, "N/m3"), "xi": words.share(face.xi), "points": face.points}
+                rows.append(Input(f"k_{name}", words(f"in_k_{name}"), words("face", friction=friction, **values)))
+    return rows
+
+
+def of_demands(mechanisms: Sequence[Mechanism], words: Words) -> list[Section]:
+    """The seismic action of each kinematic check, each once, with the limit states that it is of."""
+    called: list[tuple[str, Demand]] = []
+    for name, check, _ in mechanisms:
+        for demand, states in _by_demand(check.demands if check else {}):
+            alone = check is not None and len(states) < len(check.demands)
+            called.append((f"{name}, {', '.join(states)}" if alone else name, demand))
+    groups = grouped(called, lambda one, other: one is other or alike(one, other))
+    return [Section(names, of_demand(demand, words)) for names, demand in groups]
+
+
+def _by_demand(demands: Mapping[str, Demand]) -> list[tuple[Demand, list[str]]]:
+    """The demands of a check, each once, with the limit states that it is of."""
+    found: list[tuple[Demand, list[str]]] = []
+    for state, demand in demands.items():
+        states = next((states for other, states in found if other is demand), None)
+        if states is None:
+            found.append((demand, [state]))
+        else:
+            states.append(state)
+    return found
+
+
+def of_demand(demand: Demand, words: Words) -> list[Input]:
+    """A seismic action: the spectrum of a code or of points, on the ground or on a floor, a record, or a function."""
+    if isinstance(demand, FloorSpectrum):
+        modes = (("T_k", demand.period, "s"), ("gamma", demand.participation, ""), ("psi", demand.height, ""))
+        rows = [
+            Input(key, words(f"in_{key}"), "; ".join(words.quantity(float(value), unit) for value in values))
+            for key, values, unit in modes
+        ]
+        rows.insert(1, Input("xi_k", words("in_xi_k"), words.share(demand.damping)))
+        return [*of_demand(demand.ground, words), *rows, *_rows((("peak", demand.peak, "m/s2"),), words, computed=True)]
+    if isinstance(demand, CodeSpectrum):
+        return _of_code(demand, words)
+    if isinstance(demand, PointSpectrum):
+        points = zip(demand.period.tolist(), demand.acceleration.tolist(), strict=True)
+        said = "; ".join(f"{words.quantity(T, 's')}: {words.quantity(a, 'm/s2')}" for T, a in points)
+        return [
+            Input("points", words("in_points"), said),
+            Input("spectrum_damping", words("in_spectrum_damping"), words.share(demand.damping)),
+        ]
+    if isinstance(demand, GroundMotion):
+        sizes = (("peak", demand.peak, "m/s2"), ("duration", demand.duration, "s"), ("step", demand.dt, "s"))
+        return [Input("record", words("in_record"), demand.name), *_rows(sizes, words), *of_header(demand, words)]
+    return [Input("spectrum", words("in_spectrum"), words("own_spectrum"))]
+
+
+def _of_code(spectrum: CodeSpectrum, words: Words) -> list[Input]:
+    """The spectrum of a code on the ground: site, limit state and corner periods."""
+    ag = f"{words.quantity(spectrum.ag, 'm/s2')} = {words.quantity(spectrum.ag / GRAVITY, 'g', 4)}"
+    rows = [Input("spectrum", words("in_spectrum"), spectrum.code), Input("ag", words("in_ag"), ag)]
+    rows.append(Input("F0", words("in_F0"), words.number(spectrum.amplification)))
+    if spectrum.Tc is not None:
+        rows += _rows((("Tc", spectrum.Tc, "s"),), words)
+    for key in ("soil", "topography"):
+        if said := getattr(spectrum, key):
+            rows.append(Input(key, words(f"in_{key}"), said))
+    rows.append(Input("S", words("in_S"), words.number(spectrum.S), spectrum.Tc is not None))
+    corners = (spectrum.TB, spectrum.TC, spectrum.TD, spectrum.TE)
+    said = "; ".join(words.quantity(T, "s") for T in corners)
+    rows.append(Input("corners", words("in_corners"), said, spectrum.Tc is not None))
+    return [*rows, Input("spectrum_damping", words("in_spectrum_damping"), words.share(spectrum.damping))]
+
+
+def of_header(motion: GroundMotion, words: Words) -> list[Input]:
+    """Where a motion comes from and what was made of it, as its header has it."""
+    said = [motion.header[key].replace("_", "") for key in MADE if motion.header.get(key)]
+    return [Input("origin", words("in_origin"), words.marked("; ".join(said)))] if said else []
+
+
+INPUTS_OF: dict[type, Callable[[Any, Words], list[Input]]] = {
+    Case: of_case,
+    MasonryCase: of_masonry_case,
+    Masonry: of_masonry,
+    VerticalBending: of_vertical_bending,
+    HorizontalBending: of_horizontal_bending,
+    Corner: of_corner,
+    LimitCurve: of_limit_curve,
+}
+"""The inputs of what a mechanism may be of."""
