@@ -91,6 +91,22 @@ SMC = (
     + "".join(f"{100 if i == 1 else 1.7e38:15.7E}" + ("\n" if i % 5 == 4 else "") for i in range(50))
     + "| made up\n"
 )
+UNAM = """==========================================================================
+ARCHIVO STANDARD DE ACELERACION            : 2.0
+NOMBRE DEL ARCHIVO                         : MADE0102.031
+CLAVE DE LA ESTACION                       : MADE
+COORDENADAS DE LA ESTACION                 : 17.600 LAT. N
+                                           : 100.700 LONG. W
+ORIENTACION C1-C6 (ORIENTACION;INCLINACION): /N90E
+VEL. DE MUESTREO, C1-C6 (muestras/s)       : /100
+INTERVALO DE MUESTREO, C1-C6 (s)           : /.01
+NUM. TOTAL DE MUESTRAS, C1-C6              : /6
+ACEL. MAX.(Gal), C1-C6                     : /5.00
+UNIDADES DE LOS DATOS                      : Gal (cm/s/s)
+==========================================================================
+  CANAL-1
+  -------
+"""
 """Files of networks, with numbers of their own."""
 
 HEADS = {
@@ -104,6 +120,7 @@ HEADS = {
     "csmip": CSMIP,
     "cosmos": COSMOS,
     "smc": SMC,
+    "unam": UNAM,
 }
 READ = {
     "at2": mr.GroundMotion.from_at2,
@@ -111,7 +128,7 @@ READ = {
     "csv": lambda path: mr.GroundMotion.from_csv(path, "cm/s2"),
     "esm": mr.GroundMotion.from_esm,
     "txt": lambda path: mr.GroundMotion.from_csv(path, "cm/s2", dt=0.01),
-} | dict.fromkeys(("knet", "geonet", "csmip", "cosmos", "smc"), mr.GroundMotion.from_file)
+} | dict.fromkeys(("knet", "geonet", "csmip", "cosmos", "smc", "unam"), mr.GroundMotion.from_file)
 READERS = pytest.mark.parametrize("read", READ.values(), ids=READ)
 FORMATS = pytest.mark.parametrize("ending", READ)
 

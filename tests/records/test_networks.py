@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from record_files import CSMIP, GEONET, HEADS, KNET, READ, SAMPLES, SMC, body, written
+from record_files import CSMIP, GEONET, HEADS, KNET, READ, SAMPLES, SMC, UNAM, body, written
 
 import mjrock as mr
 
@@ -14,6 +14,7 @@ SAID = {
     "csmip": ("12345 360", "360", "12345"),
     "cosmos": ("XX WXYZ 45", "45", "WXYZ"),
     "smc": ("a", "270", None),
+    "unam": ("MADE N90E", "N90E", "MADE"),
 }
 
 
@@ -34,7 +35,7 @@ def test_every_format_that_states_its_unit_is_recognised(ending, tmp_path):
     assert mr.components_in(path) == (READ[ending](path),)
 
 
-@pytest.mark.parametrize("ending", ["knet", "geonet", "csmip", "cosmos", "smc"])
+@pytest.mark.parametrize("ending", ["knet", "geonet", "csmip", "cosmos", "smc", "unam"])
 @pytest.mark.parametrize("count", [5, 7])
 def test_another_number_of_samples_than_the_header_states(ending, count, tmp_path):
     """A file of CSMIP or COSMOS goes on after its samples, so that more of them are those of something else."""
@@ -86,6 +87,36 @@ def test_components_of_one_file(tmp_path):
     assert mr.records_in(tmp_path).horizontal == list(motions[:2])
     with pytest.raises(ValueError, match="names no unit of accelerations"):
         mr.GroundMotion.from_file(written(tmp_path / "b.V2", fixed.replace("in cm/sec2.", "in counts")))
+
+
+def test_three_channels_of_unam(tmp_path):
+    """A column of each, by the orientation that the header states; its counts and steps are held against the rows."""
+    three = UNAM.replace("/N90E", "/N00E/V/N90W").replace(": /100", ": /100/100/100")
+    three = three.replace("/.01", "/.01/.01/.01").replace(": /6", ": /6/6/6")
+    rows = "".join(f"{100 * x:12.4f}{50 * x:12.4f}{-100 * x:12.4f}\n" for x in SAMPLES)
+    motions = mr.components_in(written(tmp_path / "a.031", three + rows))
+    assert [motion.header["STREAM"] for motion in motions] == ["N90W", "N00E", "V"]
+    for motion, factor in zip(motions, (-1, 1, 0.5), strict=True):
+        np.testing.assert_allclose(motion.accel, factor * np.array(SAMPLES), atol=1e-12)
+    assert len(mr.records_in(tmp_path).horizontal) == 2
+    for text, said in (
+        (three + rows + rows[:37], "7 samples of 3 channels; line 10 states 6, 6, 6"),
+        (three + rows.replace(rows[:12], "", 1), "line 16 has 2 columns for 3 channels"),
+        (three.replace("Gal (cm/s/s)", "cm/s") + rows, "line 12 is 'units:  cm/s': these are velocities"),
+        (three.replace("Gal (cm/s/s)", "cuentas") + rows, "line 12 names no unit of accelerations: 'cuentas'"),
+        (three.replace("CLAVE DE LA", "SITIO") + rows, "the header has no CLAVE DE LA ESTACION"),
+    ):
+        with pytest.raises(ValueError, match=rf"b\.031: {said}"):
+            mr.GroundMotion.from_file(written(tmp_path / "b.031", text), "V")
+
+
+def test_spectra_are_no_record(tmp_path):
+    """As the third volume of CSMIP has them."""
+    text = "Response and Fourier Amplitude Spectra\nmade up\n 0.04 0.05 0.06\n0.1 0.2 0.3\n"
+    with pytest.raises(ValueError, match=r"line 1 is 'Response and .*': these are spectra"):
+        mr.GroundMotion.from_csv(written(tmp_path / "a.V3", text), "g", dt=0.01, columns="rows")
+    text = "compatible with the response spectra of EC8\n" + "".join(f"{x}\n" for x in SAMPLES)
+    assert mr.GroundMotion.from_csv(written(tmp_path / "a.txt", text), "m/s2", dt=0.01).peak == 0.05
 
 
 def test_three_components_of_geonet(tmp_path):

@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 import pytest
+import scipy.io
 from record_files import written
 
 import mjrock as mr
@@ -18,7 +19,8 @@ def lines(*columns, form="{:.5f}", between=" "):
 
 
 def in_rows(count, form="{:.5f}", between=" ", values=A):
-    return "".join(between.join(form.format(x) for x in values[i : i + count]) + "\n" for i in range(0, len(A), count))
+    rows = (values[i : i + count] for i in range(0, len(values), count))
+    return "".join(between.join(form.format(x) for x in row) + "\n" for row in rows)
 
 
 COMMAS = lines(T, A, between="\t").replace(".", ",")
@@ -169,12 +171,78 @@ def test_a_spreadsheet(tmp_path):
         pandas.DataFrame({"made": ["up"]}).to_excel(file, sheet_name="about")
     np.testing.assert_allclose(mr.GroundMotion.from_csv(tmp_path / "a.xlsx").accel, A, rtol=1e-12)
     with pandas.ExcelWriter(tmp_path / "b.xlsx") as file:
-        for name in ("one", "other"):
-            frame.to_excel(file, sheet_name=name, index=False)
-    with pytest.raises(ValueError, match="2 sheets have rows of numbers, 'one, other'; save one as CSV"):
+        for name, factor in (("one", 1), ("other", -1)):
+            frame.assign(**{"a [g]": factor * A / 9.81}).to_excel(file, sheet_name=name, index=False)
+    with pytest.raises(ValueError, match="2 sheets have rows of numbers, 'one, other'; choose with sheet=, such"):
         mr.GroundMotion.from_csv(tmp_path / "b.xlsx")
+    np.testing.assert_allclose(mr.GroundMotion.from_csv(tmp_path / "b.xlsx", sheet="other").accel, -A, rtol=1e-12)
+    assert mr.components_in(tmp_path / "b.xlsx", sheet="one")[0].peak == pytest.approx(A.max())
+    with pytest.raises(ValueError, match="sheet = 'two' is not one of one, other"):
+        mr.GroundMotion.from_csv(tmp_path / "b.xlsx", sheet="two")
+    with pytest.raises(ValueError, match="sheet = 'one' is of a spreadsheet or a MATLAB file, and this is a text"):
+        mr.GroundMotion.from_csv(written(tmp_path / "b.txt", lines(T, A)), "g", sheet="one")
     with pytest.raises(ValueError, match=r"c\.xlsx: pandas does not read it as a spreadsheet"):
         mr.GroundMotion.from_csv(written(tmp_path / "c.xlsx", "0 1\n"), "g")
+
+
+def test_variables_of_matlab(tmp_path):
+    """Vectors of one length are columns, scalars and words are the header, fields of a structure have its name."""
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"acc": A[:, None], "dt": 0.01, "unit": "m/s2", "note": "made up"})
+    assert mr.GroundMotion.from_csv(path) == mr.GroundMotion.from_file(path) == mr.components_in(path)[0]
+    np.testing.assert_array_equal(mr.GroundMotion.from_csv(path).accel, A)
+    assert mr.GroundMotion.from_csv(path).dt == 0.01
+    scipy.io.savemat(path, {"rec": {"t": T, "a": A / 9.81, "fs": 100, "name": "made up"}, "T": np.arange(9.0)})
+    with pytest.raises(ValueError, match=r"2 sheets have rows of numbers, 'rec\.t, T'; choose with sheet=, such as"):
+        mr.GroundMotion.from_csv(path, "g")
+    motion = mr.GroundMotion.from_csv(path, "g", columns=("rec.t", "rec.a"), sheet="rec.t")
+    np.testing.assert_allclose(motion.accel, A, rtol=1e-12)
+    scipy.io.savemat(path, {"data": np.stack([T, A, -A]), "Fs": 100.0})
+    for column, sign in (("data 1", 1), (2, -1)):
+        np.testing.assert_array_equal(mr.GroundMotion.from_csv(path, "m/s2", columns=(0, column)).accel, sign * A)
+    for name, said in (("vel", "these are velocities"), ("acc", "one column of accelerations; give its time step dt")):
+        scipy.io.savemat(path, {name: A})
+        with pytest.raises(ValueError, match=rf"a\.mat: .*{said}"):
+            mr.GroundMotion.from_csv(path, "m/s2", dt=0.01 if name == "vel" else None)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_damaged_files_of_matlab(tmp_path):
+    scipy.io.savemat(tmp_path / "a.mat", {"acc": A, "dt": 0.01})
+    content, rng = (tmp_path / "a.mat").read_bytes(), np.random.default_rng(3)
+    for _ in range(60):
+        i = int(rng.integers(len(content)))
+        damaged = (
+            content[:i] + rng.bytes(2) + content[i + int(rng.integers(3)) :] if rng.random() < 0.7 else content[:i]
+        )
+        motion, said = None, f"{tmp_path / 'b.mat'}: "
+        try:
+            motion = mr.GroundMotion.from_csv(written(tmp_path / "b.mat", damaged), "m/s2")
+        except ValueError as error:
+            said = str(error)
+        assert said.startswith(f"{tmp_path / 'b.mat'}: ")
+        assert said.isprintable()
+        assert motion is None or np.isfinite(motion.accel).all()
+    with pytest.raises(
+        ValueError, match=r"c\.at2: a MATLAB file, which GroundMotion\.from_csv reads by its name \.mat"
+    ):
+        mr.GroundMotion.from_at2(written(tmp_path / "c.at2", content))
+
+
+@pytest.mark.parametrize("count", [4, 8])
+def test_pairs_of_times_and_accelerations_in_rows(count, tmp_path):
+    """As old files have them: t a t a. As samples they would be twice as many, half of them times."""
+    pairs = np.column_stack([T, A]).ravel()
+    path = written(tmp_path / "a.txt", in_rows(count, values=pairs))
+    for dt in (None, 0.01):
+        motion = mr.GroundMotion.from_csv(path, "m/s2", dt=dt, columns="rows")
+        np.testing.assert_allclose(motion.accel, A, atol=1e-5)
+        assert motion.dt == pytest.approx(0.01)
+    with pytest.raises(ValueError, match=r"dt, which was given, is 0\.02 s, and line 1 states 0\.01 s"):
+        mr.GroundMotion.from_csv(path, "m/s2", dt=0.02, columns="rows")
+    for columns in ((0, 1), None):
+        with pytest.raises(ValueError, match=rf"line 1 begins rows of {count // 2} pairs .* columns='rows' reads them"):
+            mr.GroundMotion.from_csv(path, "m/s2", columns=columns)
 
 
 @pytest.mark.filterwarnings("ignore:.*drifts")

@@ -25,7 +25,6 @@ from .records import (
     COUNT,
     DECIMAL,
     FINEST,
-    SPREADSHEETS,
     NoRecordError,
     Parse,
     Trace,
@@ -34,6 +33,7 @@ from .records import (
     binary_kind,
     factor_of,
     in_message,
+    is_book,
     numbers,
     parse_table,
     require_accelerations,
@@ -95,6 +95,11 @@ INSTRUMENTS = {
     "J": "a rotation sensor", "D": "a pressure sensor",
 }  # fmt: skip
 """Instruments that are no accelerometers, by the second letter of the channel (SEED manual, appendix A)."""
+UNAM = (
+    "CLAVE DE LA ESTACION", "INTERVALO DE MUESTREO, C1", "ORIENTACION C1", "NUM. TOTAL DE MUESTRAS, C1",
+    "UNIDADES DE LOS DATOS",
+)  # fmt: skip
+"""How the fields of the header of a file of UNAM begin: station, step, direction, number of samples, unit."""
 SMC_HEAD = 27
 """Lines of the header of an SMC file: 11 of text, 6 of whole numbers and 10 of real ones; then its comments."""
 
@@ -206,6 +211,13 @@ def parse_knet(lines: list[str]) -> list[Trace]:
     else:
         header["STREAM"] = said["dir"].replace("-", "")
     return [Trace(ACCELERATION_UNITS["cm/s2"] * gal / full * (counts - counts.mean()), 1 / rate, header)]
+
+
+class Field(NamedTuple):
+    """What stands after the colon of a field of a header, and the number of its line."""
+
+    text: str
+    place: int
 
 
 class Channel(NamedTuple):
@@ -347,6 +359,43 @@ def parse_smc(lines: list[str]) -> list[Trace]:
     return [Trace(ACCELERATION_UNITS["cm/s2"] * values, 1 / rate, header)]
 
 
+def parse_unam(lines: list[str]) -> list[Trace]:
+    """The channels of a file of UNAM (Archivo Standard de Aceleracion 2.0): a header of fields, then a column for each.
+
+    Fields of the channels have a value of each after a slash, as in /.01/.01/.01.
+    """
+    fields: dict[str, Field] = {}
+    last = 0
+    for place, line in enumerate(lines, 1):
+        if re.search("CANAL|[:=]|-{3}", line):
+            require_visible(line, place)
+            name, _, value = line.partition(":")
+            fields.setdefault(next((one for one in UNAM if name.strip().startswith(one)), ""), Field(value, place))
+            last = place
+    if missing := [name for name in UNAM if name not in fields]:
+        raise ValueError(f"the header has no {missing[0]}: not a file of UNAM of accelerations")
+    station, steps, streams, counts, units = (fields[name] for name in UNAM)
+    named = [word.strip() for word in streams.text.split("/")[1:] if word.strip()]
+    every = [step(word.strip(), steps.place) for word in steps.text.split("/")[1 : len(named) + 1]]
+    rows = [numbers(line, place) for place, line in enumerate(lines[last:], last + 1) if line.strip()]
+    stated = [word.strip() for word in counts.text.split("/")[1 : len(named) + 1]]
+    if len(named) != len(every) or stated != [str(len(rows))] * len(named):
+        raise ValueError(
+            f"{len(rows)} samples of {len(named)} channels; line {counts.place} states {', '.join(stated)}"
+        )
+    if bad := [last + i for i, row in enumerate(rows, 1) if len(row) != len(named)]:
+        raise ValueError(f"line {bad[0]} has {len(rows[bad[0] - last - 1])} columns for {len(named)} channels")
+    require_accelerations({units.place: f"units: {units.text}"})
+    if len(unit := stated_units(units.text)) != 1:
+        raise ValueError(f"line {units.place} names no unit of accelerations: {in_message(units.text.strip())}")
+    factor, code = ACCELERATION_UNITS[unit[0]], station.text.strip()
+    columns = np.array(rows).T
+    return [
+        Trace(factor * column, dt, {"STATION_CODE": code, "STREAM": stream})
+        for column, dt, stream in zip(columns, every, named, strict=True)
+    ]
+
+
 def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     """The traces of a file of seismology, such as SAC and miniSEED, by ObsPy, in a unit that the file does not state.
 
@@ -420,6 +469,7 @@ FORMATS = (
     Format("K-NET and KiK-net", re.compile(r"Sampling Freq\(Hz\)"), parse_knet),
     Format("GeoNet V1A and V2A", re.compile(r"(Unc|C)orrected accelerogram .*GNS"), parse_geonet),
     Format("SMC", re.compile(r"\s*\d\s+\w+ accelerogram\s*$", AS_ASCII), parse_smc),
+    Format("UNAM", re.compile(r"(CLAVE DE LA ESTACION|INTERVALO DE MUESTREO, C1|ORIENTACION C1)"), parse_unam),
     Format(
         "CSMIP and COSMOS",
         re.compile(r"(un)?corrected (accelerogram|acceleration)|raw acceleration", AS_ASCII),
@@ -428,6 +478,8 @@ FORMATS = (
 )
 """Formats of text that state their step and unit, in the order in which they are tried."""
 
+LOOKED_AT = 60
+"""First lines of a file that are looked at for the signs of formats."""
 UTF_16 = b"\xff\xfe", b"\xfe\xff"
 """How a text in UTF-16 begins, which is refused by that name."""
 SEISMOLOGY = re.compile(r"TIMESERIES |WID[12] |BEGIN GSE2")
@@ -438,12 +490,12 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
     """The traces of a file: of a format that its first lines show, of a table whose header states its step and unit, or
     of a file of seismology by ObsPy."""
     start = path.read_bytes()[:4096]
-    kind = None if path.suffix.lower() in SPREADSHEETS or start.startswith(UTF_16) else binary_kind(start)
+    kind = None if is_book(path) or start.startswith(UTF_16) else binary_kind(start)
     if kind and (kind != BINARY or importlib.util.find_spec("obspy")):
         return seismograms(path, unit)
     lines = table_lines(path)
     for one in FORMATS:
-        if any(one.signs.match(line) for line in lines[:SMC_HEAD]):
+        if any(one.signs.match(line) for line in lines[:LOOKED_AT]):
             return one.parse(lines)
     if SEISMOLOGY.match(lines[0]):
         return seismograms(path, unit)

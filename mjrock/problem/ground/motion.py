@@ -461,8 +461,8 @@ class GroundMotion:
     ) -> GroundMotion:
         """A component of a file of any format that states its time step. Its first lines show the format.
 
-        PEER AT2, ESM and ITACA, K-NET and KiK-net, GeoNet V1A and V2A, SMC, CSMIP and COSMOS V1 and V2; a table whose
-        header states step and unit; SAC, miniSEED and more by ObsPy (the extra `obspy`), which know no unit.
+        PEER AT2, ESM and ITACA, K-NET and KiK-net, GeoNet V1A and V2A, SMC, CSMIP and COSMOS V1 and V2, UNAM; a table
+        whose header states step and unit; SAC, miniSEED and more by ObsPy (the extra `obspy`), which know no unit.
         `components_in` gives all components of a file.
 
         Args:
@@ -531,6 +531,7 @@ class GroundMotion:
         dt: float | None = None,
         columns: int | str | Sequence[int | str] | None = None,
         skip: int | None = None,
+        sheet: str | None = None,
     ) -> GroundMotion:
         """A record of a table, in text or a spreadsheet, named after its file; its first row is time zero.
 
@@ -543,22 +544,25 @@ class GroundMotion:
         of `skip` for either reading.
 
         Args:
-            path: the file. Of a spreadsheet (.xlsx, .xls, .ods; the extra `frames`) it is the sheet with numbers.
+            path: the file: a text, a spreadsheet (.xlsx, .xls, .ods; the extra `frames`), or variables of MATLAB (.mat,
+                up to version 7).
             unit: of the accelerations: "m/s2", "cm/s2", "mm/s2", "g" (9.81 m/s2) or "ft/s2", or how many m/s2 it is;
                 None for the one that the header names.
             time_unit: "s" or "ms".
             dt: time step, in the time unit; None for that of a column of times or of the header. Beside a column of
                 times it has to agree with them.
             columns: time and acceleration, or with `dt` the acceleration, by number from 0 or by name; "rows" for
-                samples in rows.
+                samples, or pairs of a time and an acceleration, in rows.
             skip: how many lines to leave out at the start; what they state is not looked at.
+            sheet: name of a sheet of a spreadsheet, or of a variable of MATLAB, which has with it all variables of its
+                length; None for the only one with rows of numbers.
 
         Raises:
             OSError: if the file cannot be read.
             ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step, or what their
                 decimals round), what is not a finite number, and for doubts, with the line and both readings.
         """
-        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip))
+        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip, sheet))
         if len(traces) > 1:
             raise ValueError(f"{path}: columns has {len(traces)} accelerations; components_in reads them all")
         return motion_of(traces[0], path)

@@ -274,14 +274,15 @@ def components_in(
     dt: float | None = None,
     columns: int | str | Sequence[int | str] | None = None,
     skip: int | None = None,
+    sheet: str | None = None,
 ) -> tuple[GroundMotion, ...]:
     """All components of the record in one file: of any format that `GroundMotion.from_file` reads, or of a table.
 
-    A file is read as a table where `dt`, `columns` or `skip` are given. Horizontal components come first.
+    A file is read as a table where `dt`, `columns`, `skip` or `sheet` are given. Horizontal components come first.
 
     Args:
         path: the file.
-        unit, time_unit, dt, columns, skip: as `GroundMotion.from_csv` takes them; `columns` may have several
+        unit, time_unit, dt, columns, skip, sheet: as `GroundMotion.from_csv` takes them; `columns` may have several
             accelerations, after the times.
 
     Raises:
@@ -289,10 +290,10 @@ def components_in(
         ImportError: for a format whose library is missing.
         ValueError: as `GroundMotion.from_file` and `GroundMotion.from_csv`.
     """
-    if (dt, columns, skip) == (None, None, None):
+    if (dt, columns, skip, sheet) == (None, None, None, None):
         traces = read(path, lambda file: recognised(file, unit))
     else:
-        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip))
+        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip, sheet))
     motions = (motion_of(trace, path) for trace in traces)
     return tuple(sorted(motions, key=lambda motion: order(motion.header.get("STREAM", ""))))
 

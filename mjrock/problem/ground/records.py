@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import scipy.io
 from numpy.typing import ArrayLike
 
 from ...files import require_file
@@ -67,6 +68,7 @@ QUANTITIES = {
         rf"(?![a-z])|{UNIT_NAMED}{LENGTH}(?: ?[)\]]|$)",
         re.IGNORECASE,
     ),
+    "spectra": re.compile(r"^\W*(?:response|fourier)(?:[ &]|and|fourier|amplitude)* spectra\b", re.IGNORECASE),
 }
 """How headers name what their samples are: by the quantity, or by its unit."""
 NO_QUANTITY = re.compile(
@@ -147,14 +149,14 @@ class NoRecordError(ValueError):
 
 
 def quantities(text: str) -> list[str]:
-    """The quantities that a text names: accelerations, velocities or displacements."""
+    """The quantities that a text names: accelerations, velocities, displacements or spectra."""
     plain = " ".join(text.split())
     found = [name for name, written in QUANTITIES.items() if written.search(plain)]
     return ["accelerations", *found] if stated_units(plain) and "accelerations" not in found else found
 
 
 def require_accelerations(head: Mapping[int, str], name: str = "") -> None:
-    """Raise a `NoRecordError` where a header, or the name of a column, names velocities or displacements.
+    """Raise a `NoRecordError` where a header, or the name of a column, names velocities, displacements or spectra.
 
     The name of the column counts first. Of the lines of the header the last one that names a single quantity counts.
 
@@ -183,6 +185,8 @@ def binary_kind(data: bytes) -> str | None:
     by_obspy = "which GroundMotion.from_file reads by ObsPy"
     if len(data) >= 632 and data[304:308] in (b"\6\0\0\0", b"\0\0\0\6", b"\7\0\0\0", b"\0\0\0\7"):
         return f"a binary SAC file, {by_obspy}"
+    if data.startswith(b"MATLAB"):
+        return "a MATLAB file, which GroundMotion.from_csv reads by its name .mat"
     if re.match(rb"\d{6}[DRQM] ", data) or data.startswith(b"MS\3"):
         return f"a miniSEED file, {by_obspy}"
     return BINARY
@@ -271,6 +275,7 @@ HEADER_LINE = 1000
 MOST_HEADS = 4
 """Most numbers of a header that may stand before the samples."""
 SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods")
+MATLAB = ".mat"
 
 DECIMAL_COMMA = re.compile(rf"[-+]?(?:\d+,\d*|,\d+){EXPONENT}", AS_ASCII)
 COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
@@ -283,7 +288,9 @@ HEAD_STEP = re.compile(
     AS_ASCII,
 )
 HEAD_RATE = re.compile(
-    rf"sampl\w*[ _]*(?:rate|freq\w*)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*{DECIMAL} *(?:hz|sps|samples)?", AS_ASCII
+    r"(?:sampl\w*[ _]*(?:rate|freq\w*)|(?<![a-z])fs)[ _]*(?:[(\[](?:hz|sps)[)\]])?[ :=]*"
+    rf"{DECIMAL} *(?:hz|sps|samples)?",
+    AS_ASCII,
 )
 HEAD_SCALE = re.compile(rf"(?:scal\w*|multipl\w*)(?:[ _]factor)?[ :=]*{DECIMAL}(?![\w.])", AS_ASCII)
 HEAD_COUNT = re.compile(
@@ -301,6 +308,7 @@ class Wanted(NamedTuple):
         columns: those to read, by number from 0 or name: the times first, unless a step is given. "rows" for samples in
             rows. None where there is one choice only.
         skip: the first lines to leave out; None finds the header and compares it with the other arguments.
+        sheet: of a spreadsheet, or a variable of a MATLAB file; None for the only one with rows of numbers.
     """
 
     unit: str | float | None = None
@@ -308,6 +316,7 @@ class Wanted(NamedTuple):
     dt: float | None = None
     columns: int | str | Sequence[int | str] | None = None
     skip: int | None = None
+    sheet: str | None = None
 
 
 class Stated(NamedTuple):
@@ -376,15 +385,73 @@ class RecordTable:
         return f"{self.width} columns{named}; choose with columns=, such as columns={such}"
 
 
-def table_lines(path: Path) -> list[str]:
-    """The lines of a text, or those of the only sheet with numbers of a spreadsheet, its cells set apart by tabs.
+def table_lines(path: Path, sheet: str | None = None) -> list[str]:
+    """The lines of a text, or of a sheet of a spreadsheet or of variables of MATLAB, their cells set apart by tabs.
 
     Raises:
         ImportError: for a spreadsheet where pandas, or its library for the format, is missing.
-        ValueError: for a spreadsheet with numbers on several sheets or on none.
+        ValueError: for a sheet that is not there, and where none is given, for numbers on several or on none.
     """
-    if path.suffix.lower() not in SPREADSHEETS:
+    if not is_book(path):
+        if sheet is not None:
+            raise ValueError(f"sheet = {in_message(sheet)} is of a spreadsheet or a MATLAB file, and this is a text")
         return text_lines(path)
+    tables = _variables(path) if path.suffix.lower() == MATLAB else _sheets(path)
+    if sheet is not None:
+        return tables[require_one_of("sheet", sheet, tables)]
+    full = [name for name, lines in tables.items() if sum(bool(DATA.match(line)) for line in lines) > 1]
+    if len(full) != 1:
+        choose = f"; choose with sheet=, such as sheet={in_message(full[0])}" if full else ""
+        raise NoRecordError(f"{len(full)} sheets have rows of numbers, {in_message(', '.join(full))}{choose}")
+    return tables[full[0]]
+
+
+def is_book(path: Path) -> bool:
+    """Whether a file is a spreadsheet or of MATLAB, and holds tables by name."""
+    return path.suffix.lower() in (*SPREADSHEETS, MATLAB)
+
+
+def _variables(path: Path) -> dict[str, list[str]]:
+    """The tables of a MATLAB file by their names: a matrix, or all rows of numbers of one length, under the first name.
+
+    Scalars and words are lines of the header of each, such as dt = 0.01. Fields of a structure have names such as a.b.
+    """
+    try:
+        content = scipy.io.loadmat(path, simplify_cells=True)
+    except NotImplementedError:
+        raise NoRecordError("a MATLAB file of version 7.3; save it there with -v7") from None
+    except Exception as error:
+        raise ValueError(f"SciPy does not read it as a MATLAB file: {in_message(str(error))}") from None
+    head: list[str] = []
+    columns: dict[int, dict[str, Array]] = {}
+    for name, value in _flat(content):
+        array = np.squeeze(np.asarray(value))
+        if isinstance(value, str):
+            head.append(f"{name}: {' '.join(value.split())}")
+        elif array.dtype.kind in "iuf" and array.ndim == 0:
+            head.append(f"{name} = {float(array):.17g}")
+        elif array.dtype.kind in "iuf" and array.ndim < 3 and array.size:
+            rows = array if array.ndim == 1 or array.shape[0] > array.shape[1] else array.T
+            of = {name: rows} if rows.ndim == 1 else {f"{name} {i}": rows[:, i] for i in range(rows.shape[1])}
+            columns.setdefault(len(rows), {}).update(of)
+    tables = {}
+    for of in columns.values():
+        rows = np.column_stack([values.astype(float) for values in of.values()]).tolist()
+        tables[next(iter(of)).split(" ")[0]] = [*head, "\t".join(of), *("\t".join(map(repr, row)) for row in rows)]
+    return tables
+
+
+def _flat(content: Mapping[str, object], before: str = "") -> Iterator[tuple[str, object]]:
+    """The variables of a MATLAB file by their names, those within structures too."""
+    for name, value in content.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{before}{name}.")
+        elif not name.startswith("__"):
+            yield f"{before}{name}", value
+
+
+def _sheets(path: Path) -> dict[str, list[str]]:
+    """The lines of each sheet of a spreadsheet by its name."""
     try:
         import pandas
 
@@ -393,16 +460,13 @@ def table_lines(path: Path) -> list[str]:
         raise ImportError(f"{error}; pandas reads spreadsheets: pip install pandas openpyxl") from error
     except Exception as error:
         raise ValueError(f"pandas does not read it as a spreadsheet: {in_message(str(error))}") from error
-    texts = {name: ["\t".join(map(_cell, row)).rstrip() for row in sheet.to_numpy()] for name, sheet in sheets.items()}
-    full = [name for name, lines in texts.items() if sum(bool(DATA.match(line)) for line in lines) > 1]
-    if len(full) != 1:
-        raise ValueError(f"{len(full)} sheets have rows of numbers, {in_message(', '.join(full))}; save one as CSV")
-    return texts[full[0]]
+    tables = ((name, sheet.to_numpy()) for name, sheet in sheets.items())
+    return {name: ["\t".join(map(_cell, row)).rstrip() for row in rows] for name, rows in tables}
 
 
 def table_traces(path: str | PathLike[str], wanted: Wanted) -> list[Trace]:
     """The accelerations of a file that is a table, see `parse_table`."""
-    return read(path, lambda file: parse_table(table_lines(file), wanted))
+    return read(path, lambda file: parse_table(table_lines(file, wanted.sheet), wanted))
 
 
 def _cell(value: object) -> str:
@@ -459,9 +523,7 @@ def _traces_of(found: RecordTable, wanted: Wanted, scale: float) -> list[Trace]:
         dt = stated.value if dt is None and not timed else dt
     in_rows = wanted.columns == ROWS or (wanted.columns is None and dt is not None and not timed and _in_rows(found))
     if in_rows:
-        if dt is None:
-            raise NoRecordError("samples in rows need their time step: give dt")
-        columns = {0: np.array([x for row in found.values for x in row])}
+        columns, dt = _samples_in_rows(found, dt, scale)
     else:
         columns, dt = _columns_of(found, wanted, dt)
         _agree("the step of the times", dt, stated)
@@ -474,6 +536,26 @@ def _traces_of(found: RecordTable, wanted: Wanted, scale: float) -> list[Trace]:
         Trace(_factor(found, wanted.unit, i) * values, dt, {"STREAM": name or f"{i}"} if len(columns) > 1 else {})
         for (i, values), name in zip(columns.items(), [found.bare(i) for i in columns], strict=True)
     ]
+
+
+def _samples_in_rows(found: RecordTable, dt: float | None, scale: float) -> tuple[dict[int, Array], float]:
+    """The accelerations of rows as one column, and their time step [s].
+
+    Rows of pairs, each a time and its acceleration, have a step of their own.
+    """
+    values = np.array([x for row in found.values for x in row])
+    if _has_pairs(values, found.decimals, scale):
+        step_of_pairs = float(f"{_grid(scale * values[::2])[0]:.12g}")
+        _agree("dt, which was given,", dt, Stated(step_of_pairs, found.places[0]))
+        return {0: values[1::2]}, step_of_pairs
+    if dt is None:
+        raise NoRecordError("samples in rows need their time step: give dt")
+    return {0: values}, dt
+
+
+def _has_pairs(values: Array, decimals: int, scale: float) -> bool:
+    """Whether numbers in rows are pairs of a time and an acceleration: every other one increases evenly."""
+    return len(values) % 2 == 0 and len(values) > 6 and _is_grid(scale * values[::2], decimals, scale)
 
 
 def _table_of(lines: Sequence[str], skip: int | None) -> RecordTable:
@@ -595,6 +677,11 @@ def _columns_of(found: RecordTable, wanted: Wanted, dt: float | None) -> tuple[d
             rows = "; samples in rows are read with dt" if dt is None and place == found.places[-1] else ""
             raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}{rows}")
     scale = TIME_UNITS[wanted.time_unit]
+    if found.width > 2 and found.width % 2 == 0 and _has_pairs(np.concatenate(found.values), found.decimals, scale):
+        raise ValueError(
+            f"line {found.places[0]} begins rows of {found.width // 2} pairs of a time and an acceleration: "
+            "columns='rows' reads them"
+        )
     time = scale * found.column(picked[0])
     grid = _is_grid(time, found.decimals, scale)
     timed = len(picked) > 1 and (dt is None or grid)
