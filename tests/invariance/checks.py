@@ -12,7 +12,7 @@ from mjrock.problem.masonry.effects import laden
 
 from .balance import is_stepwise, unbalanced, unbalanced_bodies
 from .quantities import Scene
-from .random_scenes import DENSITY
+from .random_scenes import DENSITY, on_a_slope
 
 UNBALANCED = 1e-6
 """Largest force that is missing in the balance of all bodies in a step, over their weight and the largest reaction [-].
@@ -90,9 +90,10 @@ def below_the_ground(scene: Scene, answer: mr.Response) -> float:
     """How far a corner lies below a slab of ground that its block is above, over the size of its block [-]."""
     masonry, d = answer.case.masonry, 3 if answer.in_space else 2
     slabs = [unit for unit in scene["units"] if unit["fixed"] and unit["name"] == "fixed_0"]
-    if scene["kind"] == "arch" or not slabs:
+    if scene["kind"] in ("arch", "corner") or not slabs:
         return 0.0
-    corners = slabs[0]["parts"][0]["corners"]
+    level = -scene.get("slope", 0.0)
+    corners = on_a_slope(slabs[0]["parts"][0]["corners"], level)
     shift = np.zeros((len(answer.t), d))
     for support in answer.case.supports:
         if support.block == "fixed_0":
@@ -102,7 +103,7 @@ def below_the_ground(scene: Scene, answer: mr.Response) -> float:
     rest = laden(masonry, answer.case.effects)[1]
     for i, number in enumerate(masonry.free):
         block, middle = masonry.blocks[number], rest[number] + answer.pose[:, i, :d] - shift
-        placed = middle[:, None] + (block.corners - rest[number]) @ turned[:, i].swapaxes(1, 2)
+        placed = on_a_slope(middle[:, None] + (block.corners - rest[number]) @ turned[:, i].swapaxes(1, 2), level)
         above = ((placed[..., :-1] > low[:-1]) & (placed[..., :-1] < high[:-1])).all(axis=(1, 2))
         depth = high[-1] - placed[..., -1].min(axis=1)
         most = max(most, float(np.where(above, depth, 0.0).max()) / block.size)

@@ -340,7 +340,7 @@ def longer(trial: Trial) -> float | None:
     """Three times as long across the plane, under forces three times as large."""
     if trial.scene["place"] == "space":
         return None
-    across = ("length", "stiffness", "damping", "strength", "slip_force", "force", "mass")
+    across = ("length", "stiffness", "damping", "strength", "slip_force", "prestress", "force", "mass")
     return trial.twin(changed(trial.scene, lambda name, value: 3 * value if name in across else value))
 
 

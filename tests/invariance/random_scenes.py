@@ -25,6 +25,9 @@ LENGTH = 0.3
 """Length of blocks of the plane, over the size of the scene [-]. As prisms in space they stand."""
 DENSITY = 2000.0
 """Of most blocks [kg/m3]."""
+LATER = 100_000
+"""Seeds from here on also draw what was added later: slopes, corners, pairs and prestressed ties. Those before keep
+their scenes, which tests name."""
 
 
 def place_of(seed: int) -> str:
@@ -34,23 +37,30 @@ def place_of(seed: int) -> str:
 
 def draw(seed: int) -> Scene:
     """The scene of a seed."""
-    place = place_of(seed)
+    place, later = place_of(seed), seed >= LATER
     rng = np.random.default_rng(seed)
     size = log_uniform(rng, 0.1, 10.0)
     scene: Scene = {"place": place, "seed": seed, "size": size, "solver": "explicit", "timestep": None}
     if place == "wall":
-        return scene | wall(rng, size)
-    kinds = KINDS if place == "plane" else KINDS | {"hulls": hulls}
+        scene |= wall(rng, size)
+        return prestressed(rng, scene) if later else scene
+    kinds = KINDS if place == "plane" else KINDS | {"hulls": hulls} | ({"corner": corner} if later else {})
     kind = str(rng.choice(list(kinds)))
     units = kinds[kind](rng, size)
-    if place == "space":
+    if place == "space" and kind != "corner":
         units = [in_space(rng, unit, size) for unit in units]
     loose = kind in ("rain", "hulls", "pile")
+    if later and rng.random() < 0.25:
+        scene["slope"] = rng.uniform(-0.4, 0.4)
+        units = [flat | {"parts": [on_a_slope(part, scene["slope"]) for part in flat["parts"]]} for flat in units]
     scene |= {"kind": kind, "units": [finished(rng, i, unit, LENGTH * size) for i, unit in enumerate(units)]}
     scene |= joints(rng, size, loose=loose)
     stands = STANDS.get(kind, 0.0) if scene["friction"] or kind == "stack" else 0.0
     scene |= actions(rng, scene, settled=bool(rng.random() < stands))
     scene["devices"] = devices(rng, scene)
+    if later:
+        scene |= {"pairs": perhaps(rng, 0.5, pairs(rng, scene))}
+        scene = prestressed(rng, scene)
     beyond_the_engine = scene["bond"] or scene["supports"] or any(each["kind"] == "jack" for each in scene["devices"])
     if scene["settled"] and not beyond_the_engine and rng.random() < 0.3:
         scene["solver"] = "MuJoCo"
@@ -254,7 +264,22 @@ def hull(points: Outline) -> Outline:
     return np.array(half(ordered) + half(ordered[::-1]))
 
 
-STANDS = {"stack": 0.9, "bond": 0.8, "arch": 0.8, "lintel": 0.9, "voronoi": 0.3, "compound": 0.3}
+def corner(rng: Rng, size: float) -> list[Scene]:
+    """The corner of two walls with a wedge of either, in space."""
+    drawn = mr.Masonry.corner(size * rng.uniform(0.1, 0.3), size, float(rng.choice([0.0, rng.uniform(0.1, 0.6)])))
+    return [{"parts": [np.array(p.corners) for p in block.parts], "fixed": block.fixed} for block in drawn.blocks]
+
+
+def on_a_slope(places: Outline, slope: float) -> Outline:
+    """Places in the plane or in space, turned in the plane x, z by an angle [rad]."""
+    x, z = places[..., 0], places[..., -1]
+    turned = places.copy()
+    turned[..., 0] = math.cos(slope) * x + math.sin(slope) * z
+    turned[..., -1] = math.cos(slope) * z - math.sin(slope) * x
+    return turned
+
+
+STANDS = {"stack": 0.9, "corner": 0.3, "bond": 0.8, "arch": 0.8, "lintel": 0.9, "voronoi": 0.3, "compound": 0.3}
 """Share of the scenes that start at rest. Others are as drawn: many of them would not stand."""
 KINDS = {each.__name__: each for each in (stack, bond, arch, voronoi, lintel, pile, compound, rain)}
 
@@ -306,6 +331,27 @@ def joints(rng: Rng, size: float, *, loose: bool) -> Scene:
         scene["bond"] = mortar(rng, size, k, friction)
         scene["points"] = int(rng.choice([3, 5]))
     return scene
+
+
+def pairs(rng: Rng, scene: Scene) -> Scene:
+    """Friction and damping of blocks that have no joint, where they meet."""
+    lowest = math.sqrt(scene["k_n"] / DENSITY / scene["size"])
+    return {
+        "friction": float(rng.choice([0.0, rng.uniform(0.1, 1.2)])),
+        "xi": float(rng.choice([0.0, 0.05, 0.3, 1.0])),
+        "frequency": lowest * rng.uniform(0.1, 1),
+    }
+
+
+def prestressed(rng: Rng, scene: Scene) -> Scene:
+    """A scene, half of whose ties have a prestress in the place of a slack."""
+    made = []
+    for device in scene["devices"]:
+        if device["kind"] == "tie" and rng.random() < 0.5:
+            strength = device.get("strength") or 0.1 * device["stiffness"] * scene["size"]
+            device = device | {"slack": None, "prestress": strength * rng.uniform(0.05, 0.8)}
+        made.append(device)
+    return scene | {"devices": made}
 
 
 def mortar(rng: Rng, size: float, k: float, friction: float) -> Scene:

@@ -25,7 +25,7 @@ from .quantities import QUANTITIES, Quantity, Scene, changed
 LINKS = {"tie": mr.Tie, "damper": mr.Damper, "friction damper": mr.FrictionDamper}
 """Devices that are links to an anchor."""
 OF_LINKS = {"stiffness": "stiffness", "strength": "strength", "ultimate": "ultimate", "slack": "slack", "damping": "c"}
-OF_LINKS |= {"slip_force": "slip_force"}
+OF_LINKS |= {"slip_force": "slip_force", "prestress": "prestress"}
 """Their arguments by the names of a scene."""
 OF_JOINTS = ("k_n", "k_s", "friction", "xi", "frequency", "points", "tolerance")
 
@@ -87,8 +87,9 @@ def motions(record: Scene | None) -> dict[str, mr.GroundMotion | None]:
 def masonry_of(scene: Scene) -> mr.Masonry:
     """The blocks and joints of a scene."""
     bond = None if scene["bond"] is None else mr.Bond(**scene["bond"])
+    pairs = None if scene.get("pairs") is None else mr.Dry(**scene["pairs"])
     blocks = [block_of(unit) for unit in scene["units"]]
-    return mr.Masonry(blocks, bond=bond, **{name: scene[name] for name in OF_JOINTS})
+    return mr.Masonry(blocks, bond=bond, pairs=pairs, **{name: scene[name] for name in OF_JOINTS})
 
 
 def masonry_case(scene: Scene) -> mr.MasonryCase:

@@ -11,7 +11,7 @@ from tests.invariance.balance import is_stepwise, unbalanced, unbalanced_bodies
 from tests.invariance.invariances import INVARIANCES, Trial
 from tests.invariance.judge import EQUAL, judge, overheard
 from tests.invariance.quantities import changed, moved, scaled, turned
-from tests.invariance.random_scenes import PLACES, draw
+from tests.invariance.random_scenes import LATER, PLACES, draw, on_a_slope
 from tests.invariance.runs import solve
 
 FIRST, SCENES, CHUNK, DRAWN = 1000, 300, 10, 3
@@ -107,6 +107,17 @@ def test_all_kinds_of_scenes_are_drawn():
     for name in ("bond", "record", "tilt", "kick", "supports"):
         assert 0.05 < np.mean([bool(scene[name]) for scene in masonry]) < 0.8
     assert max(len(scene["units"]) for scene in masonry) <= 13
+
+
+def test_later_seeds_draw_what_was_added_later():
+    scenes = [draw(seed) for seed in range(LATER, LATER + 300)]
+    ties = [device for scene in scenes for device in scene["devices"] if device["kind"] == "tie"]
+    assert 0.2 < np.mean(["prestress" in tie for tie in ties]) < 0.8
+    assert sum(scene["kind"] == "corner" for scene in scenes) > 4
+    for name in ("pairs", "slope"):
+        assert 0.15 < np.mean([bool(scene.get(name)) for scene in scenes if scene["place"] != "wall"]) < 0.6
+    level = on_a_slope(on_a_slope(np.eye(3), 0.3), -0.3)
+    np.testing.assert_allclose(level, np.eye(3), atol=1e-15)
 
 
 def test_what_is_not_the_same_is_told():

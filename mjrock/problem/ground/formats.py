@@ -478,7 +478,7 @@ FORMATS = (
 )
 """Formats of text that state their step and unit, in the order in which they are tried."""
 
-LOOKED_AT = 60
+FIRST_LINES = 60
 """First lines of a file that are looked at for the signs of formats."""
 UTF_16 = b"\xff\xfe", b"\xfe\xff"
 """How a text in UTF-16 begins, which is refused by that name."""
@@ -495,7 +495,7 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
         return seismograms(path, unit)
     lines = table_lines(path)
     for one in FORMATS:
-        if any(one.signs.match(line) for line in lines[:LOOKED_AT]):
+        if any(one.signs.match(line) for line in lines[:FIRST_LINES]):
             return one.parse(lines)
     if SEISMOLOGY.match(lines[0]):
         return seismograms(path, unit)

@@ -89,6 +89,7 @@ from .drawing import (
 from .files.bodies import Given, Mesh, Scale, about, blocks_of, meshes_of, names_of_list
 from .files.compas import compas_text, read_compas
 from .files.dxf import OfLayer, polygons_of, read_dxf
+from .files.lmgc90 import read_lmgc90
 from .files.meshes import obj_text, read_obj, read_ply, read_stl
 from .laws.bond import Bond
 from .laws.dry import AnyPairs, Dry, Meets, Properties, asked_pair, required_pairs
@@ -1060,6 +1061,38 @@ class Masonry(Drawn):
             ValueError: as `from_obj` does.
         """
         return cls._read(read_compas, path, density, Given(fixed, ground, scale, unit, up, convex), options)
+
+    @classmethod
+    def from_lmgc90(
+        cls,
+        path: AnyPath,
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: Density = 2000.0,
+        scale: Scale = None,
+        unit: str | None = None,
+        up: str | None = None,
+        convex: str | None = None,
+        **options: Unpack[JointOptions],
+    ) -> Self:
+        """Blocks of the input of LMGC90: bodies RBDY3 with one polyhedron POLYR each. Bodies that are held are fixed.
+
+        Joints are those of mjrock: laws of contact, loads and gravity of the folder are not read.
+
+        Args:
+            path: of a folder DATBOX with BODIES.DAT, BULK_BEHAV.DAT, DRV_DOF.DAT and DOF.INI, or of its BODIES.DAT.
+            fixed: names of further bodies that are fixed, such as "body_1".
+            ground, density, scale, unit, up, convex, options: as of `from_obj`. A density of the material of a body
+                comes first.
+
+        Raises:
+            ValueError: as `from_obj` does; for bodies of other kinds or of several polyhedra, or driven ones.
+
+        Warns:
+            UserWarning: of planes, spheres and other shapes, which are left out, and where one of the files is missing.
+        """
+        return cls._read(read_lmgc90, path, density, Given(fixed, ground, scale, unit, up, convex), options)
 
     @classmethod
     def from_meshes(
