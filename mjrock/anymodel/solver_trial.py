@@ -215,7 +215,7 @@ def _points(pose: Pose, contact: PairContact, landing: Landing) -> Iterator[Pres
         row = mujoco.MjContact()
         row.frame = np.ravel(np.array((-landing.away, *tangents(tuple((-landing.away).tolist())))))
         row.solref, row.solimp, row.solreffriction = contact.solref, contact.solimp, contact.solreffriction
-        row.friction, row.dim = contact.friction, contact.condim
+        row.friction, row.dim = np.maximum(contact.friction, mujoco.mjMINMU), contact.condim  # as MuJoCo does
         row.geom, row.geom1, row.geom2 = contact.ids, *contact.ids
         row.flex, row.elem, row.vert, row.efc_address = (-1, -1), (-1, -1), (-1, -1), -1
         places = [

@@ -123,3 +123,31 @@ def test_what_is_not_tried_says_so():
     assert not contact.needs.tried
     assert any("enough iterations for it is not tried" in str(each.message) for each in caught)
     assert any("contacts are disabled" in str(each.message) for each in caught)
+
+
+def test_friction_of_zero_in_condim_3_is_tried():
+    """MuJoCo takes a coefficient of 1e-5 at least, without which its elliptic cone has no numbers."""
+    text = scene(FLOOR.replace("/>", ' friction="0 0 0"/>'), BALL.replace('mass="2"', 'mass="2" friction="0 0 0"'))
+    assert mr.contact_for(mujoco.MjSpec.from_string(text), "ball", "floor", k=1e5, xi=0.5).needs.tried
+
+
+def test_the_order_of_the_geoms_and_where_they_stand_change_nothing():
+    """A pair the other way round, on its side, and far from the origin."""
+    needs = []
+    for names, turn, x in (
+        (("foot*", "floor"), "", 0.0),
+        (("floor", "foot*"), "", 0.0),
+        (("foot*", "floor"), "", 3.0),
+        (("foot*", "floor"), 'euler="0 90 0"', 0.0),
+    ):
+        legs = "".join(LEG.format(y=y) for y in (0.1, -0.1))
+        body = f'<body pos="0 0 1.2"><freejoint/>{TORSO}{legs}</body>'
+        world = f'<frame pos="{x} 0 0" {turn}>{FLOOR}{body}</frame>'
+        text = scene(world, timestep=2e-3, options='iterations="1" ls_iterations="4"')
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            spec = mujoco.MjSpec.from_string(text)
+            spec.option.gravity = (-9.81, 0, 0) if turn else (0, 0, -9.81)
+            needs.append(mr.contacts_for(spec, {names: FEET["foot*", "floor"]}).contacts[0].needs.iterations)
+    assert min(needs) >= 10
+    assert max(needs) <= 1.6 * min(needs)
