@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from .problem.masonry.blocks.polygon import Polygon
     from .problem.masonry.blocks.polyhedron import Polyhedron
     from .problem.masonry.case import MasonryCase
+    from .problem.masonry.fill import Fill
     from .problem.masonry.laws.bond import BONDS, Bond
     from .problem.masonry.laws.dry import Dry, Mortar
     from .problem.masonry.limit.collapse import Collapse
@@ -72,6 +73,7 @@ if TYPE_CHECKING:
     from .problem.wall.bending import HorizontalBending, VerticalBending
     from .problem.wall.block import Block
     from .problem.wall.case import Case
+    from .problem.wall.earth import EarthPressure
     from .problem.wall.effects import AddedMass, Damper, FrictionDamper, Load, SideStop, Thrust
     from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie, strengths_of_anchor, strengths_of_bar
@@ -112,23 +114,23 @@ __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
     "Analysis", "Block", "Bond", "Capacity", "Case", "Code", "CodeSpectrum", "Collapse", "Comparison", "Compound",
     "ContactParameters", "ContactWarning", "Contacts", "Corner", "CoulombFriction", "Damper", "DampingLaw", "Design",
-    "Dry", "DynamicCheck", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid",
-    "GroundMotion", "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger",
-    "LimitCurve", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse",
-    "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome", "PairContact", "PairContacts",
-    "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response",
-    "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum", "ScatteredRestitution", "Scene",
-    "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie",
-    "VerticalBending", "Wedge", "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign",
-    "code_spectrum", "collapse_multiplier", "compare", "components_in", "contact_for", "contact_parameters",
-    "contact_stiffness", "contacts_for", "crushed_inset", "design", "dynamic_check", "fit_capacities", "fit_fragility",
-    "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes", "joint_stiffness", "layered_stiffness",
-    "limit_curve", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact",
-    "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover",
-    "records_in", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
-    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical",
-    "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_anchor", "strengths_of_bar", "wall_mjcf",
-    "wall_scene", "wall_stiffness",
+    "Dry", "DynamicCheck", "EarthPressure", "Fill", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper",
+    "Gable", "Grid", "GroundMotion", "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface",
+    "Joint", "Ledger", "LimitCurve", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
+    "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome",
+    "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push",
+    "RecordSet", "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum",
+    "ScatteredRestitution", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange",
+    "Store", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__", "as_theory", "automatic_timestep",
+    "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "components_in", "contact_for",
+    "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "design", "dynamic_check",
+    "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes",
+    "joint_stiffness", "layered_stiffness", "limit_curve", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
+    "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity",
+    "paired_ratio", "push", "pushover", "records_in", "reference_frequency", "report", "response_spectrum", "results",
+    "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of",
+    "sensitivity", "simulate", "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range",
+    "strengths_of_anchor", "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (\([^)]*|.+)", re.MULTILINE)

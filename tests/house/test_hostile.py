@@ -102,6 +102,14 @@ CALLS = OF_NUMBERS | {
         mr.strengths_of_anchor,
         {"hole": 0.05, "length": 0.6, "bond_strength": 3e5, "shear_strength": 3e4, "number": 2},
     ),
+    "EarthPressure": (
+        mr.EarthPressure,
+        {
+            "height": 3.0, "friction_angle": 0.6, "density": 1900.0, "wall_friction": 0.2, "slope": 0.1, "k_h": 0.1,
+            "k_v": 0.0,
+        },
+    ),
+    "Fill": (mr.Fill, {"top": 5.8, "density": 1800.0, "spread": 0.5, "passive": 3.0}),
     "crushed_inset": (mr.crushed_inset, {"wall": WALL, "f_c": 2e6, "load": 1e3}),
     "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),
     "layered_stiffness": (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,8 +21,10 @@ from ...problem.masonry.limit.pose import Moves, gaps_of, posed
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
 from ...problem.masonry.lines import free_numbers, mean_slip_rates
 from ...problem.masonry.masonry import Masonry
+from ...problem.wall.case import Case
 from ...problem.wall.effect import Effect
-from ...problem.wall.effects import link_effects
+from ...problem.wall.effects import Load, Thrust, link_effects
+from ...problem.wall.restoring_moment import moment_at_strength, of_force
 from ...quantities import (
     Array,
     Flags,
@@ -32,7 +34,9 @@ from ...quantities import (
     require_array,
     require_flag,
     require_kind,
+    require_real,
     require_reals,
+    require_sequence,
     require_whole,
     require_within,
     shown,
@@ -59,12 +63,12 @@ HALVINGS = 40
 
 
 def collapse_multiplier(
-    masonry: Masonry,
+    masonry: Masonry | Case,
     direction: float | ArrayLike | None = 1,
     *,
     angle: float | None = None,
     associated: bool = True,
-    loads: Mapping[str, ArrayLike] | None = None,
+    loads: Mapping[str, ArrayLike] | Sequence[Effect] | None = None,
     effects: Sequence[Effect] | Effect = (),
     pose: ArrayLike | None = None,
 ) -> Collapse:
@@ -88,11 +92,15 @@ def collapse_multiplier(
     Self-stress may hold what no load brings about, as a block between two upright faces. `Collapse.wedged` names such
     blocks: rest is looked for on joints without load, as the solvers do.
 
+    Of the wall of a `Case` it is the factor of safety against overturning about the outer edge, or without a side stop
+    about the one that gives way first: the moments of weight, effects and ties at their strength over those of the
+    forces that grow, at rest. Sliding is not looked at.
+
     Bonds of mortared joints hold their tension and cohesion everywhere at once, which moves the apex of the cones. As
     they soften, this is an upper bound.
 
     Args:
-        masonry: the masonry.
+        masonry: the masonry, or the `Case` of a wall, which has its own effects.
         direction: of the force, which is opposite to the acceleration of the ground: 1 along x, -1 against it, or in
             space a vector in plan, shape (2,), of any length. None for `loads` alone.
         angle: of the force in plan, from x towards y [rad], -2 pi to 2 pi, in space; it takes the place of `direction`.
@@ -100,7 +108,8 @@ def collapse_multiplier(
             hundred blocks in the plane, and half a minute for thirty in space.
         loads: further forces that grow with the multiplier, by the name of their block: at its centroid along x and z
             [N], or with the moment about it, positive where it turns the top to the right [N m], shape (2,) or (3,); in
-            space forces along x, y and z, or with three moments, shape (3,) or (6,).
+            space forces along x, y and z, or with three moments, shape (3,) or (6,). Of a `Case` they are `Thrust` and
+            `Load`, such as wind, water and the `EarthPressure` on it.
         effects: what is constant beside the weight, `Load` and `Thrust`, `AddedMass`, whose inertia grows with that of
             the blocks, and `Tie`, which pulls with up to its strength, and is not slack at rest. In a pose it pulls
             where it is longer than at rest and has not been drawn out beyond its `ultimate` elongation. Each names its
@@ -128,7 +137,10 @@ def collapse_multiplier(
         >>> round(float(mr.collapse_multiplier(arch).multiplier), 2)
         0.23
     """
-    require_kind("masonry", masonry, Masonry)
+    require_kind("masonry", masonry, Masonry, Case)
+    if isinstance(masonry, Case):
+        _require_alone(angle=angle, associated=None if associated else False, effects=effects or None, pose=pose)
+        return overturned(masonry, direction, loads)
     dilates = require_flag("associated", associated)
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
@@ -172,6 +184,41 @@ def collapse_multiplier(
     return found
 
 
+def _require_alone(**given: object) -> None:
+    """Raise a ValueError for arguments that the wall of a case has no place for."""
+    if names := [name for name, value in given.items() if value is not None]:
+        raise ValueError(f"{named(names)} is for masonry of blocks; a Case has its effects, and rocks in its plane")
+
+
+def overturned(case: Case, direction: object, loads: Any) -> Collapse:
+    """The factor on the forces that grow at which a wall at rest overturns, see `collapse_multiplier`."""
+    way = 0.0 if direction is None else require_real("direction", direction)
+    if way not in (-1.0, 0.0, 1.0) or way == direction == 0:
+        raise ValueError(f"direction = {way:g} is not a direction; the valid ones are 1, -1 and None")
+    require_sequence("loads", given := () if loads is None else loads, "a sequence of Thrust and Load")
+    for i, load in enumerate(given):
+        require_kind(f"loads[{i}]", load, Thrust, Load)
+    grown: tuple[Thrust | Load, ...] = tuple(given)
+    wall, top = case.wall, 2 * case.wall.h * (1 + 1e-12)
+    forces = [(0.0, wall.centroid_height, way * wall.weight, 0.0)]
+    for i, load in enumerate(grown):
+        require_within(f"loads[{i}], height", load.height, 0.0, top, "m")
+        across, _, up = load.force_vector
+        forces.append((load.offset, load.height, across, -up))
+    held = {1.0: case.restoring.outer.P + moment_at_strength(case.pulls)}
+    if not case.one_sided:
+        held[-1.0] = case.restoring.inner.P
+    over = {side: -sum(of_force(*force, wall.half_base).towards(side).P for force in forces) for side in held}
+    if not any(moment for moment in over.values()):
+        raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
+    factors = {side: held[side] / moment for side, moment in over.items() if moment > 0}
+    if not factors or min(factors.values()) == math.inf:
+        return Collapse(math.inf, np.array([way, 0.0]), (), np.zeros((1, 3)))
+    side = min(factors, key=lambda name: factors[name])
+    motion = side * wall.weight / over[side] * wall.turning(0.0, side)
+    return Collapse(factors[side], np.array([way, 0.0]), ("wall",), np.atleast_2d(motion))
+
+
 def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:
     """Effects as a case of the masonry takes them. An error names one whose force the motion alone decides."""
     given = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
@@ -207,7 +254,7 @@ def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tup
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)
 
 
-def _loads(masonry: Masonry, loads: Mapping[str, ArrayLike]) -> Array:
+def _loads(masonry: Masonry, loads: Any) -> Array:
     """Loads by the name of their block as forces and moments of free blocks, shape (free, 3), in space (free, 6)."""
     require_kind("loads", loads, Mapping)
     forces, full = (3, 6) if masonry.in_space else (2, 3)

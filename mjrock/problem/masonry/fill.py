@@ -1,0 +1,151 @@
+"""Fill over an arch: its weight, the spread of a load through it, and what it bears where the arch moves into it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, NamedTuple
+
+import numpy as np
+import scipy
+
+from ...quantities import GRAVITY, Array, Within, keep_declared, require_kind, require_within, short_repr
+from ..wall.effect import Effect
+from ..wall.effects import Load
+from ..wall.tie import Tie
+from .blocks.polygon import Polygon
+from .masonry import Masonry
+
+UPWARDS = 1e-6
+"""Least z of the normal of a face that bears fill [-]."""
+BEHIND, STIFF = 5.0, 1e9
+"""Length [m] and stiffness [N/m] of the ties that stand for passive pressure, of which only the strength counts."""
+
+
+class Bearing(NamedTuple):
+    """A face of a block that bears fill: the block, its ends from left to right [m], shape (2, 2), and its length out
+    of the plane [m]."""
+
+    name: str
+    ends: Array
+    length: float
+
+
+@dataclass(frozen=True)
+class Fill:
+    """Earth between the free upper faces of masonry in the plane, such as the extrados of an arch, and level ground.
+
+    Its weight rests on the faces below it. A load on the ground spreads on the way down, and presses evenly between
+    where its edges reach the faces. Where the masonry moves into the fill, that bears up to K rho g z on the height of
+    the face, z below the ground, and it bears nothing where the masonry moves away. Friction of the fill and what it
+    bears above the arch are left out, on the safe side.
+
+    Args:
+        top: level of the ground [m], -10000 to 10000.
+        density: of the fill [kg/m3], 500 to 2600.
+        spread: how far a load spreads to either side over the depth [-], 0 to 2; 0.5 is two to one.
+        passive: K, the coefficient of the pressure that it bears [-], 0 to 20; 0 bears none. `EarthPressure.passive`
+            has the largest, of which the movement brings about a part.
+
+    Raises:
+        ValueError: for a value outside its range.
+
+    Examples:
+        >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.5, span_angle=1.9)
+        >>> fill = mr.Fill(top=5.8, density=1800.0)
+        >>> axle = fill.under(arch, force=50e3, at=-1.5, width=0.3)
+        >>> round(float(mr.collapse_multiplier(arch, None, loads=axle, effects=fill.on(arch)).multiplier), 1)
+        4.1
+    """
+
+    top: Annotated[float, Within(-1e4, 1e4, "m", "top of the fill")]
+    density: Annotated[float, Within(500, 2600, "kg/m3", "density of the fill")] = 1800.0
+    spread: Annotated[float, Within(0, 2, "", "spread of a load")] = field(default=0.5, kw_only=True)
+    passive: Annotated[float, Within(0, 20, "", "passive coefficient")] = field(default=0.0, kw_only=True)
+
+    __repr__ = short_repr
+
+    def __post_init__(self) -> None:
+        keep_declared(self)
+
+    def on(self, masonry: Masonry) -> tuple[Effect, ...]:
+        """The weight on each face as a `Load`, and its passive pressure as a `Tie` of that strength, for limit
+        analysis.
+
+        Raises:
+            TypeError, ValueError: for what is not masonry in the plane, or has a face above the ground.
+        """
+        effects = list[Effect]()
+        for face in self._faces(masonry):
+            (x, z), (right, high) = face.ends
+            depth, wide = self.top - face.ends[:, 1], right - x
+            column = self.density * GRAVITY * face.length * 0.5 * depth.sum()
+            share = (depth[0] + 2 * depth[1]) / (3 * depth.sum())  # of the centroid of a trapezium
+            point = tuple(face.ends[0] + share * (face.ends[1] - face.ends[0]))
+            effects.append(Load(column * wide, block=face.name, at=point))  # type: ignore[arg-type]
+            borne = self.passive * column * abs(high - z)
+            if borne > 0:
+                way = 1.0 if high < z else -1.0  # out of the masonry, sideways
+                middle = face.ends.mean(axis=0)
+                anchor = middle[0] - way * BEHIND, middle[1]
+                held = Tie(stiffness=STIFF, strength=borne, at=tuple(middle), anchor=anchor, block=face.name)  # type: ignore[arg-type]
+                effects.append(held)
+        return tuple(effects)
+
+    def under(self, masonry: Masonry, force: float, at: float, width: float = 0.0) -> dict[str, Array]:
+        """A load on the ground as it presses on the masonry, as `loads` of `collapse_multiplier`.
+
+        Args:
+            masonry: the masonry.
+            force: downwards [N], above 0 to 1e9.
+            at: x of its middle [m], above the faces.
+            width: of the load on the ground, 0 to 100 [m].
+
+        Raises:
+            TypeError, ValueError: as `on`, and for a value outside its range.
+        """
+        faces = self._faces(masonry)
+        force = require_within("force", force, 1e-3, 1e9, "N")
+        half = 0.5 * require_within("width", width, 0.0, 100.0, "m")
+        ends = np.concatenate([face.ends for face in faces])
+        at = require_within("at", at, float(ends[0, 0]), float(ends[-1, 0]), "m")
+        low, high = (self._reached(ends, at, side, half) for side in (-1, 1))
+        loads = dict[str, Array]()
+        for face in faces:
+            left, right = max(low, face.ends[0, 0]), min(high, face.ends[1, 0])
+            holds = face.ends[0, 0] <= at <= face.ends[1, 0]
+            share = (right - left) / (high - low) if high > low else float(holds and not loads)
+            if share > 0:
+                middle = 0.5 * (left + right) if high > low else at
+                arm = middle - masonry.blocks[masonry.names.index(face.name)].centroid[0]
+                loads[face.name] = loads.get(face.name, np.zeros(3)) + force * share * np.array([0.0, -1.0, arm])
+        return loads
+
+    def _reached(self, ends: Array, at: float, side: int, half: float) -> float:
+        """x at which an edge of a load, on its left (-1) or right (1), reaches the faces, or their end [m]."""
+
+        def beyond(x: float) -> float:
+            return side * (x - at) - half - self.spread * (self.top - float(np.interp(x, *ends.T)))
+
+        end = float(ends[0 if side < 0 else -1, 0])
+        return end if beyond(end) <= 0 else float(scipy.optimize.brentq(beyond, at, end)) if beyond(at) < 0 else at
+
+    def _faces(self, masonry: Masonry) -> list[Bearing]:
+        """The faces that bear the fill, from left to right."""
+        require_kind("masonry", masonry, Masonry)
+        if masonry.in_space:
+            raise ValueError("masonry is in space; a fill takes masonry in the plane")
+        ends = [pair for joint in masonry.joints for pair in zip((joint.below, joint.above), joint.sides, strict=True)]
+        met, found = set(ends), list[Bearing]()
+        for number in masonry.free:
+            block = masonry.polygons[number]
+            for k, side in enumerate(block.sides):
+                if side.normal[1] > UPWARDS and (number, k) not in met:
+                    part = block.parts[side.parts[0]]
+                    assert isinstance(part, Polygon)  # of masonry in the plane
+                    found.append(Bearing(masonry.names[number], side.corners[::-1], part.length))
+        if not found:
+            raise ValueError("masonry has no free face that looks upwards, on which a fill could rest")
+        highest = max(float(face.ends[:, 1].max()) for face in found)
+        if not self.top > highest:
+            raise ValueError(f"top of the fill = {self.top:g} m is not above {highest:g} m, the highest face")
+        return sorted(found, key=lambda face: float(face.ends[0, 0]))
