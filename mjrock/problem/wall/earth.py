@@ -41,7 +41,7 @@ class EarthPressure:
     Examples:
         >>> earth = mr.EarthPressure(3.0, friction_angle=0.5236)
         >>> round(earth.active, 3), round(earth.passive, 2), round(earth.force)
-        (0.333, 3.0, 27949)
+        (0.333, 3.0, 27958)
     """
 
     height: Annotated[float, Within(0.1, 50, "m", "height of the earth")]
