@@ -32,7 +32,7 @@ SLOPING = 0.3
 IDLE = 1e-3
 """Force at rest as a share of the weight of the lighter body up to which a contact carries nothing [-]."""
 TOUCHING_AT_REST = 1e-4
-"""Distance within which geoms of a pose at rest touch [m]."""
+"""Distance within which geoms of a pose at rest touch, and joints are at their limits [m or rad]."""
 RIGID_AT_REST = ("eq_{}", "jnt_{}", "dof_{}", "tendon_{}_lim", "tendon_{}_fri")
 """Fields of a model with the parameters of constraints that are no contacts: equality, limits, and dry friction."""
 MOST_KEYFRAMES = 20
@@ -207,6 +207,8 @@ def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset
     for name in RIGID_AT_REST:
         getattr(held, name.format("solref"))[:] = 0
         getattr(held, name.format("solimp"))[..., :3] = 0.9999, 0.9999, 0.001
+    for margin in (held.jnt_margin, held.tendon_margin):
+        margin[:] = np.maximum(margin, TOUCHING_AT_REST)
     for name in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
         getattr(held, name)[:] *= 1e-6  # of the regularisation
     held.dof_armature[moved_or_sprung(model, data)] += 1e6 * float(held.body_mass.sum())

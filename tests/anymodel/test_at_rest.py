@@ -86,6 +86,34 @@ def test_rockers_share_their_load_and_pads_theirs():
     assert [found[f"pad{i}"] for i in range(3)] == pytest.approx(right, rel=1e-4)
 
 
+HOLDS = {
+    "limit": ('range="0 90" limited="true"', ""),
+    "friction": ('frictionloss="100"', ""),
+    "spring": ('stiffness="1"', ""),
+    "equality": ("", '<equality><joint joint1="hinge"/></equality>'),
+    "motor": ("", '<actuator><motor joint="hinge"/></actuator>'),
+    "nothing": ('damping="1"', ""),
+}
+
+
+@pytest.mark.parametrize("name", HOLDS)
+def test_what_holds_a_joint_at_rest(name):
+    """A crane of 10 kg on two feet .6 m apart, with 2 kg on an arm .3 m beyond one of them. A joint that turns freely
+    lets it fall, and carries none of its weight."""
+    joint, more = HOLDS[name]
+    crane = f"""<body pos="0 0 .2"><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 1 0"/>
+    <geom type="box" size=".3 .05 .02" mass="9.8" {NOTHING}/><geom name="near" size=".05" pos=".3 0 -.15" mass=".1"/>
+    <geom name="far" size=".05" pos="-.3 0 -.15" mass=".1"/>
+    <body pos=".3 0 0"><joint name="hinge" axis="0 -1 0" {joint}/>
+    <geom size=".02" pos=".3 0 0" mass="2" {NOTHING}/></body></body>"""
+    found = loads(
+        scene(FLOOR, crane, gravity=G, timestep=1e-4).replace("</worldbody>", "</worldbody>" + more), "near far"
+    )
+    arm = 0.0 if name == "nothing" else 1.0
+    assert found["near"] == pytest.approx((5 + 3 * arm) * G, rel=0.01)
+    assert found["far"] == pytest.approx((5 - arm) * G, rel=0.01)
+
+
 @pytest.mark.parametrize("drive", DRIVES)
 def test_what_an_actuator_presses_at_the_controls_of_a_keyframe_is_load(drive):
     actuator, control = DRIVES[drive]
