@@ -132,3 +132,44 @@ def test_the_elastic_branch_by_hand():
         assert "C8.7.1.6" in found.table()
         assert found.alpha_0 == rigid.alpha_0
     assert found.states["SLV"].period == pytest.approx(0.84 * 5.0, rel=1e-4)
+
+
+PARAPET = mr.Case(mr.Block.from_size(0.3, 1.2, 10.0, 1800.0), 0.0, 10.0, side_stop=False)
+SITE = {state: mr.code_spectrum("NTC 2018", ag=ag, F0=2.5, Tc=0.33, soil="B") for state, ag in
+        (("SLD", 0.7), ("SLV", 1.77), ("SLC", 2.26))}  # fmt: skip
+ROOF = {state: spectrum.at_height(0.28, participation=1.3, height=1.0) for state, spectrum in SITE.items()}
+
+
+def test_an_element_that_vibrates_freely_meets_the_spectrum_at_its_period():
+    """C8.7.1.9, and C8.7.1.2.1.7 with it: S_eZ(T_0) with 5 %, where a rigid one meets the peak."""
+    T_0 = 0.12
+    free, rigid = mr.mechanism_check(PARAPET, ROOF, elastic_period=T_0), mr.mechanism_check(PARAPET, ROOF)
+    a_0 = 0.25 * mr.GRAVITY / 1.35
+    assert rigid.linear_ratio == pytest.approx(2 * a_0 / ROOF["SLV"].peak)
+    assert rigid.damage_ratio == pytest.approx(a_0 / ROOF["SLD"].peak)
+    assert free.linear_ratio == pytest.approx(2 * a_0 / float(ROOF["SLV"](T_0, 0.05)))
+    assert free.damage_ratio == pytest.approx(a_0 / float(ROOF["SLD"](T_0, 0.05)))
+    assert free.linear_ratio < rigid.linear_ratio
+    assert [one.clause for one in (rigid.verdicts[-1], free.verdicts[-1])] == ["C8.7.1.8", "C8.7.1.9"]
+    assert [one.limit_state for one in free.verdicts] == ["SLV", "SLV", "SLC", "SLD"]
+    lines = free.table().splitlines()
+    assert any(line.startswith("S_eZ(T_0)") and line.endswith("C8.7.1.9") for line in lines)
+    assert not any(line.startswith("peak of the demand") for line in lines)
+    (row,) = (line for line in lines if line.startswith("capacity over demand SLD"))
+    assert row.endswith(free.verdicts[-1].said)
+
+
+def test_the_same_of_records_and_displacement_spectra():
+    """(2 pi / T_0)^2 S_De is the acceleration, and of a record that of the oscillator of its period."""
+    T_0 = 0.2
+    spectrum = SITE["SLV"]
+    of_function = mr.mechanism_check(PARAPET, lambda T, xi: float(spectrum.displacement(T, xi)), elastic_period=T_0)
+    assert of_function.peak == pytest.approx(float(spectrum(T_0, 0.05)))
+    record = mr.GroundMotion.synthetic(2.0, 5.0, seed=1)
+    found = mr.mechanism_check(PARAPET, record, elastic_period=T_0)
+    assert found.peak == pytest.approx(float(mr.response_spectrum(record, [T_0], 0.05).Sa[0]), rel=1e-9)
+
+
+def test_without_a_demand_of_its_own_there_is_no_condition_of_damage():
+    assert mr.mechanism_check(PARAPET, ROOF["SLV"]).damage_ratio is None
+    assert len(mr.mechanism_check(PARAPET, ROOF["SLV"]).verdicts) == 3

@@ -54,7 +54,10 @@ CHECK_STEPS = {
     "alpha_tied": StepOutput("", 4),
     "linear_tied": StepOutput("g", 4),
     "peak": StepOutput("g", 4),
+    "free_peak": StepOutput("g", 4),
     "linear_ratio": StepOutput("", 2),
+    "damage": StepOutput("g", 4),
+    "damage_ratio": StepOutput("", 2),
     "elastic_period": StepOutput("s", 3),
     "d_0": StepOutput("m", 4),
     "yields": StepOutput("m", 4),
@@ -138,6 +141,27 @@ class LinearRule:
 
 
 @dataclass(frozen=True)
+class DamageRule:
+    """The limit state of the start of the mechanism: a_0 is compared with the acceleration of its demand.
+
+    Args:
+        state: its name, by which a mapping of demands has its own.
+        damping: damping ratio of an element that vibrates freely before it opens [-], 0 to 0.9: its demand, also in the
+            linear check, is the spectral acceleration at its period T_0.
+        clause: where it stands in the code.
+        free_clause: where that of elements that vibrate freely does.
+    """
+
+    state: str
+    damping: Annotated[float, Within(0, 0.9)]
+    clause: str = ""
+    free_clause: str = ""
+
+    def __post_init__(self) -> None:
+        keep_declared(self)
+
+
+@dataclass(frozen=True)
 class DynamicRule:
     """The check by dynamic runs: none beyond d_0, and the mean of the maxima at most the share of the limit state.
 
@@ -189,6 +213,7 @@ class Code:
         texts: sentences of a report about the check, by key and language.
         confidence: the range of the confidence factor; 1 where the code has none.
         linear: the linear check; None where the code has none.
+        damage: the limit state of the start of the mechanism; None where the code has none.
         dynamic: the check by dynamic runs; None where the code has none.
     """
 
@@ -199,6 +224,7 @@ class Code:
     clause: str = ""
     confidence: ConfidenceRule = field(default_factory=ConfidenceRule)
     linear: LinearRule | None = None
+    damage: DamageRule | None = None
     dynamic: DynamicRule | None = None
 
     def __post_init__(self) -> None:
@@ -289,7 +315,8 @@ class Code:
 def _parts_of(given: dict[str, Any]) -> dict[str, Any]:
     """The arguments of a `Code` that a file gives."""
     parts = _known("the file", Code, given)
-    kinds: dict[str, Callable[..., Any]] = {"linear": LinearRule, "dynamic": DynamicRule, "confidence": ConfidenceRule}
+    kinds: dict[str, Callable[..., Any]] = {"linear": LinearRule, "damage": DamageRule, "dynamic": DynamicRule}
+    kinds["confidence"] = ConfidenceRule
     for name in kinds.keys() & parts.keys():
         parts[name] = _made(name, kinds[name], parts[name])
     kinds = {"states": CodeLimitState, "steps": CodeStep}

@@ -176,13 +176,15 @@ class MechanismCheck:
         a: spectral accelerations [m/s2], shape (n,).
         d_0: displacement at which the acceleration falls to zero [m].
         states: the limit states of the code, by name.
-        peak: peak acceleration of the demand, where the wall stands [m/s2]; None of a displacement spectrum.
+        peak: peak acceleration of the demand, where the wall stands [m/s2]; None of a displacement spectrum. Of an
+            element that vibrates freely it is the spectral acceleration at its period.
         yielding, breaking: displacement at which each tie yields and breaks [m], by name, of those that do up to d_0.
         elastic_period: T_0 of the elastic branch [s], None of a rigid start.
         code: what it is checked after.
         mechanism: what was checked, None where it is not known.
         demands: what each limit state was checked against, by name.
         moving: names of the blocks that move, whose common centroid d is of; none of a wall.
+        damage: acceleration that the limit state of the start of the mechanism demands [m/s2], where it has a demand.
     """
 
     alpha_0: float
@@ -201,6 +203,29 @@ class MechanismCheck:
     mechanism: Checked | None = None
     demands: Mapping[str, Demand] = field(default_factory=dict)
     moving: tuple[str, ...] = ()
+    damage: float | None = None
+
+    @property
+    def free_peak(self) -> float | None:
+        """The spectral acceleration at the period of an element that vibrates freely [m/s2]; None of another one."""
+        return self.peak if self._is_free else None
+
+    @property
+    def _is_free(self) -> bool:
+        """Whether it vibrates freely before it opens, and the code counts this."""
+        return self.elastic_period is not None and self.code.damage is not None
+
+    @property
+    def damage_ratio(self) -> float | None:
+        """Capacity over demand of the start of the mechanism [-]; None without a demand of its own."""
+        return None if self.damage is None else self._damaged(self.damage).ratio
+
+    def _damaged(self, demand: float) -> Verdict:
+        """The condition of the start of the mechanism."""
+        rule = self.code.damage
+        assert rule is not None
+        clause = rule.free_clause if self._is_free else rule.clause
+        return Verdict("start of the mechanism", rule.state, demand, self.a_0, "m/s2", clause)
 
     @property
     def a_0(self) -> float:
@@ -233,7 +258,8 @@ class MechanismCheck:
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """The linear check, where the code has one and the peak of the demand is known, and the non-linear ones.
+        """The linear check, where the code has one and the peak of the demand is known, the non-linear ones, and that
+        of the start of the mechanism, where it has a demand.
 
         That of the SLV is the one of displacements, or where a_g,SLD is more than these allow, that of accelerations.
         """
@@ -241,7 +267,8 @@ class MechanismCheck:
         capacity = self.linear if self.linear_tied is None else self.linear_tied
         if self.peak is not None and rule is not None and capacity is not None:
             found.append(Verdict("linear kinematic", rule.state, self.peak, capacity, "m/s2", rule.clause))
-        return *found, *map(self._nonlinear, self.states)
+        damaged = [] if self.damage is None else [self._damaged(self.damage)]
+        return *found, *map(self._nonlinear, self.states), *damaged
 
     def _nonlinear(self, name: str) -> Verdict:
         """The non-linear condition of a limit state."""
@@ -271,7 +298,8 @@ class MechanismCheck:
         found += [("ground_ratio", name, self._nonlinear(name).ratio) for name in self.states if self.is_of_start(name)]
         steps = []
         for key, of, value in found:
-            if value is not None and key in self.code.steps:
+            hidden = key == "peak" and self._is_free
+            if value is not None and key in self.code.steps and not hidden:
                 unit = CHECK_STEPS[key].unit
                 value = value / GRAVITY if unit == "g" else value
                 steps.append(Step(key, value, self.code.step(key, of).clause, unit, of))
@@ -295,6 +323,8 @@ class MechanismCheck:
             what, note = self.code.step(step.key, step.of).plain, step.clause
             if step.key == "linear_ratio":
                 note = self.verdicts[0].said
+            elif step.key == "damage_ratio":
+                note = self.verdicts[-1].said
             elif step.key == "ratio":
                 note = "see below" if self.is_of_start(step.of) else self._nonlinear(step.of).said
                 if gone := self.broken_before(step.of):
@@ -337,7 +367,9 @@ def mechanism_check(
     stabilising force on the mechanism in the equation of virtual work, for ties that are tensioned or have no slack. Of
     the two conditions of C8.7.1.2.1.6 only the share of d_0 is looked at: whether a beam loses its seat before is for
     the user. A mechanism on a floor (C8.7.1.2.1.4) takes `spectrum.at_height(...)` or `motion.through_building(...)` as
-    its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known.
+    its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known, and of an
+    element that vibrates freely with the spectral acceleration at T_0 (C8.7.1.2.1.7, C8.7.1.9). The damage limit state
+    compares a_0 with the same of its own demand (C8.7.1.2.1.5).
 
     Of masonry of blocks the curve is that of `limit_curve`, one for each direction. alpha_0 and e* follow from the
     virtual displacements of the mechanism with which it begins, the displacement is that of the common centroid of the
@@ -348,8 +380,8 @@ def mechanism_check(
         case: the wall and its effects, whose release and motion play no part, a corner, a wall that bends between
             floors or side walls, or the `LimitCurve` of masonry.
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
-            [m] of a spectrum. It is that of all limit states, or a mapping has one for each, "SLV" and "SLC"; the
-            linear check then takes that of its own, the SLV.
+            [m] of a spectrum. It is that of all limit states, or a mapping has one for each, "SLV" and "SLC", and may
+            have one of the damage limit state, "SLD"; the linear check then takes that of its own, the SLV.
         confidence_factor: FC [-], 1 to 1.35 by NTC 2018; None takes 1.35, as the clause does where the strength of the
             masonry does not enter the curve. Another code has its own range, or none.
         elastic_period: T_0 of an element that vibrates freely before it opens, such as a parapet [s], 0.001 to 5; its
@@ -374,9 +406,11 @@ def mechanism_check(
     code = code_of(code)
     demands = _by_limit_state(demand, code)
     severe = demands[code.first]
-    peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None
     factor = code.confidence.checked(confidence_factor)
     T_0 = None if elastic_period is None else require_within("elastic_period", elastic_period, 1e-3, 5.0, "s")
+    peak, damage = _starting(severe, T_0, code), None
+    if code.damage is not None and code.damage.state in demands:
+        damage = _starting(demands[code.damage.state], T_0, code)
     found = _mechanism_of(case, code)
     d, a = found.d, found.multiplier * GRAVITY / (found.participation * factor)
     if T_0 is not None:
@@ -391,7 +425,7 @@ def mechanism_check(
     alpha_0 = float(found.multiplier[0]) if found.slack is None else found.slack
     ties = found.yielding, found.breaking
     curve = alpha_0, found.tied, found.participation, factor, d, a, d_0, states
-    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving)
+    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving, damage)
 
 
 class _Mechanism(NamedTuple):
@@ -523,7 +557,8 @@ def required_demands(demand: Demand | Mapping[str, Demand], code: Code | str | N
 def _by_limit_state(demand: Demand | Mapping[str, Demand], code: Code) -> Mapping[str, Demand]:
     """The demand of each limit state."""
     demands = demand if isinstance(demand, Mapping) else dict.fromkeys(code.states, demand)
-    if set(demands) != set(code.states):
+    beside = set() if code.damage is None else {code.damage.state}
+    if set(demands) - beside != set(code.states) - beside:
         needed = " and ".join(code.states)
         raise ValueError(f"demand has {', '.join(map(str, demands)) or 'none'}; a mapping needs {needed}")
     for name, one in demands.items():
@@ -539,6 +574,16 @@ def _masses(case: Case) -> tuple[Array, Array]:
     weights = [case.block.mass, *(effect.mass_added for effect in added)]
     heights = [case.block.centroid_height, *(effect.height for effect in added)]
     return GRAVITY * np.array(weights), np.array(heights)
+
+
+def _starting(demand: Demand, T_0: float | None, code: Code) -> float | None:
+    """The acceleration that a demand has where a mechanism starts [m/s2]: its peak, None where it is not known, or of
+    an element that vibrates freely with a period that of its spectrum there."""
+    if T_0 is None or code.damage is None:
+        return demand.peak if isinstance(demand, GroundMotion | SpectrumOfCode) else None
+    if isinstance(demand, SpectrumOfCode):
+        return float(demand(T_0, code.damage.damping))
+    return (2 * math.pi / T_0) ** 2 * _demanded(demand, T_0, code.damage.damping, T_0)
 
 
 def _demanded(demand: Demand, period: float, damping: float, shortest: float) -> float:
