@@ -14,6 +14,7 @@ from ..problem.damping.restitution import Restitution
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
 from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.block import Block
@@ -244,6 +245,26 @@ def of_limit_curve(curve: LimitCurve, words: Words) -> list[Input]:
     return [*found, moving, *of_effects(curve.effects, words)]
 
 
+def of_collapse(found: Collapse, words: Words) -> list[Input]:
+    """Masonry or a wall at its limit, with the loads that grow."""
+    rows = [] if found.masonry is None else of_masonry(found.masonry, words)
+    rows += _growing(found, words)
+    return [*rows, Input("moving", words("in_moving"), named(found.moving), True), *of_effects(found.effects, words)]
+
+
+def _growing(found: Collapse, words: Words) -> list[Input]:
+    """The loads that grow, of a wall as effects and of masonry on its blocks."""
+    if isinstance(found.loads, tuple):
+        effects = of_effects(found.loads, words)
+        return [one._replace(name=words("in_growing_effect", name=one.name)) for one in effects]
+    rows = []
+    for block, load in found.loads.items():
+        units = ["N"] * len(found.direction) + ["N m"] * len(load)
+        said = "; ".join(words.quantity(value, unit) for value, unit in zip(load, units, strict=False))
+        rows.append(Input(f"load_{block}", words("in_growing", block=block), said))
+    return rows
+
+
 def masonry_in(subject: Any) -> Masonry | None:
     """The masonry of a subject, if it has one."""
     start = getattr(subject, "start", subject)
@@ -335,7 +356,7 @@ def of_contacts(e: Restitution | None, contacts: Contacts | None, words: Words) 
 def of_demands(mechanisms: Sequence[Mechanism], words: Words) -> list[Section]:
     """The seismic action of each kinematic check, each once, with the limit states that it is of."""
     called: list[tuple[str, Demand]] = []
-    for name, check, _ in mechanisms:
+    for name, check, *_ in mechanisms:
         for demand, states in _by_demand(check.demands if check else {}):
             alone = check is not None and len(states) < len(check.demands)
             called.append((f"{name}, {', '.join(states)}" if alone else name, demand))
@@ -411,5 +432,6 @@ INPUTS_OF: dict[type, Callable[[Any, Words], list[Input]]] = {
     HorizontalBending: of_horizontal_bending,
     Corner: of_corner,
     LimitCurve: of_limit_curve,
+    Collapse: of_collapse,
 }
 """The inputs of what a mechanism may be of."""

@@ -24,9 +24,10 @@ from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code import code_of
 from ..study.loading.code_check import signals_of
+from ..study.loading.load_check import Borne
 from . import inputs, subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
-from .pictures import PANELS, Run, by_variant, capacity_curves, histories, strip
+from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, histories, strip
 from .subject import Reported, reported
 from .texts import DASH, FOUND, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
@@ -67,16 +68,17 @@ def report(
         title: of the page; None is that of the language.
         labels: what each response is called, one for each; variants need none.
         e, contacts: what the responses were computed with, for the inputs, or a mapping of those of each variant.
-        checks: of `mechanism_check` and `dynamic_check`, by the names of their mechanisms or variants: one or several
-            of each, at most one of them kinematic.
+        checks: of `mechanism_check`, `dynamic_check` and `load_check`, by the names of their mechanisms or variants:
+            one or several of each, at most one of them kinematic.
         project: "project", "client", "author", "date" and "place" of the title block, which leaves room for what is not
             given.
         language: "en" or "it". Texts of yours stay as they are. `mjrock/reporting/texts.toml` has all others.
         basis: what inputs rest on, by their names in the program, such as {"density": "3 cores, 2024", "k_base": "E of
             the mortar 800 MPa, 30 mm"}.
         notes: the question, the building, who asked.
-        sections: further sections, by their headings: each a text, a figure, a result that has a table, as those of
-            `sensitivity` and `compare`, a mapping of names to `Fragility` curves, or some of these.
+        sections: further sections, by their headings: each a text, a figure, a result of `collapse_multiplier`,
+            `limit_curve`, `push` or `pushover`, one that has a table, as those of `sensitivity` and `compare`, a
+            mapping of names to `Fragility` curves, or some of these.
 
     Returns:
         The path that was written.
@@ -242,7 +244,9 @@ def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanis
     others = [whole.case, *(some[0].response.case for some in by_variant(runs).values())]
     found = verdicts.answers(mechanisms, others, words) if mechanisms else []
     codes = verdicts.codes_of(mechanisms, words.language)
-    methods = verdicts.sentences(codes, "methods", words) if codes else [words("no_check")]
+    borne = any(mechanism.loads for mechanism in mechanisms)
+    methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
+    methods += [words("borne")] * borne
     said = [*methods, *([outcomes(runs, words)] if runs else [])]
     figure, caption = whole.at_rest(words)
     drawn = picture(figure, caption, words)
@@ -266,6 +270,9 @@ def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
         parts += [element("h2", words("checks"))]
         parts += [element("p", said) for said in verdicts.sentences(codes, "kinematic", words)]
         parts += [*verdicts.kinematic_steps(mechanisms, words), picture(figure, words("curves_said"), words)]
+    if loaded := [(one.name, check.result) for one in mechanisms for check in one.loads]:
+        parts.append(element("h2", words("loaded")))
+        parts += [part for name, result in loaded for part in of_borne(name, result, words)]
     if dynamic := verdicts.dynamic_steps(mechanisms, words):
         codes = verdicts.codes_of([one._replace(kinematic=None) for one in mechanisms], words.language)
         said = verdicts.sentences(codes, "dynamic", words)
@@ -304,13 +311,22 @@ def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
         parts.append(listed(broken))
     parts += [element("h2", words("limits")), listed([*verdicts.limits(mechanisms, words), *whole.limits(runs, words)])]
     solvers = list(dict.fromkeys(run.response.solver for run in runs))
-    kinematic = any(mechanism.kinematic for mechanism in mechanisms)
+    used = [words("kinematic_analysis")] * any(mechanism.kinematic for mechanism in mechanisms)
+    used += dict.fromkeys(words(one.what) for each in mechanisms for check in each.loads for one in check.verdicts)
+    used += [words.or_else(f"solver_{solver}", solver) for solver in solvers]
     codes = verdicts.codes_of(mechanisms, words.language) or [code_of()]
     heading = "; ".join(verdicts.sentences(codes, "program", words)) or words("program")
-    parts += [element("h2", heading), table((), subject.code_chapter(solvers, kinematic, words), kind="block")]
+    parts += [element("h2", heading), table((), subject.code_chapter(used, words), kind="block")]
     if by_hand := whole.by_hand(words):
         parts += [element("p", words("hand")), table((), by_hand, right=(1,))]
     return [*parts, element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))]
+
+
+def of_borne(name: str, result: Borne, words: Words) -> list[Markup]:
+    """What a static answer bears: its picture and its numbers."""
+    figure = borne_drawn(result, words)
+    rows = [(words(key), value) for key, value in subject.of_borne(result, words)]
+    return [*([] if figure is None else [picture(figure, name, words)]), table((), rows, kind="block")]
 
 
 def section(name: str, pieces: object, words: Words) -> list[Markup]:
@@ -321,6 +337,8 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
             parts.append(picture(piece, name))
         elif isinstance(piece, str):
             parts.append(element("p", piece))
+        elif isinstance(piece, Borne):
+            parts += of_borne(name, piece, words)
         elif isinstance(piece, Fragility):
             parts.append(subject.of_fragility({"": piece}, words))
         elif isinstance(piece, Mapping) and piece and all(isinstance(one, Fragility) for one in piece.values()):

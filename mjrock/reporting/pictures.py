@@ -13,14 +13,19 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..plotting.bodies import Bodies
+from ..plotting.masonry import mechanism
 from ..plotting.style import OWN, Look, figure_of, legend_below, several
 from ..plotting.wall import elevation, section
+from ..problem.masonry.limit.collapse import Collapse
 from ..problem.wall.case import Case
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array
 from ..result.bodies import Moving
 from ..result.response import Response
 from ..study.loading.code_check import MechanismCheck
+from ..study.loading.limit_analysis import LimitCurve
+from ..study.loading.load_check import Borne
+from ..study.loading.pushover import PushoverCurve
 from .texts import Words
 from .verdicts import Mechanism, told_name
 
@@ -201,6 +206,30 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
     ax.set(xlim=(0, 1.05 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
     _small(ax)
+
+
+def borne_drawn(result: Borne, words: Words) -> Figure | None:
+    """The mechanism of limit analysis, or what is borne over the displacement; None where nothing gives way."""
+    if isinstance(result, Collapse) and not (result.moving and result.masonry):
+        return None
+    figure = Figure(figsize=(WIDE, 2.6), layout="constrained")
+    if isinstance(result, Collapse):
+        space = result.masonry is not None and result.masonry.in_space
+        mechanism(figure.add_subplot(projection="3d" if space else None), result)
+        return figure
+    ax = figure.subplots()
+    if isinstance(result, PushoverCurve):
+        x, y, labels = result.rotation, result.multiplier, ("axis_rotation", "axis_multiplier")
+    elif isinstance(result, LimitCurve):
+        x, y, labels = 1e3 * result.displacement, result.multiplier, ("axis_moved", "axis_multiplier")
+    else:
+        force = result.unit == "N"
+        y = (1e-3 if force else 1.0) * result.force
+        x, labels = 1e3 * result.displacement, ("axis_moved", "axis_force" if force else "axis_multiplier")
+    ax.plot(x, y, color="#12406b", linewidth=1.8)
+    ax.set(xlabel=words(labels[0]), ylabel=words(labels[1]), ylim=(min(0.0, float(y.min())), None))
+    _small(ax)
+    return figure
 
 
 def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str, words: Words) -> Figure:

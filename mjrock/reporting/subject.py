@@ -21,14 +21,18 @@ from matplotlib.figure import Figure
 from .._version import __version__
 from ..plotting.masonry import blocks
 from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, NAMED, Array
+from ..quantities import GRAVITY, NAMED, Array, named
 from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code_check import d_0_of, displaced
+from ..study.loading.load_check import Borne
+from ..study.loading.push import Push
+from ..study.loading.pushover import PushoverCurve
 from .inputs import of_header
 from .markup import Markup, element, table
 from .pictures import SMALL, WIDE, Run, by_variant, wall_drawn
@@ -228,6 +232,25 @@ class ReportedMasonry(Reported):
         return figure
 
 
+def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
+    """The numbers of a static answer, by the key of their names."""
+
+    def length(d: float) -> str:
+        return words.quantity(d, "m", FOUND) if math.isfinite(d) else DASH
+
+    if isinstance(result, Collapse):
+        return [("borne_factor", words.number(result.multiplier, FOUND)), ("in_moving", named(result.moving))]
+    if isinstance(result, PushoverCurve):
+        start, peak, end = (words.number(value, FOUND) for value in (result.start, result.peak, result.end))
+        return [("borne_start", start), ("borne_peak", peak), ("borne_end", end)]
+    if isinstance(result, Push):
+        unit = "N" if result.unit == "N" else ""
+        return [("borne_peak", words.quantity(result.peak, unit, FOUND)), ("step_end", length(result.d_0))]
+    start = words.number(float(result.multiplier[0]), FOUND)
+    moving = named(result.start.moving)
+    return [("borne_start", start), ("step_end", length(result.d_0)), ("in_moving", moving)]
+
+
 def tied(response: Response, words: Words) -> list[str]:
     """What the ties of a response did: the largest force of one, how far the most drawn out was, the first break."""
     ties, drawn = response.ties, response.plastic
@@ -327,9 +350,8 @@ def versions(words: Words) -> list[tuple[str, ...]]:
     ]
 
 
-def code_chapter(solvers: Sequence[str], kinematic: bool, words: Words) -> list[tuple[str, ...]]:
-    """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer."""
-    used = [words("kinematic_analysis")] * kinematic + [words.or_else(f"solver_{solver}", solver) for solver in solvers]
+def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
+    """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer, with the analyses used."""
     keys = "origin", "basis", "field", "validation", "results"
     said = [(words(f"ntc_{key}"), words(f"ntc_{key}_said", version=__version__)) for key in keys]
     return [(words("ntc_kind"), "; ".join(used)), *said]

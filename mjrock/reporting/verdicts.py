@@ -12,10 +12,11 @@ from ..problem.wall.effect import Effect
 from ..quantities import require_kind, require_text, shown
 from ..study.loading.code import Code
 from ..study.loading.code_check import DynamicCheck, MechanismCheck, Step, Verdict
+from ..study.loading.load_check import Borne, LoadCheck, load_check
 from .markup import Markup, element, formula, table
 from .texts import DASH, FOUND, GIVEN, Words
 
-Check = MechanismCheck | DynamicCheck
+Check = MechanismCheck | DynamicCheck | LoadCheck
 REVERSED = ", reversed"
 """How the name of a reversed motion ends."""
 ABREAST = 4
@@ -29,17 +30,20 @@ class Mechanism(NamedTuple):
         name: what it is called.
         kinematic: the check on its push-over curve, or None.
         dynamic: those by dynamic runs.
+        loads: those of what is borne.
     """
 
     name: str
     kinematic: MechanismCheck | None
     dynamic: tuple[DynamicCheck, ...]
+    loads: tuple[LoadCheck, ...] = ()
 
     @property
     def subjects(self) -> list[object]:
         """What its checks are of, where they know it."""
         checked = [self.kinematic.mechanism] if self.kinematic else []
-        return [one for one in (*checked, *(check.case for check in self.dynamic)) if one is not None]
+        shaken = [check.case for check in self.dynamic]
+        return [one for one in (*checked, *shaken, *(check.subject for check in self.loads)) if one is not None]
 
     @property
     def least(self) -> Verdict:
@@ -55,7 +59,8 @@ class Mechanism(NamedTuple):
     def verdicts(self) -> tuple[Verdict, ...]:
         """All conditions."""
         first = self.kinematic.verdicts if self.kinematic else ()
-        return (*first, *(verdict for check in self.dynamic for verdict in check.verdicts))
+        others: tuple[Check, ...] = (*self.dynamic, *self.loads)
+        return (*first, *(verdict for check in others for verdict in check.verdicts))
 
 
 def required_checks(checks: object, alone: str) -> list[Mechanism]:
@@ -69,18 +74,23 @@ def required_checks(checks: object, alone: str) -> list[Mechanism]:
         return []
     found = []
     for name, given in (checks if isinstance(checks, Mapping) else {alone: checks}).items():
-        several = [given] if isinstance(given, Check) else given
+        several = [given] if isinstance(given, Check | Borne) else given
         if not isinstance(several, Sequence) or isinstance(several, str):
-            raise TypeError(f"checks = {shown(given)} is no MechanismCheck or DynamicCheck, nor several of them")
+            raise TypeError(
+                f"checks = {shown(given)} is no MechanismCheck, DynamicCheck or LoadCheck, nor several of them"
+            )
         if not several:
             raise ValueError(f"checks[{name!r}] is empty; at least one check is needed")
+        several = [load_check(one) if isinstance(one, Borne) else one for one in several]
         for one in several:
-            require_kind(f"checks[{name!r}]", one, MechanismCheck, DynamicCheck)
+            require_kind(f"checks[{name!r}]", one, MechanismCheck, DynamicCheck, LoadCheck)
         kinematic = [one for one in several if isinstance(one, MechanismCheck)]
         if len(kinematic) > 1:
             raise ValueError(f"checks[{name!r}] has {len(kinematic)} kinematic checks; name each mechanism")
         dynamic = tuple(one for one in several if isinstance(one, DynamicCheck))
-        found.append(Mechanism(require_text("a name of checks", name), kinematic[0] if kinematic else None, dynamic))
+        loads = tuple(one for one in several if isinstance(one, LoadCheck))
+        called = require_text("a name of checks", name)
+        found.append(Mechanism(called, kinematic[0] if kinematic else None, dynamic, loads))
     return found
 
 
@@ -158,7 +168,8 @@ def _conditions(verdict: Verdict, words: Words) -> list[str]:
     """Cells of one condition."""
 
     def amount(value: float) -> Markup:
-        said = words("overturned") if math.isinf(value) else words.quantity(value, verdict.unit, FOUND)
+        fell = math.isinf(value) and value == verdict.demand
+        said = words("overturned") if fell else words.quantity(value, verdict.unit, FOUND)
         return element("td", said, kind="right")
 
     kind = "holds" if verdict.holds else "fails"
@@ -189,7 +200,7 @@ def limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
     """What the kinematic checks do not cover."""
     codes = codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
     said = sentences(codes, "limit_seat", words)
-    for name, check, _ in mechanisms:
+    for name, check, *_ in mechanisms:
         if check and (gone := [state for state in check.states if check.broken_before(state)]):
             said.append(words("limit_broken", name=name, states=", ".join(gone)))
     return said

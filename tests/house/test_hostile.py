@@ -229,6 +229,7 @@ CALLS = OF_NUMBERS | {
             "damping": 0.0, "guided": None,
         },
     ),
+    "load_check": (mr.load_check, {"result": RESPONSE, "demand": 0.1}),
     "push": (mr.push, {"masonry": COLUMN, "driver": 1, "to": -0.01, "inertia": 0.01}),
     "mechanism_check": (
         mr.mechanism_check,
@@ -521,7 +522,7 @@ def test_every_public_entry_is_tried():
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "LimitCurve", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",
-        "records_in", "RecordSet", "components_in",
+        "records_in", "RecordSet", "components_in", "LoadCheck",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

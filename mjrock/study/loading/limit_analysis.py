@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -167,7 +167,9 @@ def collapse_multiplier(
         under = "the weight and the effects" if given else "the weight"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under {under}")
     found = limit_of(masonry, push, grown, constant, associated=dilates, ties=ties)
-    found = replace(found, wedged=wedged(masonry, given))
+    rows = cast(Mapping[str, ArrayLike], loads or {}).items()
+    growing = {name: tuple(np.asarray(load, dtype=float).tolist()) for name, load in rows}
+    found = replace(found, wedged=wedged(masonry, given), loads=growing, effects=given)
     if found.wedged:
         warn_of(
             f"{named(found.wedged)} would stand only by wedging, and slide down from joints that nothing presses "
@@ -216,7 +218,8 @@ def overturned(case: Case, direction: object, loads: Any) -> Collapse:
         return Collapse(math.inf, np.array([way, 0.0]), (), np.zeros((1, 3)))
     side = min(factors, key=lambda name: factors[name])
     motion = side * wall.weight / over[side] * wall.turning(0.0, side)
-    return Collapse(factors[side], np.array([way, 0.0]), ("wall",), np.atleast_2d(motion))
+    acting = {"loads": grown, "effects": case.effects}
+    return Collapse(factors[side], np.array([way, 0.0]), ("wall",), np.atleast_2d(motion), **acting)  # type: ignore[arg-type]
 
 
 def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from scipy.sparse import hstack
 
 from ....notebook import Drawn
 from ....quantities import Array, named
+from ...wall.effect import Effect
 from ..blocks.joints_in_space import axes_along
 from ..laws.joint_law import Law, shear_limit
 from ..masonry import Masonry
@@ -85,6 +87,8 @@ class Collapse(Drawn):
         wedged: names of blocks that stand only by wedging: friction holds them if their joints were pressed together
             before, and no load on joints without load presses them so. Solvers let them fall.
         pulls: of the ties among the effects, in their order [N], shape (ties,).
+        loads: the loads that grow, by the name of their block [N] and [N m], or of a wall as effects.
+        effects: what is constant.
     """
 
     multiplier: float
@@ -96,6 +100,8 @@ class Collapse(Drawn):
     masonry: Masonry | None = field(default=None, compare=False, repr=False)
     wedged: tuple[str, ...] = field(default=(), compare=False)
     pulls: Array | None = field(default=None, compare=False, repr=False)
+    loads: Mapping[str, tuple[float, ...]] | tuple[Effect, ...] = field(default=(), compare=False, repr=False)
+    effects: tuple[Effect, ...] = field(default=(), compare=False, repr=False)
 
     def __repr__(self) -> str:
         if not self.moving:
