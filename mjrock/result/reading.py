@@ -13,8 +13,8 @@ from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, named
-from ..scene.scene import Scene, is_quiet
-from .ending import Outcome, ending, masonry_ending
+from ..scene.scene import Scene, liveliness
+from .ending import Outcome, Standstill, ending, masonry_ending
 from .joint_motion import (
     JointMotion,
     JointRecord,
@@ -32,7 +32,7 @@ from .motion import SampledMotion
 from .rocking import Rocking, rocking_history
 
 TIME_AT_REST = 0.2
-"""Time without motion after which blocks that have left their joints lie still [s]."""
+"""Duration from which on blocks that have left their joints may lie still [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion
     times, peaks, impacts = rocking_history(case, t, theta, omega, motion.energy, uplift, released=released)
     slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return Reading(
-        *ending(case, t, theta, motion.energy, uplift.energy, motion.velocity[-1, 0]),
+        *ending(case, t, motion.pose[:, 0], motion.energy, uplift.energy, motion.velocity[-1, 0]),
         rocking=Rocking(impacts, peaks),
         count=case.returning(theta),
         peak_times=times,
@@ -99,18 +99,21 @@ def masonry_reading(
     drop = scene.at_rest[:, up] - motion.pose[:, :, up]
     below = drop - sunk_ground(masonry, case.supports, t)
     fallen = fallen_blocks(masonry, t, joints.parted, tilts(pose, scene.freedom), below)
-    quiet, opening = is_quiet(scene, float(motion.energy[-1]), motion.velocity[-1]), joints.opening.copy()
+    sizes = np.array([np.linalg.norm(outline, axis=1).max() for outline in scene.bodies.outlines])
+    standstill = Standstill.of(scene.bodies.names, sizes, t, motion.pose, liveliness(scene, motion.velocity[-1]))
+    quiet, opening = bool(abs(motion.energy[-1]) < scene.rest_energies[2]), joints.opening.copy()
     if beside is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
         past = past_support(case.standing, joints, lambda some: slips(case, scene, t[some], pose[some]))
         told = told_of_overhang({name: far for name, far in past.items() if name not in fallen})
     else:
         elsewhere = beside.left or bool(case.supports) or bool(case.actuators)  # energy at rest is another one there
-        quiet = quiet or (elsewhere and _lies_still(scene, t, motion))
+        quiet = quiet or (elsewhere and t[-1] > TIME_AT_REST)
         gone = below_everything(masonry, case.supports, t, drop)
         told = f" Below all fixed blocks, past the edge of any ground: {named(gone)}." if gone else ""
         np.maximum.at(opening, scene.contacts.joint, beside.widest)
-    outcome, message = masonry_ending(fallen, quiet, min(float(t[-1]), case.duration), everywhere=beside is not None)
+    end = min(float(t[-1]), case.duration)
+    outcome, message = masonry_ending(fallen, standstill, quiet, end, everywhere=beside is not None)
     return Reading(
         outcome,
         message + told,
@@ -136,9 +139,3 @@ def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
     shifted = np.hypot.reduce((last - first)[:, : freedom.translations], axis=1)
     far = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.bodies.extent
     return {name: end for name, distance in zip(scene.bodies.names, far, strict=True) if distance >= 0.5 * far.max()}
-
-
-def _lies_still(scene: Scene, t: Array, motion: SampledMotion) -> bool:
-    """Whether all blocks lie still: for the last 0.2 s the masonry was at rest, see `is_quiet`."""
-    last = motion.velocity[t >= t[-1] - TIME_AT_REST]
-    return t[-1] > TIME_AT_REST and all(is_quiet(scene, 0.0, velocity) for velocity in last)

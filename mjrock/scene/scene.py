@@ -224,17 +224,9 @@ class Scene:
         return digest.hexdigest()
 
 
-def is_quiet(scene: Scene, energy: float, velocity: Array) -> bool:
-    """Whether masonry rests: neither the energy that is left nor the motion of a block opens a joint.
-
-    The energy above rest is less than that of the springs at rest. What falls freely keeps its energy, and what slides
-    down loses some. So the kinetic energy of every block is less than its share of that of the springs too, by mass.
-
-    Args:
-        scene: the masonry.
-        energy: at the end, above the scene at rest [J].
-        velocity: at the end, shape (bodies, nv).
-    """
+def liveliness(scene: Scene, velocity: Array) -> float:
+    """The kinetic energy of a block of masonry over its share, by mass, of that of the springs at rest, with which it
+    opens a joint, the largest of all blocks [-], from the velocities, shape (bodies, nv)."""
     springs, bodies = float(scene.rest_energies[2]), scene.bodies
     moving = kinetic_energies(bodies.masses, bodies.products, velocity) / bodies.mass
-    return abs(energy) < springs and bool((moving < springs / bodies.mass.sum()).all())
+    return float(moving.max() * bodies.mass.sum() / springs) if springs > 0 else float("inf")

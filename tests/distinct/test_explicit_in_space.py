@@ -73,7 +73,7 @@ def test_a_block_slides_askew_as_coulomb_has_it(k_s):
 
 @pytest.mark.parametrize("k_s", [None, 1e9])
 def test_a_block_spins_to_rest_on_its_four_corners(k_s):
-    run = solve(block((1.0, 0.6, 0.4), 0.3, k_s=k_s, friction=0.3), 0.5, velocity=[(0, 0, 0, 0, 0, 3.0)], ledger=True)
+    run = solve(block((1.0, 0.6, 0.4), 0.3, k_s=k_s, friction=0.3), 1.6, velocity=[(0, 0, 0, 0, 0, 3.0)], ledger=True)
     arm, square = 0.5 * math.hypot(1.0, 0.6), (1.0 + 0.36) / 12
     assert run.peak[0] == pytest.approx(9 / (2 * 0.3 * G * arm / square), rel=1e-4)
     assert run.outcome is mr.Outcome.AT_REST

@@ -170,3 +170,37 @@ def test_masonry_that_moves_too_slowly_to_open_a_joint(in_space, solver, density
     for share, outcome in ((0.9, mr.Outcome.AT_REST), (1.1, mr.Outcome.TIME_ENDED)):
         velocity = in_axes((share * opens, 0.0, 0.0), in_space)
         assert solver(mr.MasonryCase(made, 1e-3, velocity=velocity)).outcome is outcome
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize(("speed", "outcome"), [(0.3, mr.Outcome.TIME_ENDED), (1e-3, mr.Outcome.AT_REST)])
+def test_a_tower_on_soft_joints_that_swings_is_not_at_rest(solver, speed, outcome):
+    """Its energy opens no joint. The message says how far its top has moved in the last second."""
+    tower = mr.Masonry.stack([mr.Block.from_size(1.0, 1.0)] * 2, joints=mr.Dry(k_n=1e7, friction=0.7, xi=0.0))
+    velocity = [[speed * (i + 0.5) / 2, 0, 0] for i in range(2)]
+    run = solver(mr.MasonryCase(tower, 1.5, velocity=velocity), output_step=0.01)
+    assert run.opening.max() < 2e-3
+    assert run.outcome is outcome
+    last = run.pose[run.t >= 0.5, 1]
+    far = np.hypot(*np.ptp(last[:, :2], axis=0)) + math.sqrt(0.5) * np.ptp(last[:, 2])
+    assert f"In the last second {tower.names[2]} moved by {1e3 * far:.2g} mm" in run.message
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_masonry_that_creeps_is_not_at_rest(in_space):
+    """It slides on smooth ground, with a thousandth of the energy that opens a joint, by 2 mm in the last second."""
+    made = masonry(BLOCK, in_space, k_n=1e7, friction=0.0)
+    for speed, outcome in ((2e-3, mr.Outcome.TIME_ENDED), (1e-4, mr.Outcome.AT_REST)):
+        run = mr.solve_explicit(mr.MasonryCase(made, 1.2, velocity=in_axes((speed, 0.0, 0.0), in_space)))
+        assert run.outcome is outcome
+        assert f"moved by {1e3 * speed:.2g} mm" in run.message
+
+
+def test_a_wall_that_swings_on_soft_contacts_is_not_at_rest():
+    """One rule for walls and masonry."""
+    soft = mr.Contacts.from_damping(WALL, k_base=3e6, xi_base=0.0)
+    for share, outcome in ((0.5, mr.Outcome.TIME_ENDED), (0.001, mr.Outcome.AT_REST)):
+        case = mr.Case(WALL, share * soft.uplift_rotation(WALL), 1.5, side_stop=False)
+        for run in (mr.solve_explicit(case, soft), mr.simulate(case, soft)):
+            assert run.outcome is outcome
+            assert "In the last second it moved by" in run.message
