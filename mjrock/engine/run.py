@@ -190,7 +190,7 @@ def explained(error: StepError, scene: Scene, h: float, accuracy: float | None) 
     """The error for the user: what happened and what to change."""
     sound = sound_timestep(scene.highest_frequency)
     if accuracy is not None:
-        advice = f"lower accuracy = {accuracy:g}, or fix the step: the largest sound one is {sound:.3g} s"
+        advice = f"give an accuracy below {accuracy:.3g}, or fix the step: the largest sound one is {sound:.3g} s"
     elif h > sound * (1 + 1e-9):
         advice = f"the largest sound step is {sound:.3g} s"
     else:

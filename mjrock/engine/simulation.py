@@ -41,6 +41,9 @@ from .stepping import fitted_steps, fixed_steps
 ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
 """Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground, whose rocking
 multiplies what an impact errs by (`scripts/measure/records_accuracy.py`)."""
+FINEST_REPEATED, SHARE_REPEATED = 1e-6, 1e-2
+"""Accuracy down to which a run that breaks down is repeated where none was asked for [-], and the share of one that was
+asked for down to which it is [-]."""
 
 
 def simulate(
@@ -67,13 +70,14 @@ def simulate(
         accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy from one impact to the next
             [-], 1e-8 to 0.1. None stands for 1e-3, and for 1e-4 for a wall on moving ground, whose rocking multiplies
             what an impact errs by. A run in which energy appears from nowhere is discarded and repeated with a tenth of
-            it, twice at most.
+            it, twice at most, or down to 1e-6 where none is given.
         newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.solref`.
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
             steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; the last is the end of the run.
-            Fixed steps are thinned to whole steps, None returns them all, and the run ends with the step that is
-            nearest to the duration. Fitted steps are interpolated at even distances, None stands for 1 ms.
+            Fixed steps are thinned to whole steps, None returns them all, with collisions one every 1 ms, and the run
+            ends with the step that is nearest to the duration. Fitted steps are interpolated at even distances, None
+            stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.engine.energy_work`.
         forces: whether to keep `forces` and `reactions` at every sample, see `Forces`. Those of fitted steps are of the
             step in whose window the sample lies.
@@ -82,8 +86,8 @@ def simulate(
         method: the constants of the method, see `mjrock.method`, for studies that vary them.
         collisions: whether MuJoCo finds the contacts itself, between boxes and hulls, so that blocks meet wherever they
             are and run on when they have fallen, see `mjrock.engine.plain`. Steps have one length; None stands for 0.1
-            over the highest frequency of the closed contacts for a wall, and 1 over it for masonry. It does not go with
-            accuracy, newmark_beta, coulomb and method.
+            over the highest frequency of the closed contacts for a wall and 0.5 over it for masonry, and for less with
+            strong dampers. It does not go with accuracy, newmark_beta, coulomb and method.
 
     Returns:
         The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, and `impacts`, `peaks` of a
@@ -109,8 +113,9 @@ def simulate(
     problem = problem_of(case, contacts)
     if require_flag("collisions", collisions):
         require_left_out(accuracy=accuracy, newmark_beta=newmark_beta, coulomb=coulomb, method=method)
-    accuracy = default_accuracy(case) if accuracy is None else accuracy
-    options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
+    aim = default_accuracy(case) if accuracy is None else accuracy
+    options = Options(case.duration, timestep, aim, newmark_beta, coulomb, output_step, ledger, forces, method)
+    finest = FINEST_REPEATED if accuracy is None else SHARE_REPEATED * options.accuracy
     if not collisions:
         require_still(case)
     if contacts is not None and contacts.base.friction is None:
@@ -135,7 +140,7 @@ def simulate(
         expect(interpreted_seconds(scene, course.duration, options.timestep))
         if options.timestep is None:
             warn_if_slow(scene)
-            run, settings = fitted(problem, scene, course, options)
+            run, settings = fitted(problem, scene, course, options, finest)
         else:
             warn_if_coarse(scene, options.timestep)
             warn_if_tiny(options.timestep, sound_timestep(scene.highest_frequency))
@@ -164,11 +169,13 @@ def default_accuracy(case: AnyCase) -> float:
     return ACCURACY_SHAKEN if case.rocks_on_moving_ground else ACCURACY
 
 
-def fitted(problem: Problem, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, Settings]:
+def fitted(
+    problem: Problem, scene: Scene, course: Course, options: Options, finest: float
+) -> tuple[EngineRun, Settings]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
     Raises:
-        SimulationError: if it breaks down with a hundredth of the accuracy too.
+        SimulationError: if it breaks down with the finest accuracy too.
     """
     used, method = options.accuracy, options.method
     while True:
@@ -182,7 +189,7 @@ def fitted(problem: Problem, scene: Scene, course: Course, options: Options) -> 
             run = EngineRun.judged(problem, scene, course, steps)
             return run, {"timestep": h, "accuracy": used, "newmark_beta": None, **took}
         except StepError as error:
-            if used < 0.02 * options.accuracy:
+            if used < 2 * finest:
                 raise explained(error, scene, h, used) from None
             used /= 10
 

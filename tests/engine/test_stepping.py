@@ -146,5 +146,20 @@ def test_a_run_that_makes_energy_is_repeated_finer(one_sided, contacts, monkeypa
     assert run.stats["accuracy"] == pytest.approx(1e-5)
     assert len(tried) == 3
     most = math.inf
-    with pytest.raises(mr.SimulationError, match=r"appeared from nowhere .* lower accuracy = 1e-05, or fix the step"):
+    with pytest.raises(mr.SimulationError, match=r"appeared from nowhere .* give an accuracy below 1e-06, or fix the"):
         mr.simulate(one_sided, contacts)
+    with pytest.raises(mr.SimulationError, match=r"appeared from nowhere .* give an accuracy below 1e-05, or fix the"):
+        mr.simulate(one_sided, contacts, accuracy=1e-3)
+
+
+@pytest.mark.parametrize("k_n", [1e8, 1e9])
+@pytest.mark.parametrize("speed", [0.05, 0.2])
+def test_an_undamped_block_that_is_thrown_down_is_answered(k_n, speed):
+    """It springs back with all of its energy, at the accuracy that is taken where none is given."""
+    ground = mr.Polygon([(-2, -1), (2, -1), (2, 0), (-2, 0)], fixed=True)
+    block = mr.Polygon([(-0.2, 0), (0.2, 0), (0.2, 0.4), (-0.2, 0.4)], density=1000.0)
+    masonry = mr.Masonry([ground, block], k_n=k_n, friction=0.5, xi=0.0, frequency=100.0)
+    half = math.pi * math.sqrt(block.mass / (0.4 * k_n))
+    run = mr.simulate(mr.MasonryCase(masonry, 3 * half, velocity=[[0, -speed, 0]]), output_step=half / 50)
+    assert run.energy[-1] == pytest.approx(run.energy[0], rel=5e-3)
+    assert run.velocity[:, 0, 1].max() == pytest.approx(speed, rel=0.02)
