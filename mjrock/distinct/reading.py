@@ -25,7 +25,7 @@ from .kinds.link import Kind
 from .kinds.ties import Ties
 from .rows import Row, Rows
 from .setup import Setup
-from .system import ENERGY, Books, Samples
+from .system import ENERGY, Books, Samples, System
 
 RESIDUAL_WARNED_OF = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
@@ -144,9 +144,15 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
 
 def plastic(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, work = next(table.rows for table in run.followed.system.links if isinstance(table, Ties)), run.books.links
-    first = ties["account"]
-    return plastic_of(run.scene, ties["drawn"], work[first], ties["broken"], work[first + 1])
+    ties, work, memory = ties_of(run.followed.system), run.books.links, run.setup.memory
+    first, reach = ties["account"], run.scene.ties.reach
+    before = np.zeros(len(ties)) if memory is None else ties_of(memory.system)["reach"] - reach
+    return plastic_of(run.scene, ties["drawn"], work[first], ties["broken"], work[first + 1], before=before)
+
+
+def ties_of(system: System) -> Rows:
+    """The rows of the ties of a system."""
+    return next(table.rows for table in system.links if isinstance(table, Ties))
 
 
 def reading_of(run: Run) -> Reading:

@@ -346,8 +346,8 @@ def placed_ends(moving: Moving, *ends: LinkEnd) -> Array:
     return np.stack([moving.placed(end.block, end.point[None])[:, 0] for end in ends], axis=1)
 
 
-def pulling(moving: Moving, tie: Anchored) -> tuple[Flags, Flags]:
-    """Whether a link acts at each frame, and whether it has broken.
+def pulling(moving: Moving, tie: Anchored, before: float = 0.0) -> tuple[Flags, Flags]:
+    """Whether a link acts at each frame, and whether it has broken, from how far its slider had moved before [m].
 
     A tie acts where it is longer than when it was slack or last yielded, and what also pushes acts always.
     """
@@ -355,6 +355,6 @@ def pulling(moving: Moving, tie: Anchored) -> tuple[Flags, Flags]:
     if not law.holds:
         return np.ones(len(moving.t), dtype=bool), np.zeros(len(moving.t), dtype=bool)
     elongation = elongation_of(moving, tie)
-    yielded = law.drawn(elongation)
+    yielded = law.drawn(elongation, before)
     broken: Flags = yielded > law.ultimate
     return (elongation > yielded) & ~broken, broken

@@ -127,16 +127,32 @@ def scene_of(case: AnyCase, contacts: Contacts | None = None, method: Method = M
     return problem_of(case, contacts).scene(method)
 
 
-def required_start(start: object, case: AnyCase) -> State:
+def require_known_ties(case: AnyCase) -> None:
+    """Raise a ValueError that names a tie of a case that can yield, of which a start does not say how far it has."""
+    for name, link in case.links.items():
+        if link.law.yields:
+            raise ValueError(
+                f"start is a pose and a velocity, which do not say how far {name} has yielded, whose strength is "
+                f"{link.law.strength:g} N; give solve_explicit the end of explicit steps of the same structure, or "
+                "follow the case in one run"
+            )
+
+
+def required_start(start: object, case: AnyCase, *, remembers: bool = False) -> State:
     """A start as pose and velocity of all bodies, of shape (bodies, 3), in space (bodies, 7) and (bodies, 6), finite.
+
+    Args:
+        start: the start.
+        case: that starts there.
+        remembers: whether what ties have yielded is taken from the memory of explicit steps, if the start has one.
 
     Raises:
         TypeError: if it is no pose and velocity.
         ValueError: for another shape, a value out of range, ties that yield among the effects, or a block that moves as
             its guide does not allow. A guide takes less than a thousandth of sqrt(g size) from it.
     """
-    if any(link.law.yields for link in case.links.values()):
-        raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
+    if not (remembers and isinstance(start, End) and start.memory is not None):
+        require_known_ties(case)
     if isinstance(start, End):
         start = tuple(start)
     if not isinstance(start, tuple | list) or len(start) != 2:

@@ -25,10 +25,11 @@ class Plastic(NamedTuple):
     """How far a tie has yielded by the end of a run, and whether it has broken.
 
     Args:
-        elongation: plastic elongation [m].
-        energy: the energy that this took [J].
-        broken: when the tie broke [s], infinite for one that did not.
-        lost: the elastic energy that it lost as it broke [J].
+        elongation: plastic elongation, also of the runs that this one carries on [m].
+        energy: the energy that it took in this run [J].
+        broken: when the tie broke [s], negative before this run, infinite for one that did not.
+        lost: the elastic energy that it lost as it broke in this run [J].
+        before: by how much its slider had moved when this run began [m].
         start: elongation at which it bears nothing at rest [m], of a link that is put in when the wall stands.
     """
 
@@ -36,15 +37,17 @@ class Plastic(NamedTuple):
     energy: float
     broken: float = math.inf
     lost: float = 0.0
+    before: float = 0.0
     start: float = 0.0
 
 
-def plastic_of(scene: Scene, *columns: Array) -> dict[str, Plastic]:
-    """Plastic elongation and energy of each link of a scene, from the fields of `Plastic` but `start`, shape (links,)
-    each.
+def plastic_of(scene: Scene, *columns: Array, before: Array | float = 0.0) -> dict[str, Plastic]:
+    """Plastic elongation and energy of each link of a scene, from the fields of `Plastic` in their order, shape
+    (links,) each. Its `start` follows from the scene.
     """
     links = scene.links.sprung
-    rows = zip(links.names, *columns, scene.ties.reach - links.law["reach"], strict=True)
+    starts = scene.ties.reach - links.law["reach"]
+    rows = zip(links.names, *columns, np.broadcast_to(before, starts.shape), starts, strict=True)
     return {name: Plastic(*map(float, values)) for name, *values in rows}
 
 
@@ -81,14 +84,15 @@ def motion_of_ties(moving: Moving, plastic: Mapping[str, Plastic]) -> dict[str, 
 
 def _motion(moving: Moving, tie: Anchored, ended: Plastic | None) -> TieMotion:
     elongation, law, t = elongation_of(moving, tie), tie.law, moving.t
+    before = 0.0 if ended is None else ended.before
     if law.push > 0:
         elongation = elongation - (0.0 if ended is None else ended.start)
-        drawn = law.drawn(elongation)
+        drawn = law.drawn(elongation, before)
         force = law.k * (elongation - drawn)
         return TieMotion(elongation, drawn, force, float(np.abs(force).max()), math.inf)
     broken = math.inf if ended is None else ended.broken
     pulls = t < broken
-    drawn = np.minimum(law.drawn(elongation), law.ultimate)
+    drawn = np.minimum(law.drawn(elongation, before), law.ultimate)
     if broken < math.inf:
         drawn = np.where(pulls, drawn, law.ultimate)
     force = np.where(pulls, np.clip(law.k * (elongation - drawn), 0.0, law.strength), 0.0)
@@ -126,7 +130,8 @@ def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
     """Which ties broke, and when, as sentences after a message; an empty text where none did."""
     broken = sorted((tie.broken, name, tie) for name, tie in plastic.items() if tie.broken < math.inf)
     return "".join(
-        f" {name} broke at {when:.4g} s, drawn out by {1e3 * tie.elongation:.3g} mm." for when, name, tie in broken
+        f" {name} broke {f'at {when:.4g} s' if when >= 0 else 'before'}, drawn out by {1e3 * tie.elongation:.3g} mm."
+        for when, name, tie in broken
     )
 
 

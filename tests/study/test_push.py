@@ -378,3 +378,87 @@ def test_an_angle_is_for_a_direction_in_space():
 def test_a_displacement_of_nothing_is_refused():
     with pytest.raises(ValueError, match=r"to = 1e-300 m is outside the valid range 1e-06 to 10 m"):
         mr.push(mr.Masonry.column(width=0.5, height=2.0, drums=2), 1, to=1e-300)
+
+
+STRENGTH = 3e3
+TIE = mr.Tie(stiffness=2e7, strength=STRENGTH, at=(-B, 1.6 * H), anchor=(-B - 20.0, 1.6 * H), block="panel")
+
+
+def with_tie(theta):
+    """Force at the left top corner [N], and multiplier, of the rigid panel that a tie of its strength holds back."""
+    sine, cosine = np.sin(theta), np.cos(theta)
+    bears = WEIGHT * (B * cosine - H * sine) + STRENGTH * (1.6 * H * cosine + 2 * B * sine)
+    return bears / (2 * H * cosine + 2 * B * sine), bears / WEIGHT / (H * cosine + B * sine)
+
+
+@pytest.mark.slow
+def test_an_actuator_pushes_against_a_tie_that_yields(few_pieces):
+    """Every piece goes on from what the tie has yielded before."""
+    push = mr.push(panel(0.9, k_n=1e10), JACK, 0.08, effects=TIE)
+    turns = np.linspace(0.0, ALPHA, 2000)
+    theta = np.interp(push.displacement, 2 * B * (1 - np.cos(turns)) + 2 * H * np.sin(turns), turns)
+    yields = push.displacement > 5e-3
+    np.testing.assert_allclose(push.force[yields], with_tie(theta)[0][yields], rtol=0.02)
+    drawn = 1.6 * H * np.sin(theta[-1]) + 2 * B * (1 - np.cos(theta[-1])) - STRENGTH / 2e7
+    assert push.answer.plastic["tie_0"].elongation == pytest.approx(drawn, rel=0.02)
+    assert push.answer.ties["tie_0"].plastic[-1] == pytest.approx(push.answer.plastic["tie_0"].elongation, rel=1e-3)
+    assert push.answer.ties["tie_0"].force[-1] == pytest.approx(STRENGTH, rel=1e-6)
+    work = work_of(push)
+    assert work == pytest.approx(push.energy[-1] - push.energy[0], rel=0.02)
+
+
+@pytest.mark.slow
+def test_a_direction_pushes_against_a_tie_that_breaks(few_pieces):
+    """Beyond its ultimate the panel bears what it bears alone."""
+    push = mr.push(panel(0.9, k_n=1e10), 1, 0.05, effects=replace(TIE, ultimate=0.03))
+    theta = rotation(push.displacement)
+    lengthened = 1.6 * H * np.sin(theta) + 2 * B * (1 - np.cos(theta)) - STRENGTH / 2e7
+    held, free = (lengthened > 2e-3) & (lengthened < 0.029), lengthened > 0.033
+    assert held.sum() > 5 < free.sum()
+    np.testing.assert_allclose(push.force[held], with_tie(theta)[1][held], rtol=0.02)
+    np.testing.assert_allclose(push.force[free], np.tan(ALPHA - theta)[free], rtol=0.02)
+    assert "tie_0 broke before" in push.answer.message
+
+
+@pytest.mark.slow
+def test_a_push_to_and_fro_against_a_friction_damper(few_pieces):
+    """It slips both ways, as in one run along the same path."""
+    damper = mr.FrictionDamper(1.6 * H, 2e7, STRENGTH, block="panel")
+    turns = [0.01, -0.01, 0.005]
+    push = mr.push(panel(0.9, k_n=1e10), JACK, turns, effects=damper)
+    path = np.concatenate([[0.0], turns])
+    times = np.append(0.0, np.cumsum(np.abs(np.diff(path)))) / 0.02
+    driven = replace(JACK, displacement=(times, path), damping=2.5e5)
+    case = mr.MasonryCase(panel(0.9, k_n=1e10), times[-1], effects=(damper, driven))
+    run = mr.solve_explicit(case, output_step=5e-3)
+    assert push.answer.plastic["friction_damper_0"].elongation == pytest.approx(
+        run.plastic["friction_damper_0"].elongation, rel=0.02
+    )
+    for name in ("elongation", "plastic", "force"):
+        ends = [getattr(answer.ties["friction_damper_0"], name)[-1] for answer in (push.answer, run)]
+        assert ends[0] == pytest.approx(ends[1], rel=0.02, abs=1e-4)
+    assert np.abs(push.force).max() == pytest.approx(with_tie(0.0)[0], rel=0.02)
+
+
+def test_ties_that_have_yielded_carry_on():
+    """A run in two parts has the motion, the forces and the ties of one run; the end alone knows what they yielded."""
+    sine = mr.GroundMotion.sine(4.0, 0.5)
+    effects = (TIE, mr.FrictionDamper(1.2 * H, 5e6, 500.0, block="panel"))
+    case = mr.MasonryCase(panel(0.9, k_n=1e9), 0.8, motion=sine, effects=effects)
+    whole = mr.solve_explicit(case, timestep=5e-5, forces=True)
+    first = mr.solve_explicit(replace(case, duration=0.4), timestep=5e-5)
+    assert first.plastic["tie_0"].elongation > 1e-4
+    later = mr.GroundMotion(np.asarray(sine.accel)[round(0.4 / sine.dt) :], sine.dt)
+    second = mr.solve_explicit(replace(case, duration=0.4, motion=later), timestep=5e-5, forces=True, start=first.end)
+    np.testing.assert_allclose(second.pose, whole.pose[400:], atol=1e-8 * np.abs(whole.pose).max())
+    for name in ("tie_0", "friction_damper_0"):
+        assert second.plastic[name].elongation == pytest.approx(whole.plastic[name].elongation, rel=1e-6)
+        np.testing.assert_allclose(second.forces.links[name], whole.forces.links[name][400:], atol=1e-2)
+        np.testing.assert_allclose(second.ties[name].force, whole.ties[name].force[400:], atol=1e-2)
+    known = r"do not say how far tie_0 has yielded, whose strength is 3000 N; give solve_explicit the end"
+    for solver, start in ((mr.simulate, first.end), (mr.solve_explicit, tuple(first.end))):
+        with pytest.raises(ValueError, match=known):
+            solver(replace(case, duration=0.4), start=start)
+    other = replace(case, masonry=panel(0.9, k_n=2e9), duration=0.4)
+    with pytest.raises(ValueError, match=known):
+        mr.solve_explicit(other, start=first.end)

@@ -114,13 +114,14 @@ class LinkLaw(NamedTuple):
         broken = self.strength < math.inf and beyond > self.strength / self.k + self.ultimate
         return 0.0 if broken or beyond < -SHORTER else self.strength
 
-    def drawn(self, elongation: Array) -> Array:
-        """How far the slider has moved along elongations beyond the slack [m], shape (n,), if nothing breaks."""
+    def drawn(self, elongation: Array, before: float = 0.0) -> Array:
+        """How far the slider has moved along elongations beyond the slack [m], shape (n,), if nothing breaks, from
+        where it was before [m]."""
         stretch, squeeze = self.strength / self.k, self.push / self.k
         if squeeze == 0:
-            return np.maximum.accumulate(np.maximum(elongation - stretch, 0.0))
+            return np.maximum.accumulate(np.maximum(elongation - stretch, before))
         slid = accumulate(
-            elongation.tolist(), lambda at, length: min(max(at, length - stretch), length + squeeze), initial=0.0
+            elongation.tolist(), lambda at, length: min(max(at, length - stretch), length + squeeze), initial=before
         )
         return np.array(list(slid)[1:])
 

@@ -25,6 +25,7 @@ from ...problem.wall.effect import Effect
 from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown, warn_of
 from ...result.problem import required_start
 from ...result.response import End, Response, State
+from ...result.ties import warn_of_ties
 from .limit_analysis import horizontal
 from .pushover import falls_to_zero
 
@@ -195,7 +196,7 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: objec
         warnings.simplefilter("ignore", Implausible)
         case = MasonryCase(masonry, 1.0, effects=effects)  # type: ignore[arg-type]
     if start is not None:
-        required_start(start, case)
+        required_start(start, case, remembers=True)
     return case
 
 
@@ -282,6 +283,7 @@ class Pushing:
             case = replace(self.case, duration=t[-1], effects=(*self.case.effects, driven))
             warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
             warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
+            warnings.filterwarnings("ignore", ".* was drawn out by")  # said at the end
             answer = self._answer(case)
         *_, force = answer.actuators.values()  # effects may have others
         gone = np.interp(answer.t, t, path)
@@ -516,6 +518,7 @@ def _pushed(load: Pushing, allowed: float, falls_to: float) -> Push:
     displacement, force, inertia, energy = (np.concatenate(part) for part in zip(*points, strict=True))
     push = Push(displacement, force, inertia, ended, piece.answer, load.unit, energy=energy)
     warn_if_fast(push, load.weight)
+    warn_of_ties(piece.answer.case, piece.answer.plastic)
     return push
 
 
