@@ -54,8 +54,8 @@ def solve_explicit(
         case: the wall, its release, its sides; or masonry and what moves it.
         contacts: the interfaces of the wall; masonry has its own joints.
         timestep: length of a step [s], 1e-12 to 1; None takes 0.4 of the longest stable one for masonry, less where
-            dashpots are strong, and 0.05 of it for a wall, whose impacts are read one by one, shortened to a whole
-            share of the spacing of the samples.
+            dashpots are strong or ties stiff, and 0.05 of it for a wall, whose impacts are read one by one, shortened
+            to a whole share of the spacing of the samples.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. The last
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
             may be shorter, and the run ends with the step that is nearest to the duration.
@@ -63,7 +63,7 @@ def solve_explicit(
         forces: whether to keep `forces` and `reactions` at every sample, see `Forces`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. The end of
             explicit steps of the same structure carries on to rounding, histories of supports from wherever they have
-            ended. It does not go with ties that yield.
+            ended. Ties that yield go with such an end alone.
         mass_damping: rate at which every velocity decays [1/s], 0 to 1e4, for slow motions.
         local_damping: share of the unbalanced force along each axis of a body that acts against its velocity, for slow
             motions of masonry with k_s [-], 0 to 0.9. The account "motion" of the dashpots has what both take.
@@ -93,7 +93,7 @@ def solve_explicit(
     if timestep is not None:
         timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
-    state = None if start is None else required_start(start, case)
+    state = None if start is None else required_start(start, case, remembers=True)
     if start is None:
         warn_if_still(case, forces=forces)
     with first_answer(solve_shortly, case=case, contacts=contacts):

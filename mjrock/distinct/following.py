@@ -15,6 +15,7 @@ from ..compiled import for_types_of
 from ..quantities import Array
 from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
+from .limit import LEAD, STABLE_AHEAD
 from .loop import Clock, advance
 from .memory import Memory, remember
 from .rows import MAY_BE_INFINITE, unsound
@@ -25,9 +26,6 @@ from .system import Books, Samples, System
 
 CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
 """Steps from one check of the energy to the next, and most checks."""
-LEAD = 0.5
-"""By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
-In long steps what is foreseen is worse than that velocity, see `Setup.foresees`."""
 FIRST_CALL = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
 HEARD = 0.3
@@ -126,6 +124,8 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     )
     clock = clock._replace(lead=LEAD if setup.foresees(stepping.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)
+    for table in system.links:
+        table.look_ahead(LEAD if stepping.h <= STABLE_AHEAD * setup.limit else 0.0)
     next_search, steps = 0, advance
     require_sound_rows(system)
     if memory is not None:

@@ -30,6 +30,12 @@ from .rows import Rows
 from .system import System
 from .turning import roots_of_masses
 
+LEAD = 0.5
+"""By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
+In long steps what is foreseen at a contact is worse than that velocity, see `Setup.foresees`."""
+STABLE_AHEAD = 0.5
+"""Step up to which a dashpot that looks ahead by half a step is stable, over the longest one in which it is stable
+otherwise [-]: it acts as one of twice its strength."""
 LAGGED = 0.01
 """Error of |e| from which on dashpots look ahead [-]."""
 BRAKING = 0.1
@@ -41,12 +47,11 @@ below a third, and its error below 0.5 % of the speed of approach."""
 
 def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
-    lines, bodies = system.lines, len(system.bodies)
+    lines, bodies = stiffest_lines(system), len(system.bodies)
     rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
     links = [table for table in system.links if any(of.any() for of in table.springs())]
     rates += [table.rates(system.bodies) for table in links]
-    lengths, roots = csr_array(vstack(rates)), [coo_array(root) for root in roots_of_masses(system.bodies)]
-    root = csr_array(block_diag(roots))
+    lengths, root = csr_array(vstack(rates)), root_of_masses(system)
 
     def weights(i: int) -> Array:
         along, across = ((largest_stiffness(lines), lines["k_s"]), (lines["c"], lines["c_s"]))[i]
@@ -54,6 +59,31 @@ def longest_step(system: System) -> float:
         return np.concatenate([along, *ways, *(table.springs()[i] for table in links)])
 
     return stable_step(*(highest(lengths, weights(i), root) for i in range(2)))
+
+
+def rates_of_links(system: System) -> tuple[float, float]:
+    """The highest circular frequency of the bodies on the springs of links alone, and the highest rate at which
+    dashpots of links without a spring let a velocity decay [1/s]. Actuators, which follow histories, are left out."""
+    links = [table for table in system.links if table.told != "actuators" and any(of.any() for of in table.springs())]
+    if not links:
+        return 0.0, 0.0
+    k, c = (np.concatenate([table.springs()[i] for table in links]) for i in range(2))
+    lengths, root = csr_array(vstack([table.rates(system.bodies) for table in links])), root_of_masses(system)
+    return math.sqrt(highest(lengths, k, root)), highest(lengths, np.where(k > 0, 0.0, c), root)
+
+
+def root_of_masses(system: System) -> csr_array:
+    """R with R R^T = M^-1, shape (unknowns, unknowns)."""
+    return csr_array(block_diag([coo_array(root) for root in roots_of_masses(system.bodies)]))
+
+
+def stiffest_lines(system: System) -> Rows:
+    """The lines with the largest springs and dashpots that they may have with the laws of their joints."""
+    lines = system.lines.copy()
+    for law in system.laws:
+        for name, most in law.springs().items():
+            lines[name][: len(most)] = np.maximum(lines[name][: len(most)], most)
+    return lines
 
 
 def highest(rates: csr_array, weights: Array, root: csr_array) -> float:
@@ -103,7 +133,7 @@ class Impacts(NamedTuple):
     @classmethod
     def at_joints(cls, system: System) -> Impacts:
         """Those of the joints of a system, which are the groups of its lines."""
-        lines, inverse = system.lines, np.asarray(system.bodies["inverse_mass"])
+        lines, inverse = stiffest_lines(system), np.asarray(system.bodies["inverse_mass"])
         along = np.asarray(lines["normal"]) ** 2
         inverse_mass = (inverse[lines["body"]] * along).sum(axis=1)
         inverse_mass += np.where(lines["face"] >= 0, (inverse[np.maximum(lines["face"], 0)] * along).sum(axis=1), 0.0)
@@ -114,6 +144,10 @@ class Impacts(NamedTuple):
         stiffness, damping = (inverse_mass * np.bincount(joint, each[moves]) for each in springs)
         frequency = np.sqrt(stiffness)
         return cls(frequency, damping / (2 * frequency))
+
+    def beside(self, others: Impacts) -> Impacts:
+        """These and others."""
+        return Impacts(*map(np.concatenate, zip(self, others, strict=True)))
 
     def lag(self, h: float) -> Array:
         """How much |e| falls in steps of h [s] since dashpots take the velocity half a step before the pose [-]."""

@@ -30,7 +30,7 @@ from .contacts.contact import press_lines, settle_touches
 from .contacts.friction import book_rubbing, sheared, stick
 from .contacts.touches import in_transit, was_open
 from .gathering import keep_burden, keep_forces
-from .kinds.lists import act_all, hold_all, stored_by_laws
+from .kinds.lists import act_all, hold_all, settle_all, stored_by_laws
 from .rows import Rows
 from .slowing import oppose, slow_down
 from .supports import move_supports
@@ -257,8 +257,9 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
         kick_bodies(system.bodies, kick)
         stick(system, books.active, sticking, kick)
         taken, put_in = settle_touches(system, books, touched, kick)
-        samples.energy[kept].elastic += taken
-        samples.energy[kept].ground += put_in
+        by_links, put_in_by_links = settle_all(system.links, system, books, kick)
+        samples.energy[kept].elastic += taken + by_links
+        samples.energy[kept].ground += put_in + put_in_by_links
         if accounted:
             rubbed, put_in = book_rubbing(system, books, sticking)
             if before > 0:  # halves that belong to the time before the pose

@@ -14,16 +14,16 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import ON_ITS_FACE, require_within
-from ..result.problem import Problem, problem_of
+from ..result.problem import Problem, problem_of, require_known_ties
 from ..result.response import State
 from ..scene.course import Course
-from ..scene.explicit_step import STEP_TAKEN
 from ..scene.scene import Scene
 from .assembly import begin_open, copied, guide, moved_by, started, system_of, take_grips
 from .kinds.lists import laws_of, links_of
-from .limit import Impacts, longest_step
+from .limit import STABLE_AHEAD, Impacts, longest_step
 from .memory import Memory, memory_of, recalled
 from .search.contact_search import ContactSearch
+from .step_length import StepLength
 from .system import System
 
 LOOK_AHEAD_BELOW = 0.25
@@ -31,9 +31,6 @@ LOOK_AHEAD_BELOW = 0.25
 SHARE_OF_A_WALL = 0.05
 """Step that is taken for a wall, over the longest stable one [-]. The first three |e| of a wall against a stop are then
 within 0.04 %, and with 0.1 within 0.11 %."""
-SPLINTERS = 0.1
-"""Least share of the longest stable step of the joints to which that of blocks without a joint shortens it [-]. Lighter
-ones have softer contacts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +70,9 @@ class Setup:
     local: float = 0.0
 
     def foresees(self, h: float) -> bool:
-        """Whether dashpots look ahead in steps of h [s].
-
-        Half a step ahead of the velocity, a dashpot is stable in half of the step that it is stable in otherwise.
-        """
+        """Whether dashpots of contacts look ahead in steps of h [s]."""
         wanted = self.impacts is not None and self.impacts.look_ahead(h)
-        return h <= LOOK_AHEAD_BELOW * self.limit or (wanted and h <= 0.5 * self.limit)
+        return h <= LOOK_AHEAD_BELOW * self.limit or (wanted and h <= STABLE_AHEAD * self.limit)
 
     @property
     def is_slowed(self) -> bool:
@@ -114,9 +108,15 @@ def setup_of(case: Case | MasonryCase, contacts: Contacts | None, state: State |
 
 
 def carried_on(setup: Setup, start: object) -> Setup:
-    """The setup that carries on the steps of another run, if the start is the end of one of the same structure."""
+    """The setup that carries on the steps of another run, if the start is the end of one of the same structure.
+
+    Raises:
+        ValueError: for ties that yield, of which another start does not say how far they have.
+    """
     memory = memory_of(start, setup.of)
     if memory is None:
+        if start is not None:
+            require_known_ties(setup.problem.case)
         return setup
     if setup.search is not None and memory.search is not None:
         setup.search.state = deepcopy(memory.search)
@@ -144,22 +144,19 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
     acts = any(len(table.rows) for table in passive)
     unguided = longest_step(system._replace(links=passive)) if acts else at_rest.limit
     guide(system, case)
-    limit = longest_step(system) if case.actuators else unguided
-    impacts = Impacts.at_joints(system)
-    step = impacts.step(STEP_TAKEN * min(limit, max(at_rest.search.longest, SPLINTERS * min(limit, unguided))))
-    share, system = step / limit, system._replace(laws=laws_of(scene, system.lines))
+    limit, step, impacts = StepLength.of(system, unguided, at_rest.search)
     of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
     search = at_rest.search.begun(blocks)
     started(system, course.pose, course.velocity)
     apart = {"search": search, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
-    return Setup(problem, scene, course, system, limit, share, **apart)  # type: ignore[arg-type]
+    return Setup(problem, scene, course, system, limit, step / limit, **apart)  # type: ignore[arg-type]
 
 
 class AtRest(NamedTuple):
     """What cases with the same scene share.
 
     Args:
-        system: of masonry at rest, or as drawn where it is not settled, without links.
+        system: of masonry at rest, or as drawn where it is not settled, with the laws of its joints, without links.
         search: its blocks as they may meet.
         limit: the longest stable step without links [s].
     """
@@ -179,4 +176,6 @@ def standing(scene: Scene) -> AtRest:
         started(system, pose)
     else:
         begin_open(system.lines, scene)
-    return AtRest(system, ContactSearch(scene, system), longest_step(system))
+    search = ContactSearch(scene, system)
+    system = system._replace(laws=laws_of(scene, system.lines))
+    return AtRest(system, search, longest_step(system))

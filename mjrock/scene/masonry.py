@@ -224,7 +224,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             masonry.joint_friction,
             masonry.residual_friction,
             masonry.table.points,
-            None if masonry.pairs is None else masonry.of_pair,
+            masonry.of_pair if callable(masonry.pairs) else masonry.of_pair(0, 1),
         ),
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
     )

@@ -386,8 +386,8 @@ class JointSprings(NamedTuple):
         friction: coefficient [-].
         residual: the same of a joint that has lost its bond [-].
         points: contact lines of a joint of the plane, and of each side of a joint in space.
-        of_pair: what two blocks without a joint have where they meet, by their numbers, or None where their joints say
-            it; None where nothing is given.
+        pairs: what all blocks without a common joint have where they meet, or a function of the numbers of two that
+            gives it, or None where their joints say it; None where nothing is given.
     """
 
     k_n: Array
@@ -396,7 +396,11 @@ class JointSprings(NamedTuple):
     friction: Array
     residual: Array
     points: Integers
-    of_pair: Callable[[int, int], Meets | None] | None = None
+    pairs: Meets | Callable[[int, int], Meets | None] | None = None
+
+    def of_pair(self, one: int, other: int) -> Meets | None:
+        """What two blocks without a joint have where they meet, by their numbers, or None where nothing is given."""
+        return self.pairs(one, other) if callable(self.pairs) else self.pairs
 
 
 @dataclass(frozen=True)

@@ -213,6 +213,7 @@ def test_a_heap_comes_to_rest():
     assert np.abs(run.pose[-1] - run.pose[600]).max() < 1e-5
 
 
+@pytest.mark.filterwarnings("ignore:dashpots, c/k")
 @pytest.mark.parametrize("in_space", [False, True])
 def test_a_pillar_lands_on_its_edge_with_the_default_step(in_space):
     """Its corner moves four times as easily as its base, whose joint decides the step."""
@@ -226,6 +227,7 @@ def test_a_pillar_lands_on_its_edge_with_the_default_step(in_space):
     assert run.stats["overlap"] < 0.01
 
 
+@pytest.mark.filterwarnings("ignore:dashpots, c/k")
 @pytest.mark.parametrize(("share", "xi"), [(0.8, 0.0), (0.8, 0.1), (0.98, 0.1)])
 def test_a_plate_between_two_walls_is_stable_with_steps_that_its_base_allows(share, xi):
     blocks = [

@@ -32,7 +32,7 @@ def scene(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
         for (low, high), width in zip(ends, widths, strict=True)
     ]
     springs = {name: np.ones(len(ends)) for name in ("k_n", "k_s", "retardation")}
-    springs |= {"residual": residual, "of_pair": None}
+    springs |= {"residual": residual, "pairs": None}
     return SimpleNamespace(
         standing=SimpleNamespace(solids=blocks, joints=joints),
         springs=SimpleNamespace(**springs | {name: np.array(each) for name, each in known.items()}),

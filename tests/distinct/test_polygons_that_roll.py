@@ -71,6 +71,7 @@ def thrown(seed):
     return corners, rng.choice([0.6, 2.0, 5.0]), (1.5, 0.0, rng.uniform(2, 6))
 
 
+@pytest.mark.filterwarnings("ignore:dashpots, c/k")
 @pytest.mark.parametrize("seed", among(range(24), 3))
 def test_a_polygon_that_is_thrown_sinks_by_no_more_than_the_overlap_of_its_landing(seed):
     """One line has at least half of what the joint has on which it stood, and stops no more than all of the mass at the

@@ -98,13 +98,15 @@ def test_a_link_is_where_its_ends_are(d, end):
 @pytest.mark.parametrize("longer", [0.01, -0.01])
 @pytest.mark.parametrize("push", [0.0, 1e9])
 def test_a_tie_pulls_where_it_is_longer_than_its_slack_and_a_spring_pushes_too(d, end, longer, push):
-    whole, tie, _ = linked(d, end, k=2e3, strength=1e9, ultimate=1.0, pulled=-3.0)
+    stretch = longer if push else max(longer, 0.0)
+    last = -3.0 if stretch else 0.0  # it was as taut in the step before
+    whole, tie, _ = linked(d, end, k=2e3, strength=1e9, ultimate=1.0, pulled=last)
     tie.reach, tie.push = geometry(whole, end)[0] - longer, push
-    account, stretch = books(whole), longer if push else max(longer, 0.0)
+    account = books(whole)
     act(whole, account)
     assert_pulled(whole, end, -2e3 * stretch)
     assert tie.pulled == pytest.approx(-2e3 * stretch, rel=1e-10)
-    work = 0.5 * H * (-3.0 - 2e3 * stretch) * carried(whole, end)
+    work = 0.5 * H * (last - 2e3 * stretch) * carried(whole, end)
     assert account.totals[0].ground == pytest.approx(work, rel=1e-10)
     assert held(whole, account) == pytest.approx((0.0, 0.5 * 2e3 * stretch**2, 0.0), rel=1e-9)
     assert (tie.drawn, account.links[0], tie.broken) == (0.0, 0.0, math.inf)

@@ -15,19 +15,26 @@ from .link import Kind, Named, Table, book_support, lengthening, pull, push_apar
 
 
 class Dampers(Kind, Table):
-    """Dashpots, see `resistance`. They resist the rate of their length both ways."""
+    """Dashpots, see `resistance`. They resist the rate of their length both ways.
 
-    own = DASHPOT
+    `rate` is that of the last step [m/s], half a step before the pose, and `lead` by how many steps they look ahead.
+    """
+
+    own = (*DASHPOT, "rate", "lead")
     booked = ("dashpots",)
 
     @classmethod
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
-        return cls.linking(scene.links.damped, scene.dampers.links.between)
+        return cls.linking(scene.links.damped, scene.dampers.links.between, rate=0.0, lead=0.0)
 
     def springs(self) -> tuple[Array, Array]:
         """Their steepest slopes."""
         return np.zeros(len(self.rows)), steepest(self.rows)
+
+    def look_ahead(self, lead: float) -> None:
+        """All of them."""
+        self.rows["lead"] = lead
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
@@ -36,7 +43,9 @@ class Dampers(Kind, Table):
             damper = self.rows[i]
             now = pull(damper, system)
             rate = lengthening(damper, system, now)
-            force = -resistance(damper, rate)
+            lead = damper.lead if h > 0 else 0.0
+            force = -resistance(damper, rate + lead * (rate - damper.rate))
+            damper.rate = rate
             books.links[damper.account] -= 0.5 * h * (force + damper.pulled) * rate
             book_support(damper, system, books, now, force, h)
             push_apart(damper, system, now, force)

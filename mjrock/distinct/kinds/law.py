@@ -98,6 +98,11 @@ class JointLaw:
         """Whether a line still holds something beside friction. Its joint is then not handed over."""
         return bool(row.k > 0)
 
+    def springs(self) -> dict[str, Array]:
+        """The largest springs and dashpots of each line with this law, for the longest stable step: those of the dry
+        line unless a law has others. By the names of its numbers, shape (lines,) each."""
+        return {name: np.asarray(self.rows[name]) for name in ("k", "c", "k_s", "c_s")}
+
     def release(self, lines: Rows, which: Flags) -> None:
         """Give dry lines back what the law has taken over, where they are handed over."""
         which = which & (self.rows["k"] > 0)

@@ -17,6 +17,7 @@ from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, vector
 from ...linear import rates_of
 from ...problem.masonry.case import AnyCase
+from ...problem.wall.effect import LinkLaw
 from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
@@ -29,6 +30,9 @@ Named = tuple[tuple[str, ...], "Kind"]
 """The names of links, and the links."""
 Columns = dict[str, Array | Integers | float]
 """Numbers and vectors of links by name."""
+
+INFINITE_IN_LAW = tuple(name for name, usual in LinkLaw._field_defaults.items() if usual == math.inf)
+"""Numbers of the law of a link that may be infinite: those that are so where nothing else is given."""
 
 
 class Table(NamedTuple):
@@ -44,7 +48,7 @@ class Kind:
 
     Attributes:
         rows: a row for each link, with the numbers of `table` and `own` ones.
-        endless: those of them that may be infinite.
+        endless: numbers of a row that may be infinite.
         told: "links" where responses tell the forces among those of links, "actuators" among those of actuators.
         booked: the parts of the ledger in which each link has an account. That of row i begins at `rows[i].account` of
             `Books.links`.
@@ -52,7 +56,7 @@ class Kind:
 
     rows: Rows
     own: ClassVar[tuple[str, ...]] = ()
-    endless: ClassVar[tuple[str, ...]] = ()
+    endless: ClassVar[tuple[str, ...]] = INFINITE_IN_LAW
     told: ClassVar[str] = "links"
     booked: ClassVar[tuple[str, ...]] = ()
 
@@ -94,6 +98,13 @@ class Kind:
     def hold(self, system: System, books: Books, energy: Row) -> None:
         """Add what the links hold at the pose to the energy of a sample [J], see `system.ENERGY`."""
 
+    @inlined
+    def settle(self, system: System, books: Books, kick: float) -> tuple[float, float]:
+        """Let the links do what is left when all forces have acted for a time [s]. Returns the energy that the half of
+        it before the pose has taken, which a sample counts as held by them, and the work of supports in that half
+        [J]."""
+        return 0.0, 0.0
+
     def springs(self) -> tuple[Array, Array]:
         """The largest stiffness and damping coefficient of each link [N/m, N s/m], for the longest stable step."""
         named, none = self.rows.dtype.names or (), np.zeros(len(self.rows))
@@ -106,6 +117,9 @@ class Kind:
         between, arms = np.asarray(table["between"]), (np.asarray(table["at"]), np.asarray(table["origin"]))
         ways = between / np.linalg.norm(between, axis=1)[:, None]
         return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, ways, len(bodies))
+
+    def look_ahead(self, lead: float) -> None:
+        """Let dashpots look ahead by some steps, see `limit.LEAD`."""
 
     def surges(self, t: float, until: float) -> tuple[Integers, Array]:
         """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""
@@ -176,7 +190,11 @@ def book_support(link: Row, system: System, books: Books, now: Pull, force: floa
     """Book the work that the support of a link does in a time h, from the force of the last step to this one [N].
 
     The force is then that of the last step."""
-    if link.support >= 0:
-        carried = dot(now.way, vector(system.supports.moving, link.support, now.way))
-        books.totals[0].ground += 0.5 * h * (link.pulled + force) * carried
+    books.totals[0].ground += 0.5 * h * (link.pulled + force) * carried_along(link, system, now)
     link.pulled = force
+
+
+@inlined
+def carried_along(link: Row, system: System, now: Pull) -> float:
+    """Velocity along a link of the support that it is anchored on, zero for none [m/s]."""
+    return dot(now.way, vector(system.supports.moving, link.support, now.way)) if link.support >= 0 else 0.0

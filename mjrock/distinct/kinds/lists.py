@@ -24,7 +24,7 @@ KINDS: tuple[type[Kind], ...] = (Ties, Dampers, Actuators, ConstantForces)
 LAWS: tuple[type[JointLaw], ...] = (Bonds,)
 """The laws of joints beside the dry one, which all lines have."""
 
-act, hold, stored, lost, holds = (method(name) for name in ("act", "hold", "stored", "lost", "holds"))
+act, settle, hold, stored, lost, holds = (method(name) for name in ("act", "settle", "hold", "stored", "lost", "holds"))
 
 
 def links_of(scene: Scene, case: AnyCase, bodies: Rows) -> tuple[tuple[tuple[str, ...], ...], Tables]:
@@ -59,6 +59,18 @@ def act_all(tables: Tables, system: System, books: Books, t: float, h: float) ->
     if len(tables) > 0:
         act(tables[0], system, books, t, h)
         act_all(tables[1:], system, books, t, h)
+
+
+@inlined
+def settle_all(links: Tables, system: System, books: Books, kick: float) -> tuple[float, float]:
+    """Let the links of all kinds do what is left, see `Kind.settle`."""
+    if len(links) > 0:
+        (taken, put_in), (others, others_in) = (
+            settle(links[0], system, books, kick),
+            settle_all(links[1:], system, books, kick),
+        )
+        return taken + others, put_in + others_in
+    return 0.0, 0.0
 
 
 @inlined

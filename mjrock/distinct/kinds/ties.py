@@ -1,15 +1,22 @@
-"""Ties and other springs with a slider of explicit steps: they pull, or push too, and break."""
+"""Ties and other springs with a slider of explicit steps: they pull, or push too, and break.
+
+A tie that goes taut or slack inside a step pulls for the time that it is taut, as a contact presses for the time that
+it is closed, see `contacts.touches`: in the notation there, it is a line whose gap is the slack.
+"""
 
 from __future__ import annotations
 
 import math
 
 from ...compiled import inlined
+from ...geometry.vectors import scaled
 from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
+from ..contacts.touches import due_impulse
 from ..rows import Row, Rows
 from ..system import Books, System
-from .link import Kind, Named, Table, book_support, lengthening, pull, push_apart
+from ..turning import strike_body
+from .link import INFINITE_IN_LAW, Kind, Named, Pull, Table, book_support, carried_along, lengthening, pull, push_apart
 
 
 class Ties(Kind, Table):
@@ -17,18 +24,26 @@ class Ties(Kind, Table):
 
     `k` [N/m] acts from the length `reach` on [m], which the slider moves. It yields at the forces `strength` and `push`
     either way [N]. `drawn` is its plastic elongation and `ultimate` the limit of that [m]. It was `broken` at a time
-    [s], infinite for one that holds.
+    [s], infinite for one that holds. Where it has gone taut or slack in the last step, `struck` is its force beyond
+    that of its law [N], `due` what its spring is still to do for that [kg], and `transit` the work that is still to
+    come [J]. `rate` is the rate of its length in the last step [m/s].
     """
 
-    own = ("k", "reach", "strength", "push", "ultimate", "drawn", "broken")
-    endless = ("strength", "ultimate", "broken")
+    own = ("k", "reach", "strength", "push", "ultimate", "drawn", "broken", "struck", "due", "transit", "rate")
+    endless = (*INFINITE_IN_LAW, "broken")
     booked = ("ties", "broken")
 
     @classmethod
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene, where they bear nothing at rest if they push too."""
         ties = scene.ties
-        return cls.linking(scene.links.sprung, ties.links.between, reach=ties.reach, drawn=0.0, broken=math.inf)
+        begun = dict.fromkeys(("drawn", "struck", "due", "transit", "rate"), 0.0)
+        return cls.linking(scene.links.sprung, ties.links.between, reach=ties.reach, broken=math.inf, **begun)
+
+    def remembered(self, t: float) -> Ties:
+        """When they broke counts from there."""
+        self.rows["broken"] -= t
+        return self
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
@@ -39,6 +54,7 @@ class Ties(Kind, Table):
                 tie.pulled = 0.0
                 continue
             now = pull(tie, system)
+            meet_or_leave(tie, system, books, now, h)
             beyond = now.length - tie.reach - tie.strength / tie.k
             shorter = tie.reach - now.length - tie.push / tie.k
             if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
@@ -57,7 +73,25 @@ class Ties(Kind, Table):
                 books.links[tie.account] += tie.push * shorter
             force = -tie.k * elongation(tie, now.length)
             book_support(tie, system, books, now, force, h)
-            push_apart(tie, system, now, force)
+            push_apart(tie, system, now, force + tie.struck)
+
+    @inlined
+    def settle(self, system: System, books: Books, kick: float) -> tuple[float, float]:
+        """The second impulse of those that have gone taut or slack, see `touches`."""
+        taken, put_in = 0.0, 0.0
+        for i in range(len(self.rows)):
+            tie = self.rows[i]
+            if tie.due != 0:
+                now = pull(tie, system)
+                impulse = due_impulse(tie, lengthening(tie, system, now))
+                strike_body(system.bodies[tie.body], now.arm, scaled(impulse, now.way))
+                if tie.anchor >= 0:
+                    strike_body(system.bodies[tie.anchor], now.anchor_arm, scaled(-impulse, now.way))
+                put_in += 0.5 * impulse * carried_along(tie, system, now)
+                taken -= 0.5 * impulse * tie.rate
+                tie.struck, tie.due = tie.struck + impulse / kick, 0.0
+        books.totals[0].ground += put_in
+        return taken, put_in
 
     @inlined
     def hold(self, system: System, books: Books, energy: Row) -> None:
@@ -66,7 +100,32 @@ class Ties(Kind, Table):
             tie = self.rows[i]
             if tie.broken == math.inf:
                 stretched = elongation(tie, pull(tie, system).length)
-                energy.elastic += 0.5 * tie.k * stretched * stretched
+                energy.elastic += 0.5 * tie.k * stretched * stretched + tie.transit
+
+
+@inlined
+def meet_or_leave(tie: Row, system: System, books: Books, now: Pull, h: float) -> None:
+    """Write what a tie that only pulls does beyond its law in the last step, of length h, where it has gone taut or
+    slack, or begun to yield in it. The forces at the poses before and after the step act for half of it each, and the
+    tie pulled less or more than that."""
+    books.totals[0].ground += 0.5 * h * tie.struck * carried_along(tie, system, now)
+    tie.struck = tie.due = tie.transit = 0.0
+    if tie.push > 0 or h == 0:
+        return
+    tie.rate = lengthening(tie, system, now)
+    longer, held = now.length - tie.reach, -tie.pulled
+    if longer > 0 and tie.rate > 0 and (held == 0 or tie.k * longer > tie.strength > held):
+        taut = min(longer / tie.rate, h) if held == 0 else h
+        most = min(tie.k * longer, tie.strength)
+        rising = min((most - held) / (tie.k * tie.rate), taut)
+        tie.struck = 0.5 * (held + most) + (0.5 * (most - held) * rising - most * taut) / h
+        tie.due = -0.5 * tie.k * taut * (h - taut) if most < tie.strength else 0.0
+    elif longer <= 0 and held > 0 and tie.rate < 0:
+        taut = min(held / (tie.k * -tie.rate), h)
+        tie.struck = 0.5 * held * (h - taut) / h
+        tie.due = 0.5 * tie.k * taut * (h - taut)
+    tie.transit = 0.5 * h * tie.struck * tie.rate
+    books.totals[0].ground += 0.5 * h * tie.struck * carried_along(tie, system, now)
 
 
 @inlined

@@ -119,3 +119,6 @@ FLUSH = 1e-12
 """Distance within which faces of two blocks lie in one plane [m]."""
 OVERLAP_WARNED_OF = 0.01
 """Share of a block from which on its overlap is warned of."""
+SOFTENED_WARNED_OF = 0.25
+"""Stiffness that dashpots leave a contact, over that which its springs alone would keep in a step, below which there
+is a warning [-]."""

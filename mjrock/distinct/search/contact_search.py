@@ -41,7 +41,7 @@ from .constants import (
 )
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
-from .pair_law import SHARED_COLUMNS, PairLaw, least_among, longest_step_of_loose, pair_number
+from .pair_law import SHARED_COLUMNS, LongestSteps, PairLaw, least_among, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
 from .validity import (
@@ -91,7 +91,8 @@ class ContactSearch:
         system: its bodies where they stand, and the lines of its joints. The account of the lines that are found
             comes after those of the joints.
 
-    `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
+    `longest` are the longest stable steps of blocks on the springs that they have beyond their joints, and `impacts`
+    flat ones of the pairs that are given, see `pair_law`.
     """
 
     examine = staticmethod(is_outdated)  # until a run knows the types of its arguments
@@ -108,7 +109,9 @@ class ContactSearch:
         self.blocks = Blocks(still, self.sizes, np.flatnonzero(body >= 0), body, fixed, np.full(self.count, -1))
         self.finder = Finder(solids, flat=flat)
         self.law = PairLaw.of_joints(scene, system.lines)
-        self.longest = longest_step_of_loose(solids, self.law, system)
+        inverse_mass = np.append(1 / scene.bodies.mass, 0.0)[body]
+        self.impacts, slowest = self.law.meetings(inverse_mass)
+        self.longest = LongestSteps.of(solids, self.law, slowest, system)
         below, above = np.array([(each.below, each.above) for each in joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)

@@ -13,7 +13,14 @@ from ...quantities import Array, percent_said
 from ..setup import Setup
 from ..system import System
 from ..turning import set_rotations
-from .constants import DEEPEST_PAIRS, FLUSH, OF_STABLE_STEP, OVERLAP_SAMPLES, OVERLAP_WARNED_OF
+from .constants import (
+    DEEPEST_PAIRS,
+    FLUSH,
+    OF_STABLE_STEP,
+    OVERLAP_SAMPLES,
+    OVERLAP_WARNED_OF,
+    SOFTENED_WARNED_OF,
+)
 from .contact_search import ContactSearch
 from .pair_law import pair_number
 from .softening import unsoftened
@@ -34,7 +41,8 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
         h: length of a step [s].
 
     Warns:
-        UserWarning: of 1 % more than at the start, with the names of the two blocks, when, and what keeps them apart.
+        UserWarning: of 1 % more than at the start, with the names of the two blocks, when, and what keeps them apart;
+            or of contacts that dashpots have softened, see `softened`.
     """
     search = setup.search
     if search is None or not search.state.validity.searched.any():
@@ -65,9 +73,24 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
             left = float(search.state.least_share[[a, b]].max())
             shorter = OF_STABLE_STEP * unsoftened(left, h / OF_STABLE_STEP, search.law.slowest)
             said += f" at {t[i]:.4g} s: {what_keeps_apart(share, left, shorter)}"
-    if worst > OVERLAP_WARNED_OF + at_start:
+    said = said if worst > OVERLAP_WARNED_OF + at_start else softened(search, case, h)
+    if said:
         warnings.warn(said, stacklevel=3)
     return worst
+
+
+def softened(search: ContactSearch, case: AnyCase, h: float) -> str:
+    """The warning of contacts that dashpots have made softer than a step of h [s] makes their springs; empty where they
+    have at least a quarter of that left."""
+    shares, step, slow = search.state.least_share[search.blocks.free], h / OF_STABLE_STEP, search.law.slowest
+    block, left = int(search.blocks.free[shares.argmin()]), float(shares.min())
+    if left >= SOFTENED_WARNED_OF * min(1.0, left * (1 + 2 * slow / step)):
+        return ""
+    return (
+        f"dashpots, c/k = {slow:.2g} s, are too strong for a step of {h:.2g} s: contacts of {case.blocks[block]} have "
+        f"{left:.0%} of their stiffness and damping left, and blocks lie {1 / left:.2g} times as deep on each other; "
+        f"take timestep = {OF_STABLE_STEP * unsoftened(left, step, slow):.2g} s, or lower xi"
+    )
 
 
 def what_keeps_apart(share: float, left: float, shorter: float) -> str:

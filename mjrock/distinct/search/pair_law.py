@@ -15,15 +15,15 @@ so that how many blocks stand on the ground plays no part.
 
 A corner or a small face of a loose block has a quarter of the largest face, and what is left of a joint that has slid
 has a quarter of the joint, with the same decrease for areas that are ten times smaller still. Otherwise they would sink
-into the other block. The step of a run is found from the joints at rest, which loose blocks do not have. So
-`longest_step_of_loose` takes each with the springs that it has on one of its sides, twice over, as a block between two
-others.
+into the other block. The step of a run is found from the joints at rest, which loose blocks do not have, nor the
+dashpots that `pairs` gives. So `LongestSteps` take each such block with the springs and the strongest
+dashpots that it has on one of its sides, twice over, as a block between two others.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,8 +32,9 @@ from ...geometry.hull import Side, area_vector
 from ...problem.masonry.laws.dry import Meets
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
+from ...scene.parts import JointSprings
 from ...scene.scene import Scene
-from ..limit import longest_step
+from ..limit import Impacts, longest_step
 from ..rows import Rows, chosen, joined, rows
 from ..system import System
 from .constants import AS_STIFF, LEAST_CONTACT, SIDES_THAT_BEAR, WHOLE_CONTACT
@@ -104,13 +105,33 @@ class PairLaw(NamedTuple):
         loose = shared[:, 0] == 0
         shared[loose], rough[loose] = _of_loose(scene, sums, friction, loose)
         fixed = np.array([solid.fixed for solid in solids])
-        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose, GivenPairs(springs.of_pair, blocks))
+        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose, GivenPairs(springs, blocks))
 
     @property
     def slowest(self) -> float:
-        """The largest dashpot over its spring [s]."""
+        """The largest dashpot over its spring of those that were asked for [s]."""
         shared = np.concatenate([self.of_pair[0], self.of_block[0]])
         return max(float((shared[:, 1] / shared[:, 0]).max()), self.given.slowest)
+
+    def meetings(self, inverse_mass: Array) -> Meetings:
+        """What the pairs of blocks without a joint that are given make of flat impacts, from the inverse mass of each
+        block, zero of a fixed one [1/kg], shape (blocks,)."""
+        blocks, fastest = len(self.fixed), dict[float, float]()
+        slowest = np.zeros(blocks)
+        for one in range(blocks if self.given.springs.pairs is not None else 0):
+            others = np.arange(one + 1, blocks)
+            others = others[~are_among(pair_number(np.full_like(others, one), others, blocks), self.jointed)]
+            others = others[inverse_mass[one] + inverse_mass[others] > 0]
+            slow = self.given.retardations(one, others)
+            others, slow = others[slow > 0], slow[slow > 0]
+            stiffness = self._of_softer(np.array([np.full_like(others, one), others]))[0][:, 0]
+            frequency = np.sqrt(stiffness * (inverse_mass[one] + inverse_mass[others]))
+            for each in np.unique(slow).tolist():
+                fastest[each] = max(fastest.get(each, 0.0), float(frequency[slow == each].max()))
+            slowest[one] = max(slowest[one], slow.max(initial=0.0))
+            slowest[others] = np.maximum(slowest[others], slow)
+        frequency = np.array([*fastest.values()])
+        return Meetings(Impacts(frequency, 0.5 * np.array([*fastest]) * frequency), slowest)
 
     def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
         """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
@@ -144,16 +165,28 @@ class PairLaw(NamedTuple):
         return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
 
 
+class Meetings(NamedTuple):
+    """What `pairs` of the masonry makes of flat impacts.
+
+    Args:
+        impacts: for each dashpot over its spring, the fastest of those that have it.
+        slowest: the largest dashpot over its spring of the pairs of each block [s], shape (blocks,).
+    """
+
+    impacts: Impacts
+    slowest: Array
+
+
 class GivenPairs:
     """Friction and dashpot over spring of pairs of blocks without a joint, each of which is asked for once.
 
     Args:
-        of_pair: see `JointSprings`.
+        springs: which say what pairs have.
         blocks: how many there are.
     """
 
-    def __init__(self, of_pair: Callable[[int, int], Meets | None] | None, blocks: int) -> None:
-        self.of_pair, self.blocks = of_pair, blocks
+    def __init__(self, springs: JointSprings, blocks: int) -> None:
+        self.springs, self.blocks = springs, blocks
         self.known: dict[int, Meets | None] = {}
 
     @property
@@ -161,14 +194,25 @@ class GivenPairs:
         """The largest dashpot over its spring of those that were asked for [s]."""
         return max((meets.retardation for meets in self.known.values() if meets is not None), default=0.0)
 
+    def of(self, number: int) -> Meets | None:
+        """What a pair has, by its number, or None."""
+        if number not in self.known:
+            self.known[number] = self.springs.of_pair(*divmod(number, self.blocks))
+        return self.known[number]
+
+    def retardations(self, one: int, others: Integers) -> Array:
+        """Dashpot over spring of a block with others of higher numbers, zero where nothing is given [s], shape (n,)."""
+        if isinstance(self.springs.pairs, Meets):
+            return np.full(len(others), self.springs.pairs.retardation)
+        met = [self.of(number) for number in (one * self.blocks + others).tolist()]
+        return np.array([0.0 if meets is None else meets.retardation for meets in met])
+
     def take(self, pair: Integers, shared: Array, friction: Array, alone: Flags) -> None:
         """Write dashpots (n, 5) and friction (n,) of the pairs that have no joint and are given."""
-        if self.of_pair is None:
+        if self.springs.pairs is None:
             return
         for number in np.unique(pair[alone]).tolist():
-            if number not in self.known:
-                self.known[number] = self.of_pair(*divmod(number, self.blocks))
-            if (meets := self.known[number]) is not None:
+            if (meets := self.of(number)) is not None:
                 there = alone & (pair == number)
                 sprung = there & np.isfinite(shared[:, 2])
                 friction[there] = meets.friction
@@ -220,27 +264,69 @@ def _of_loose(scene: Scene, joints: Array, friction: Array, loose: Flags) -> tup
     return largest * per_area, np.full(len(solids), friction[softest])
 
 
-def longest_step_of_loose(solids: Sequence[Solid], law: PairLaw, system: System) -> float:
-    """The longest stable step [s] of loose blocks on their springs, infinite where there are none."""
+class LongestSteps(NamedTuple):
+    """The longest stable steps of blocks on the springs that they have beyond their joints, infinite for none.
+
+    Args:
+        loose: of blocks without a joint, with the dashpots of the joints [s].
+        given: of these and of blocks whose pairs are given stronger dashpots, on their springs alone [s].
+        damped: how much shorter than that a step is with these dashpots [-].
+    """
+
+    loose: float
+    given: float = math.inf
+    damped: float = 1.0
+
+    @classmethod
+    def of(cls, solids: Sequence[Solid], law: PairLaw, slowest: Array, system: System) -> LongestSteps:
+        """Those of the blocks of a system.
+
+        Args:
+            solids, law, system: the blocks.
+            slowest: the largest dashpot over its spring that is given for pairs of each block [s], shape (blocks,).
+        """
+        shared = law.of_block[0]
+        loose = longest_step_of_some(solids, law.loose & ~law.fixed, shared, system)
+        slower = (slowest * shared[:, 0] > shared[:, 1]) & ~law.fixed
+        if not slower.any():
+            return cls(loose)
+        damped = shared.copy()
+        damped[slower, 1] = slowest[slower] * shared[slower, 0]
+        sprung = slower & np.isfinite(shared[:, 2])
+        damped[sprung, 3] = slowest[sprung] * shared[sprung, 2]
+        both = np.array([0, 1, 0, 1, 0]) > 0
+        given, slow = (
+            longest_step_of_some(solids, slower, each, system) for each in (np.where(both, 0.0, shared), damped)
+        )
+        return cls(loose, given, slow / given)
+
+    def step(self, least: float) -> float:
+        """The longest stable step [s], where no springs shorten it below another one [s]."""
+        return min(max(self.loose, least), self.damped * max(self.given, least))
+
+
+def longest_step_of_some(solids: Sequence[Solid], some: Flags, shared: Array, system: System) -> float:
+    """The longest stable step of some blocks on springs and dashpots, see `PairLaw.of_block` [s]."""
     tables, kept, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
-    for i in np.flatnonzero(law.loose & ~law.fixed).tolist():
+    for i in np.flatnonzero(some).tolist():
         solid = solids[i]
         centroid = solid.rest if in_space else solid.rest[::2]
-        for corners, normal, shared in _springs(solid, law.of_block[0][i]):
-            columns = dict(zip(SHARED_COLUMNS, shared, strict=True))
+        for corners, normal, springs in _springs(solid, shared[i]):
+            columns = dict(zip(SHARED_COLUMNS, springs, strict=True))
             ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
             tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
             kept.append(solid.body)
     if not kept:
         return math.inf
-    return longest_step(system._replace(bodies=chosen(system.bodies, np.array(kept)), lines=joined(*tables), links=()))
+    bodies = chosen(system.bodies, np.array(kept))
+    return longest_step(system._replace(bodies=bodies, lines=joined(*tables), laws=(), links=()))
 
 
 def _springs(solid: Solid, shared: Array) -> list[tuple[Array, Array, Array]]:
-    """The corners of each side of a loose block [m], its normal, and the springs and dashpots that each corner has."""
+    """The corners of each side of a block [m], its normal, and the springs and dashpots that each corner has."""
     springs = []
     for side in solid.sides:
-        over = np.array([side_area(side) / shared[-1]])
+        over = np.array([min(side_area(side) / shared[-1], 1.0)])
         part = SIDES_THAT_BEAR * float(part_of_face(over)[0]) / len(side.corners)
         springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
     return springs

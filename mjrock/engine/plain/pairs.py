@@ -111,7 +111,7 @@ def _given(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers
     """Pieces of two blocks without a joint whose law the masonry gives, shape (n, 2), and the friction and dashpot over
     spring of each two, shape (n, 2)."""
     alone, given = list[tuple[int, int]](), list[Meets]()
-    if scene.springs is not None and scene.springs.of_pair is not None:
+    if scene.springs is not None and scene.springs.pairs is not None:
         names = [solid.name for solid in scene.standing.solids]
         jointed = {frozenset((pieces[a].block, pieces[b].block)) for a, b in found.tolist()}
         by_block = {name: [i for i, each in enumerate(pieces) if each.block == name and each.meets] for name in names}
