@@ -14,10 +14,10 @@ from tests.invariance.quantities import changed, moved, scaled, turned
 from tests.invariance.random_scenes import LATER, PLACES, draw, on_a_slope
 from tests.invariance.runs import solve
 
-FIRST, SCENES, CHUNK, DRAWN = 1000, 300, 10, 3
-"""Of the slow scenes: the first seed, how many there are, how many are one test, and how many invariances each is
-under."""
-EVERY_DAY = (2, 5, 7, 12, 22)
+FIRST, SCENES, ADDED, CHUNK, DRAWN = 1000, 300, 90, 10, 3
+"""Of the slow scenes: the first seed, how many there are from it and from `LATER` on, how many are one test, and how
+many invariances each is under."""
+EVERY_DAY = (2, 5, 7, 12, 22, LATER + 21, LATER + 27)
 STACK = 5
 """A plane stack on springs with a record."""
 PAGE = Path(__file__).parents[2] / "docs" / "validation.md"
@@ -63,7 +63,7 @@ def test_prisms_move_as_blocks_of_the_plane(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(FIRST, FIRST + SCENES, CHUNK))
+@pytest.mark.parametrize("first", [*range(FIRST, FIRST + SCENES, CHUNK), *range(LATER, LATER + ADDED, CHUNK)])
 def test_scenes(first):
     """Each under some of the invariances, drawn by its seed."""
     found = []

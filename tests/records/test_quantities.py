@@ -36,7 +36,8 @@ ACCELERATIONS = (
 def test_what_a_header_names_is_refused_whatever_unit_is_given(header, tmp_path):
     rows = "".join(f"{t:.2f};{a:.5f}\n" for t, a in zip(T, A, strict=True))
     path = written(tmp_path / "a.txt", f"{header}\n{rows}")
-    said = rf"a\.txt: (line \d|the name of the column) is '.*': these are {HEADERS[header]}, whatever unit is given"
+    said = rf"a\.txt: (line \d|the name of the column) is '.*': these are {HEADERS[header]}, whatever unit is given; a"
+    said += " record of accelerations is needed$"
     for unit in (None, "m/s2", "cm/s2", "g", 0.5):
         for read in (mr.GroundMotion.from_csv, mr.components_in):
             with pytest.raises(ValueError, match=said):

@@ -26,6 +26,7 @@ from .records import (
     DECIMAL,
     FINEST,
     NoRecordError,
+    OtherContentError,
     Parse,
     Trace,
     Wanted,
@@ -501,6 +502,8 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
         return seismograms(path, unit)
     try:
         return parse_table(lines, Wanted(unit))
+    except OtherContentError:
+        raise
     except ValueError as error:
         names = ", ".join(one.name for one in FORMATS)
         raise type(error)(

@@ -148,6 +148,10 @@ class NoRecordError(ValueError):
     """A file that holds no record of accelerations, or does not state what its reader has to know of it."""
 
 
+class OtherContentError(NoRecordError):
+    """A file that says that it holds something else: velocities, displacements, spectra, JSON."""
+
+
 def quantities(text: str) -> list[str]:
     """The quantities that a text names: accelerations, velocities, displacements or spectra."""
     plain = " ".join(text.split())
@@ -156,7 +160,7 @@ def quantities(text: str) -> list[str]:
 
 
 def require_accelerations(head: Mapping[int, str], name: str = "") -> None:
-    """Raise a `NoRecordError` where a header, or the name of a column, names velocities, displacements or spectra.
+    """Raise an `OtherContentError` where a header, or the name of a column, names velocities, displacements or spectra.
 
     The name of the column counts first. Of the lines of the header the last one that names a single quantity counts.
 
@@ -169,7 +173,9 @@ def require_accelerations(head: Mapping[int, str], name: str = "") -> None:
     named_so += [(quantities(line), f"line {i} is {in_message(line.strip())}") for i, line in reversed(lines.items())]
     found, where = next(((found[0], where) for found, where in named_so if len(found) == 1), ("accelerations", ""))
     if found != "accelerations":
-        raise NoRecordError(f"{where}: these are {found}, whatever unit is given; a record of accelerations is needed")
+        raise OtherContentError(
+            f"{where}: these are {found}, whatever unit is given; a record of accelerations is needed"
+        )
 
 
 def require_visible(line: str, place: int) -> None:
@@ -489,7 +495,7 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
         dt = scale * require_within("dt", wanted.dt, FINEST / scale, COARSEST / scale, wanted.time_unit)
         wanted = wanted._replace(dt=dt)
     if lines[0].lstrip()[:1] in ("{", "["):
-        raise NoRecordError("it is JSON; a text of accelerations in columns or rows is needed")
+        raise OtherContentError("it is JSON; a text of accelerations in columns or rows is needed")
     found = _table_of(lines, wanted.skip)
     if len(found.values) < 2:
         raise NoRecordError(
