@@ -134,6 +134,22 @@ def test_mujoco_scipy_and_plain_models_agree_on_its_rebound():
     assert plain.peaks[1] == pytest.approx(motion.peaks[1], rel=0.06)
 
 
+@pytest.mark.parametrize("solver", ["analytical", "MuJoCo"])
+def test_in_the_reversed_motion_it_is_the_mirror_image_of_a_wall_that_is_plumb_inside(solver):
+    motion = mr.GroundMotion(-3.0 * np.sin(np.linspace(0, 2 * math.pi, 101)), 0.01)
+    found = []
+    for plumb, pulse in (("outer", motion), ("inner", motion.reversed())):
+        wall = mr.Block.from_size(T0, HEIGHT, profile=PROFILE, plumb=plumb)
+        case = mr.Case(wall, 0.0, 1.2, side_stop=False, motion=pulse)
+        if solver == "MuJoCo":
+            contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
+            found.append(mr.simulate(case, contacts, 1e-3).theta)
+        else:
+            found.append(mr.solve_analytical(case, mr.Restitution(0.95, -0.4)).theta)
+    assert np.abs(found[0]).max() > 0.1 * setback().alpha
+    np.testing.assert_allclose(found[0], -found[1], atol=1e-9)
+
+
 @pytest.mark.parametrize("plumb", ["inner", "outer"])
 def test_a_stack_of_it_is_a_unit_of_rectangles(plumb):
     wall = mr.Block.from_size(T0, HEIGHT, profile=PROFILE, plumb=plumb)
