@@ -66,9 +66,16 @@ mfrac { display: inline-block; vertical-align: middle; text-align: center }
 mfrac > * { display: block; padding: 0 .15em } mfrac > :last-child { border-top: .6pt solid }
 msub > :last-child { font-size: .7em; vertical-align: sub }
 msup > :last-child { font-size: .7em; vertical-align: super }
-msqrt::before { content: "√" } msqrt > * { display: inline-block; border-top: .6pt solid; vertical-align: middle }
+msqrt { display: inline-block; vertical-align: middle; padding-left: .8em;
+  background: url("data:image/svg+xml;base64,ROOT") no-repeat left top / .8em 100% }
+msqrt > * { display: inline-block; border-top: .6pt solid; vertical-align: top }
 """
 """How WeasyPrint sets formulae, which has no MathML."""
+ROOT = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 8 24" preserveAspectRatio="none">'
+    '<path d="M0.3 15 L2 13.8 L4.6 23.6 L8 0.3" fill="none" stroke="black" stroke-width="0.7"/></svg>'
+)
+"""A root sign as high as what stands under it."""
 
 
 class Markup(str):
@@ -202,5 +209,6 @@ def write_pdf(path: Path, text: str) -> None:
             f"{error}; WeasyPrint makes a PDF: pip install weasyprint. Or give a path that ends in .html, and print "
             "the page from a browser"
         ) from error
+    sheet = FORMULAE.replace("ROOT", base64.b64encode(ROOT.encode()).decode())
     with replacing(path) as partial:
-        weasyprint.HTML(string=text).write_pdf(partial, stylesheets=[weasyprint.CSS(string=FORMULAE)])
+        weasyprint.HTML(string=text).write_pdf(partial, stylesheets=[weasyprint.CSS(string=sheet)])

@@ -116,6 +116,7 @@ def wall_drawn(case: Case, words: Words) -> Drawing:
     _named_effects(left, case, scale, words)
     for ax, title in ((left, "section"), (right, "elevation")):
         ax.axis("off")
+        ax.set_title("")  # that of the drawing, in English and in the middle
         ax.set_title(words(title), fontsize=SMALL, loc="left")
         for text in ax.texts:
             text.set_fontsize(max(SMALL, text.get_fontsize()))

@@ -223,6 +223,9 @@ def test_section_and_elevation_have_one_scale_or_say_that_they_have_not(length, 
     scales = [ax.transData.transform([(0.0, 9.0), (1.0, 9.0)]) for ax in drawn.figure.axes]
     left, right = (float(ends[1, 0] - ends[0, 0]) for ends in scales)
     assert drawn.one_scale is one
+    assert [ax.get_title() + ax.get_title("left") for ax in drawn.figure.axes] == [
+        Words("en")(key) for key in ("section", "elevation")
+    ]
     assert (abs(left / right - 1) < 1e-9) is one
     for ax in drawn.figure.axes:  # x and y alike
         (x, _), (_, y) = ax.transData.transform([(1.0, 0.0), (0.0, 1.0)]) - ax.transData.transform((0.0, 0.0))
