@@ -98,6 +98,7 @@ if TYPE_CHECKING:
     from .study.intensity.fragility import Fragility, PairedRatio, fit_capacities, fit_fragility, lost, paired_ratio
     from .study.intensity.ida import Capacity, ida, overturning_intensity
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
+    from .study.intensity.thresholds import Island, Thresholds, thresholds
     from .study.loading.code import Code
     from .study.loading.code_check import DynamicCheck, MechanismCheck, dynamic_check, mechanism_check
     from .study.loading.design import Design, design
@@ -117,21 +118,22 @@ __all__ = [
     "ContactParameters", "ContactWarning", "Contacts", "Corner", "CoulombFriction", "Damper", "DampingLaw", "Design",
     "Dry", "DynamicCheck", "EarthPressure", "Fill", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper",
     "Gable", "Grid", "GroundMotion", "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface",
-    "Joint", "Ledger", "LimitCurve", "Load", "LoadCheck", "ManyContactParameters", "Masonry", "MasonryAnalysis",
-    "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening",
-    "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron",
-    "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum",
-    "ScatteredRestitution", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange",
-    "Store", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__", "as_theory", "automatic_timestep", "calibrate",
-    "campaign", "code_spectrum", "collapse_multiplier", "compare", "components_in", "contact_for", "contact_parameters",
-    "contact_stiffness", "contacts_for", "crushed_inset", "design", "dynamic_check", "fit_capacities", "fit_fragility",
-    "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes", "joint_stiffness", "layered_stiffness",
-    "limit_curve", "load_check", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry",
-    "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio",
-    "push", "pushover", "records_in", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact",
-    "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
+    "Island", "Joint", "Ledger", "LimitCurve", "Load", "LoadCheck", "ManyContactParameters", "Masonry",
+    "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar",
+    "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon",
+    "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum", "Restitution", "RigidImpact",
+    "RockingSpectrum", "ScatteredRestitution", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint",
+    "StiffnessRange", "Store", "Thresholds", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__", "as_theory",
+    "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "components_in",
+    "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "design",
+    "dynamic_check", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
+    "inspect_flexes", "joint_stiffness", "layered_stiffness", "limit_curve", "load_check", "lost", "masonry_mjcf",
+    "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
+    "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
+    "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
+    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
     "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_anchor",
-    "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "strengths_of_bar", "thresholds", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (\([^)]*|.+)", re.MULTILINE)

@@ -9,13 +9,24 @@ from .browser import view
 from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
 from .masonry import blocks, mechanism, thrust
 from .picture import panels, single
-from .studies import design, fragility, incremental, moment_rotation, push, pushover, record, spectra, tornado
+from .studies import (
+    design,
+    fragility,
+    incremental,
+    moment_rotation,
+    push,
+    pushover,
+    record,
+    spectra,
+    thresholds,
+    tornado,
+)
 from .style import PALETTE, STYLES, Drawing, save
 from .wall import sketch
 
 __all__ = [
     "PALETTE", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "design",
     "displacement", "energy", "fragility", "grid", "history", "incremental", "mechanism", "moment_rotation", "panels",
-    "push", "pushover", "record", "rotation", "save", "single", "sketch", "spectra", "thrust", "ties", "tornado",
-    "view",
+    "push", "pushover", "record", "rotation", "save", "single", "sketch", "spectra", "thresholds", "thrust", "ties",
+    "tornado", "view",
 ]  # fmt: skip

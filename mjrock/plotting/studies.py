@@ -17,6 +17,7 @@ from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import SpectrumOfCode, response_spectrum
 from ..quantities import GRAVITY, named, require_kind, require_row, require_text
 from ..study.intensity.fragility import Fragility
+from ..study.intensity.thresholds import Thresholds
 from ..study.loading.design import Design
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
@@ -139,6 +140,40 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     ax.legend(**ON_LINES, loc="center left")
     ax.set_title(STYLES.get(solver, {}).get("label", solver), fontsize=10)
     ax.set(xlabel="peak ground acceleration [g]", ylabel=PEAK)
+    return ax
+
+
+OUTCOMES = {"stands": "white", "falls": ORANGE, "by chance": "0.6"}
+"""What a run at a scale does, and the colour of its mark. By chance: nudged motions end otherwise."""
+
+
+@picture(found=kind(Thresholds), unit=require_text)
+def thresholds(ax: Axes, found: Thresholds, unit: str = "") -> Axes:
+    """The ranges of scales in which each record makes a wall or masonry fall, a row a record.
+
+    A bar is a range. A thin bar goes over the edges that nudged motions have. Dots are the scales of the scan.
+
+    Args:
+        ax: where to draw.
+        found: the thresholds.
+        unit: of the scales, for the axis.
+    """
+    last = float(found.scales[-1])
+    for row, (own, shares) in enumerate(zip(found.islands, found.shares, strict=True)):
+        for one in own:
+            end = last if math.isnan(one.stands_above) else one.falls_to
+            upper = end if math.isnan(one.stands_above) else one.upper[1]
+            ax.barh(row, end - one.falls_from, 0.5, left=one.falls_from, color=ORANGE, alpha=0.45)
+            ax.barh(row, upper - one.lower[0], 0.12, left=one.lower[0], color=ORANGE)
+        kinds = np.where(shares == 0, "stands", np.where(shares == 1, "falls", "by chance"))
+        for name, colour in OUTCOMES.items():
+            at = found.scales[kinds == name]
+            look: Look = {"markersize": 4, "color": "0.3", "markerfacecolor": colour, "markeredgewidth": 0.6}
+            ax.plot(at, np.full(len(at), row), "o", label=None if row else name, zorder=5, **look)
+    ax.set_yticks(range(len(found.records)), [folded(name) for name in found.records])
+    ax.set(ylim=(len(found.records) - 0.4, -0.6), xlabel=f"scale{f' [{unit}]' if unit else ''}")
+    columns = {"ncols": 3, "columnspacing": 1.0, "handletextpad": 0.2, "borderaxespad": 0.2}
+    ax.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), **columns)
     return ax
 
 

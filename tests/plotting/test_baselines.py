@@ -65,6 +65,13 @@ def found():
     return mr.Sensitivity("capacity_g", ("k_n", "points"), base, rows, values, ((), ("k_n",), ("points",), ("points",)))
 
 
+def islands():
+    low = mr.Island(3.0, 4.0, 2.8, 4.2, (2.6, 3.0), (4.0, 4.4), 1.0)
+    high = mr.Island(6.0, 8.0, 5.8, np.nan, (5.8, 6.0), (8.0, 8.0), 1.0)
+    shares = np.array([[0, 0, 0.5, 1, 0, 1, 1, 1], [0, 0, 0, 0, 0, 0, 0, 0]])
+    return mr.Thresholds(("a", "b"), np.arange(1.0, 9.0), shares, ((low, high), ()), (0.0, 1e-6), 20)
+
+
 def fitted():
     levels = np.repeat([0.2, 0.3, 0.4, 0.5], 6)
     return mr.fit_fragility(levels, [i % 6 < n for i, n in zip(range(24), np.repeat([0, 2, 4, 6], 6), strict=True)])
@@ -150,6 +157,7 @@ PICTURES = {
     "single": lambda: plotting.single(lambda ax: plotting.blocks(ax, STACK)),
     "sketch": lambda: plotting.sketch(LOADED),
     "spectra": spectra,
+    "thresholds": lambda: plotting.thresholds(islands(), "m/s²"),
     "thrust": lambda: plotting.thrust(pressed()),
     "ties": lambda: plotting.ties([shaken()]),
     "tornado": lambda: plotting.tornado(found()),

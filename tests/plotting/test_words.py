@@ -115,6 +115,15 @@ class Random:
         levels = np.repeat(self.within(0.1, 0.5) * np.arange(1, 7), 10)
         return mr.fit_fragility(levels, self.rng.random(60) < levels / levels.max())
 
+    def islands(self):
+        """Ranges of some records that nobody has run."""
+        names, scales = self.names(self.rng.integers(1, 7)), np.linspace(0.0, self.within(1, 20), 21)
+        shares = np.round(2 * self.rng.random((len(names), 21))) / 2
+        own = tuple(
+            tuple(mr.Island(s, s, s, np.nan, (s, s), (s, s), 1.0) for s in scales[row == 1][-1:]) for row in shares
+        )
+        return mr.Thresholds(tuple(names), scales, shares, own, (0.0, 1e-6), 99)
+
     def study(self):
         """A study of sensitivity that nobody has run."""
         settings = ("k_n", "points", "thickness", "restitution")[: self.rng.integers(1, 5)]
@@ -191,6 +200,7 @@ PICTURES = {
         some.case(Random.tie, Random.thrust, Random.load, Random.mass), some.names(1)[0]
     ),
     "spectra": spectra,
+    "thresholds": lambda some: plotting.thresholds(some.islands(), "m/s²"),
     "thrust": lambda some: plotting.thrust(some.thrown()),
     "ties": lambda some: plotting.ties([tied(some)]),
     "tornado": lambda some: plotting.tornado(some.study()),

@@ -126,13 +126,10 @@ def ida(
         ValueError: if the scales are none, negative or do not increase, or there are no records; and as `campaign`.
         RuntimeError: if a run has failed; its row in the store says how.
     """
-    builds = dict(build) if isinstance(build, Mapping) else {"record": build}
-    if not builds:
-        raise ValueError("build holds no records; at least one is needed")
+    builds = builds_of(build)
     levels = require_increasing("scales", scales, "scale", math.inf, "0 and above")
     tasks: list[Analysis] = []
     for name, make in builds.items():
-        require_kind("the name of a record in build", name, str)
         for scale in levels.tolist():
             analysis = built(make, scale, f"build[{name!r}]" if isinstance(build, Mapping) else "build")
             tasks.append(replace(analysis, labels={"record": name, "scale": scale} | dict(analysis.labels)))
@@ -193,6 +190,16 @@ def overturning_intensity(
             f"{peaks[1]:.4g} {'rad' if build(high).PEAK.endswith('_rad') else 'alpha'}; give a higher one"
         )
     return halved(falls, low, high, tolerance)[1]
+
+
+def builds_of(build: Build | Mapping[str, Build]) -> dict[str, Build]:
+    """The function of each record, by name; TypeError for a name that is no text, ValueError for no records."""
+    builds = dict(build) if isinstance(build, Mapping) else {"record": build}
+    if not builds:
+        raise ValueError("build holds no records; at least one is needed")
+    for name in builds:
+        require_kind("the name of a record in build", name, str)
+    return builds
 
 
 def _peak(build: Build, scale: float) -> float:
