@@ -42,6 +42,8 @@ P = ParamSpec("P")
 Result = TypeVar("Result")
 
 
+WARNED = "__mjrock_warned__"
+"""Name under which the module of a user keeps which of its lines were warned of what."""
 PASSED = ("mjrock", "functools", "contextlib")
 """Packages whose lines a warning does not point to."""
 MOST_SAMPLES = 50_000_000
@@ -102,11 +104,20 @@ def _shortened(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else spelt(value)
 
 
-def warn_of(message: str, kind: type[Warning] = UserWarning) -> None:
-    """Warn of something at the line of the user that led to it: the nearest one outside the package."""
+def warn_of(message: str, kind: type[Warning] = UserWarning, *, once: str = "") -> None:
+    """Warn of something at the line of the user that led to it: the nearest one outside the package.
+
+    With `once`, what the warning is about, a line warns of it once, whatever the numbers in the message: a search makes
+    a hundred motions at one line. The module of that line knows what it was warned of, as it does for `warnings`.
+    """
     level, frame = 2, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in PASSED:
         level, frame = level + 1, frame.f_back
+    warned = frame.f_globals.setdefault(WARNED, set())
+    if once and (key := (once, frame.f_code, frame.f_lineno)) in warned:
+        return
+    if once:
+        warned.add(key)
     warnings.warn(message, kind, stacklevel=level)
 
 

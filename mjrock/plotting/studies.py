@@ -143,7 +143,7 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     return ax
 
 
-OUTCOMES = {"stands": "white", "falls": ORANGE, "by chance": "0.6"}
+SCAN_COLOURS = {"stands": "white", "falls": ORANGE, "by chance": "0.6"}
 """What a run at a scale does, and the colour of its mark. By chance: nudged motions end otherwise."""
 
 
@@ -166,7 +166,7 @@ def thresholds(ax: Axes, found: Thresholds, unit: str = "") -> Axes:
             ax.barh(row, end - one.falls_from, 0.5, left=one.falls_from, color=ORANGE, alpha=0.45)
             ax.barh(row, upper - one.lower[0], 0.12, left=one.lower[0], color=ORANGE)
         kinds = np.where(shares == 0, "stands", np.where(shares == 1, "falls", "by chance"))
-        for name, colour in OUTCOMES.items():
+        for name, colour in SCAN_COLOURS.items():
             at = found.scales[kinds == name]
             look: Look = {"markersize": 4, "color": "0.3", "markerfacecolor": colour, "markeredgewidth": 0.6}
             ax.plot(at, np.full(len(at), row), "o", label=None if row else name, zorder=5, **look)

@@ -1,5 +1,6 @@
 import math
 import pickle
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -331,3 +332,16 @@ def test_a_word_of_any_length_is_refused_at_once(word, tmp_path):
         path.write_text(text)
         with pytest.raises(ValueError, match=r"line|samples"):
             read(path)
+
+
+def test_a_search_warns_of_motions_beyond_3_g_once():
+    """One line makes a hundred of them, in between with filters of its own; another line warns again."""
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        for peak in range(40, 140):
+            mr.GroundMotion([0.0, float(peak), 0.0], 0.01)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+        assert [str(one.message).split(" m/s2")[0] for one in seen] == ["ground motion peaks at 40"]
+        mr.GroundMotion([0.0, 50.0, 0.0], 0.01)
+    assert len(seen) == 2

@@ -71,6 +71,15 @@ MISUSE = {
         lambda: mr.Case(SMALL, 0.05, 1.0, effects=mr.Tie(4.0, 5e9, strength=235e6)),
         r"strength = 2.35e\+08 N, and the wall weighs 7.06e\+04 N: is it in N, and no stress in Pa",
     ),
+    "larger load in kN": (
+        lambda: with_effect(mr.Load(600.0, 12.0)),
+        "Load: force = 600 N, and the wall weighs .* is it in kN",
+    ),
+    "larger strength in kN": (
+        lambda: with_effect(mr.Tie(8.0, 12e6, strength=400.0)),
+        "Tie: strength = 400 N, and the wall weighs .* is it in kN",
+    ),
+    "larger mass in t": (lambda: with_effect(mr.AddedMass(20.0, 12.0)), "mass = 20 kg, that of the wall .* is it in t"),
     "slip force in kN": (
         lambda: with_effect(mr.FrictionDamper(8.0, 2e7, 60.0)),
         r"slip_force = 60 N, .* is it in kN\?",

@@ -68,7 +68,8 @@ class Restitution:
         alpha, share = self.made_for
         if not math.isclose(alpha, wall.alpha, rel_tol=ANOTHER_WALL):
             return (
-                f"the restitution is that of a wall of alpha = {alpha:.4g} rad, and this one has {wall.alpha:.4g} rad"
+                f"the restitution is that of a wall of alpha = {alpha:.4g} rad, and this one has {wall.alpha:.4g} rad; "
+                "take one wall for both, with its added masses: Restitution.from_geometry(case.wall)"
             )
         asked = share if stop_top is None else min(stop_top / (2 * wall.h), 1.0)
         if abs(asked - share) > ANOTHER_WALL:

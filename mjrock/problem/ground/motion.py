@@ -74,8 +74,9 @@ class GroundMotion:
         TypeError, ValueError: for accelerations, a step or a name that are not valid.
 
     Warns:
-        UserWarning: for a peak beyond 3 g, where the unit is probably another one. A motion from a file also warns for
-            a peak below 1e-3 g and for a residual velocity beyond 20 % of the peak velocity.
+        UserWarning: for a peak beyond 3 g, where the unit is probably another one, once a line of a script. A motion
+            from a file warns each time, and also for a peak below 1e-3 g and for a residual velocity beyond 20 % of
+            the peak velocity.
     """
 
     accel: Array
@@ -86,14 +87,28 @@ class GroundMotion:
     def __init__(
         self, accel: ArrayLike, dt: float, name: str = "ground motion", header: Mapping[str, str] | None = None
     ) -> None:
+        self._fill(accel, dt, name, header)
+        self._doubt_of_unit(once="peak beyond 3 g")
+
+    @classmethod
+    def _of_file(cls, accel: ArrayLike, dt: float, name: str, header: Mapping[str, str]) -> GroundMotion:
+        """The motion of a file, each of which is warned of, also where one line of a script reads many."""
+        motion = cls.__new__(cls)
+        motion._fill(accel, dt, name, header)
+        motion._doubt_of_unit()
+        return motion
+
+    def _fill(self, accel: ArrayLike, dt: float, name: str, header: Mapping[str, str] | None) -> None:
         require_kind("name", name, str)
         require_kind("header", header, Mapping, type(None))
         values, step = checked_record(accel, dt)
         keep(self, accel=values, dt=step, name=name, header=dict(header or {}))
+
+    def _doubt_of_unit(self, once: str = "") -> None:
+        """Warn of a peak beyond 3 g, with `once` a line of a script once."""
         if self.peak > SUSPICIOUS:
-            warn_of(
-                f"{name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2",
-            )
+            said = f"{self.name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2"
+            warn_of(said, once=once)
 
     def __repr__(self) -> str:
         return f"<GroundMotion {self.name!r}: {len(self.accel)} samples, dt = {self.dt:g} s, peak {self.peak:.3g} m/s2>"
@@ -596,7 +611,7 @@ def motion_of(trace: Trace, path: str | PathLike[str]) -> GroundMotion:
     header = trace.header
     named = [header[field] for field in NAMING if header.get(field)] if header.get("STATION_CODE") else []
     named += [] if named else [Path(path).stem, *(header.values() if list(header) == ["STREAM"] else ())]
-    motion = GroundMotion(trace.accel, trace.dt, name := " ".join(named), header)
+    motion = GroundMotion._of_file(trace.accel, trace.dt, name := " ".join(named), header)
     peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
     if peak < FAINT_FILE:
         doubt = "" if "UNITS" in header else "; is its unit right?"

@@ -17,6 +17,8 @@ from .tie import Tie
 
 NEGLIGIBLE_SHARE = 1e-4
 """Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
+LEAST_OF_WALL = 1e-3
+"""The same of one wall: a force that is given in kN for one in N is this share of the weight, if it should be that."""
 EXCESSIVE = 1000.0
 """Force of a tie, damper, load or thrust over the weight above which it is taken for one in another unit [-]: a jack
 presses a panel with up to some 200 times its weight, and a bar of 30 mm holds 100 times a small model."""
@@ -136,15 +138,23 @@ def _of_effects(case: Any) -> list[str]:
         pull = TiePull.of(link, case.block)._replace(reach=link.span)
         return 2 * b, float(pulled(pull, far, 1.0)[0])
 
-    return of_effects(case.effects, Whole("wall", "the wall", case.block.mass), room)
+    return of_effects(case.effects, Whole("wall", "the wall", case.block.mass, LEAST_OF_WALL), room)
 
 
 class Whole(NamedTuple):
-    """What effects act on: what it is called, what a tie holds of it, and its mass without what is added [kg]."""
+    """What effects act on.
+
+    Args:
+        called: what it is called.
+        held: what a tie holds of it.
+        mass: its mass without what is added [kg].
+        least: share of its weight or mass below which a force or a mass is taken for one in kN or t [-].
+    """
 
     called: str
     held: str
     mass: float
+    least: float = NEGLIGIBLE_SHARE
 
 
 Room = Callable[[Anchored], tuple[float, float]]
@@ -158,11 +168,11 @@ def of_effects(effects: Sequence[Effect], whole: Whole, room: Room) -> list[str]
     for i, effect in enumerate(effects):
         name = f"effects[{i}], {type(effect).__name__}"
         if isinstance(effect, Thrust | Load):
-            if 0 < abs(effect.force) < NEGLIGIBLE_SHARE * weight:
+            if 0 < abs(effect.force) < whole.least * weight:
                 found.append(_against_weight(name, "force", effect.force, whole, "kN"))
             elif abs(effect.force) > EXCESSIVE * weight:
                 found.append(_against_weight(name, "force", effect.force, whole, "N"))
-        elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE_SHARE * whole.mass:
+        elif isinstance(effect, AddedMass) and 0 < effect.mass < whole.least * whole.mass:
             found.append(
                 f"{name}: mass = {effect.mass:g} kg, that of the {whole.called} {whole.mass:.3g} kg: is it in t?"
             )
@@ -195,7 +205,7 @@ def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     law, limit, weight = link.law, link.limit, whole.mass * GRAVITY
     if not law.k > 0:
         return ""
-    if law.strength < NEGLIGIBLE_SHARE * weight:
+    if law.strength < whole.least * weight:
         return _against_weight(name, limit, law.strength, whole, "kN")
     if law.k > STIFFEST:
         return f"{name}: stiffness = {law.k:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"
