@@ -40,6 +40,8 @@ from .style import (
 
 LETTERS_OF_AXIS = 60
 """Letters below an axis from which on its labels are turned."""
+NEAREST = 0.12
+"""Least distance of two values on an axis, over their range, that leaves room for their labels [-]."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
@@ -285,7 +287,13 @@ def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
             said = folded(f"{named(names)} {what}{'' if len(names) > 1 else 's'}")
             look: Look = {"color": line.get_color(), "markersize": 6, "zorder": 5, "label": said}
             ax.plot([reached[name] for name in names], heights, marker, linestyle="", **look)
-    ax.legend(**ON_LINES)
+    _named(ax)
+
+
+def _named(ax: Axes) -> None:
+    """A legend of what has a name."""
+    if ax.get_legend_handles_labels()[1]:
+        ax.legend(**ON_LINES)
 
 
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
@@ -296,8 +304,7 @@ def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: C
         colour = OWN[list(lines).index(name) % len(OWN)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
-    if ax.get_legend_handles_labels()[1]:
-        ax.legend(**ON_LINES)
+    _named(ax)
     ax.set(xlim=(0, None), ylim=(0, None), xlabel=r"rotation $\theta$ [rad]")
 
 
@@ -362,7 +369,7 @@ def design(ax: Axes, found: Design) -> Axes:
     """
     require_kind("found", found, Design)
     values = [trial.value for trial in found.trials]
-    numbers = all(isinstance(value, int | float) for value in values) and len(set(values)) == len(values)
+    numbers = all(isinstance(value, int | float) for value in values) and _apart_enough(values)
     places = values if numbers else list(range(len(values)))
     lines = dict[str, list[tuple[float, float]]]()
     for place, trial in zip(places, found.trials, strict=True):
@@ -386,6 +393,12 @@ def design(ax: Axes, found: Design) -> Axes:
     ax.set_title(wrapped(found.sentence, figure_of(ax).get_figwidth() - 0.6, 10), fontsize=10)
     ax.legend(fontsize=8)
     return ax
+
+
+def _apart_enough(values: Sequence[float]) -> bool:
+    """Whether numbers have room for their labels where they are on an axis."""
+    row = np.sort(np.array(values, dtype=float))
+    return len(row) == 1 or bool(np.diff(row).min() > NEAREST * np.ptp(row) > 0)
 
 
 def _tried(found: Sensitivity, setting: str) -> str:

@@ -166,6 +166,12 @@ def pushed(some):
     return plotting.push(dict.fromkeys(some.names(some.rng.integers(1, 4)), one))
 
 
+def designed(some):
+    site = mr.code_spectrum("NTC 2018", ag=some.within(0.5, 4), F0=2.45, Tc=0.33, soil="C")
+    height, values = some.round(3, 9), np.round(np.sort(some.rng.random(some.rng.integers(2, 6))) + 0.3, 2)
+    return plotting.design(mr.design(lambda t: mr.Case(mr.Block.from_size(t, height), 0.0, 1.0), values.tolist(), site))
+
+
 def mechanism(some):
     return plotting.mechanism(mr.collapse_multiplier(some.bond()))
 
@@ -180,6 +186,7 @@ PICTURES = {
     "acceleration": lambda some: plotting.acceleration(some.case(), 3.0),
     "blocks": lambda some: plotting.blocks(some.bond() if some.rng.random() < 0.5 else some.thrown()),
     "comparison": lambda some: plotting.comparison([some.answer(some.case())], some.names(1)[0]),
+    "design": designed,
     "displacement": lambda some: plotting.displacement([some.thrown()]),
     "energy": lambda some: plotting.energy([some.answer(some.case())]),
     "fragility": fragility,

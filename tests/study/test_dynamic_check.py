@@ -1,9 +1,11 @@
 """The check by nonlinear dynamic analysis, C8.7.1.2.1.9, against arithmetic by hand and by three solvers."""
 
 import math
+import warnings
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 import mjrock as mr
@@ -191,3 +193,27 @@ def test_masonry_without_its_curve_is_refused():
     jack = mr.push(masonry_of(1), mr.Actuator("wall", (-0.3, 2.1), (1, 0), None, 1e6), 0.02)
     with pytest.raises(ValueError, match="curve is that of an Actuator"):
         mr.dynamic_check(runs, curve=jack)
+
+
+def test_the_verdict_names_its_way_and_asks_for_the_weaker_one():
+    """A wall of 0.25 x 2.4 m with a buttress of 0.4 x 2 m behind it: by hand it overturns outwards, about its outer
+    edge, at 0.149 g and towards the buttress at 0.407 g. The buttress takes a seventh of the length."""
+    ground = mr.Polygon([(-3, -0.5), (3, -0.5), (3, 0), (-3, 0)], fixed=True, name="ground")
+    wall = mr.Polygon([(0, 0), (0.25, 0), (0.25, 2.4), (0, 2.4)], density=1800.0)
+    buttress = mr.Polygon([(-0.4, 0), (0, 0), (0, 2.0), (-0.4, 2.0)], density=240.0)
+    masonry = mr.Masonry([ground, mr.Compound([buttress, wall], name="wall")], k_n=1e9, friction=0.7)
+    runs = [mr.solve_explicit(mr.MasonryCase(masonry, 0.5, motion=mr.GroundMotion.half_sine(0.5, 0.2)))]
+    masses, x, z = np.array([1080.0, 192.0]), np.array([0.125, -0.2]), np.array([1.2, 1.0])
+    about = {1: 0.25 * masses.sum() - masses @ x, -1: masses @ x + 0.4 * masses.sum()}
+    by_hand = {way: moment / (masses @ z) for way, moment in about.items()}
+    for way, curve in ((way, mr.limit_curve(masonry, way)) for way in (1, -1)):
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            check = mr.dynamic_check(runs, curve=curve, natural=True)
+        assert f"along ({way}, 0)" in repr(check)
+        assert f"judged: the centroid of wall along ({way}, 0)" in check.table()
+        weaker = [str(one.message) for one in seen if "check that way too" in str(one.message)]
+        assert len(weaker) == (by_hand[-way] < by_hand[way])
+        for said in weaker:
+            assert f"{by_hand[way]:.4g} g" in said
+            assert f"along (1, 0) it bears {by_hand[1]:.4g} g" in said

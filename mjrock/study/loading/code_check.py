@@ -8,6 +8,7 @@ that bends between two floors or side walls. `dynamic_check` is that by nonlinea
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -52,11 +53,13 @@ from ...result.response import Response
 from ..analysis import Analysis
 from ..campaign.campaign import results
 from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of
-from .limit_analysis import LimitCurve
+from .limit_analysis import LimitCurve, collapse_multiplier
 from .moving_part import MovingPart, multiplier_of
 from .push import Push, of_centroid
 from .pushover import falls_to_zero, pushover
 
+WEAKER = 0.01
+"""How much less masonry has to bear the other way for a warning [-]."""
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 SHORT = 0.05
@@ -631,6 +634,7 @@ class DynamicCheck:
         natural: whether the records are natural ones; None if it is not known.
         code: what it is checked after, which has a check by dynamic runs.
         case: that of the first run, whose wall or masonry and effects all runs have; None where it is not known.
+        judged: of masonry, what is displaced and which way, in words.
     """
 
     limit_state: str
@@ -640,6 +644,7 @@ class DynamicCheck:
     natural: bool | None
     code: Code = field(default_factory=code_of)
     case: AnyCase | None = None
+    judged: str = ""
 
     @property
     def share(self) -> float:
@@ -726,6 +731,7 @@ class DynamicCheck:
             low, middle, high = np.percentile(self.restitution, [5, 50, 95])
             said = f"{middle:.3f} in the median, {low:.3f} to {high:.3f} in nine of ten"
             lines.append(f"restitution |e| of {len(self.restitution)} impacts: {said}")
+        lines += [f"judged: {self.judged}"] if self.judged else []
         lines += [f"lacking: {what}" for what in self.lacking]
         before = () if kinematic is None else kinematic.verdicts
         return "\n".join([*lines, verdicts_of((*before, *self.verdicts))])
@@ -736,9 +742,9 @@ class DynamicCheck:
         return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
 
     def __repr__(self) -> str:
-        said = "HOLDS" if self.holds else "FAILS"
+        said = f"{self.limit_state} {'HOLDS' if self.holds else 'FAILS'}{f', {self.judged}' if self.judged else ''}"
         return (
-            f"<DynamicCheck {self.limit_state} {said}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
+            f"<DynamicCheck {said}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
             f"{len(self.exceeded)} of {len(self.runs)} runs beyond d_0 = {self.d_0:.4g} m>"
         )
 
@@ -808,13 +814,15 @@ def dynamic_check(
     else:
         judged = _Judged.of(curve)
         d_0, maxima = judged.d_0, [judged.largest(run) for run in responses]
+        judged.warn_of_weaker_way()
     found = tuple(
         RunMaximum(motion.name, *signal, run.solver, d)
         for motion, signal, run, d in zip(motions, signals_of(cases), given, maxima, strict=True)
     )
     impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
     known = tuple(e for e in impacts if not math.isnan(e))
-    check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0])
+    said = "" if curve is None else judged.said
+    check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], said)
     if check.lacking:
         warn_of(f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}", Implausible)
     return check
@@ -838,6 +846,11 @@ def displaced(wall: Block, rotation: float) -> float:
     return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
 
 
+def spelt_way(way: Array) -> str:
+    """A direction as text, (1, 0)."""
+    return f"({', '.join(f'{part + 0.0:.3g}' for part in way.tolist())})"
+
+
 class _Judged(NamedTuple):
     """What of masonry is judged in runs: the centroid of some blocks along a direction, shape (d,), and its d_0 [m]."""
 
@@ -854,6 +867,23 @@ class _Judged(NamedTuple):
             return cls(masonry, part.names, part.way, float(moved[-1]))
         masonry = cast(MasonryCase, curve.answer.case).masonry
         return cls(masonry, tuple(masonry.names[i] for i in masonry.free), curve.way, curve.d_0)
+
+    @property
+    def said(self) -> str:
+        """What is judged, in words."""
+        return f"the centroid of {named(self.blocks)} along {spelt_way(self.way)}"
+
+    def warn_of_weaker_way(self) -> None:
+        """Warn of masonry that bears less the other way on its own weight."""
+        plan = self.way[:2] if self.masonry.in_space else float(self.way[0])
+        with contextlib.suppress(ValueError):  # it stands by its effects alone
+            along, back = (collapse_multiplier(self.masonry, way).multiplier for way in (plan, -plan))
+            if back < (1 - WEAKER) * along:
+                warn_of(
+                    f"curve goes along {spelt_way(self.way)}, where the masonry bears {along:.4g} g on its own weight; "
+                    f"along {spelt_way(-self.way)} it bears {back:.4g} g: check that way too, with a curve along it",
+                    Implausible,
+                )
 
     def largest(self, run: Response) -> float:
         """Its largest displacement in a run [m], infinite where a block fell."""
