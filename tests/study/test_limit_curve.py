@@ -116,3 +116,12 @@ def test_a_tie_that_breaks_bears_nothing_from_there_on():
 def test_refused(given, said):
     with pytest.raises(ValueError, match=said):
         mr.limit_curve(mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 2), **given)
+
+
+def test_bonded_masonry_is_refused():
+    """What a bond holds is lost as its joint opens, which no pose says."""
+    bond = mr.Bond(tension=2e5, cohesion=3e5, opening_energy=20.0, slip_energy=100.0)
+    bed = mr.Mortar(mr.Dry(1e10, 0.6, 0.05, 1e10, None, 5), bond)
+    wall = mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 2, joints=bed)
+    with pytest.raises(ValueError, match=r"bond of .*: limit_curve takes joints that push only"):
+        mr.limit_curve(wall, 1, to=0.2)

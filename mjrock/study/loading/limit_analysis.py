@@ -366,6 +366,7 @@ def limit_curve(
         0.3
     """
     require_kind("masonry", masonry, Masonry)
+    masonry.require_dry("limit_curve")
     poses = require_whole("poses", poses, 2, 10_000)
     given = _required(masonry, effects)
     start = found = collapse_multiplier(masonry, direction, angle=angle, effects=given)
