@@ -371,6 +371,8 @@ def require_plain(name: str, values: object, takes: str, kinds: str) -> NDArray[
         raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
     except MemoryError:
         raise ValueError(f"{name} = {shown(values)} has more values than memory holds; it takes {takes}") from None
+    except Exception as error:  # of an object that cannot become an array
+        raise TypeError(f"{name} = {shown(values)} cannot be read ({error!r}); it takes {takes}") from None
     if given.dtype.kind not in kinds or ("b" not in kinds and _holds_truth(values)):
         held = "values of these kinds" if "b" in kinds else "real numbers"
         raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")

@@ -2,6 +2,7 @@ import contextlib
 import gc
 import os
 from collections.abc import Generator
+from typing import Any
 
 import pytest
 
@@ -25,7 +26,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
                 carry_out(number)
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Name what last digits depend on, where a test has failed."""
     if terminalreporter.stats.get("failed") or terminalreporter.stats.get("error"):
         terminalreporter.write_line(f"computed by {machine.description()}")

@@ -23,7 +23,7 @@ from typing import overload
 import numpy as np
 
 from ..compiled import inlined
-from ..quantities import Array, require_real, require_reals, require_row, require_within, short_repr, shown
+from ..quantities import Array, is_iterable, require_reals, require_row, require_within, short_repr, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
@@ -180,7 +180,7 @@ def contact_parameters(
         ValueError: for a value outside its range, or one that needs an impedance which MuJoCo would silently clamp.
     """
     given = {"stiffness k": k, "damping c": c, "timestep": timestep, "inverse_weight": inverse_weight}
-    if any(isinstance(value, list | tuple) or np.ndim(value) > 0 for value in given.values()):
+    if any(isinstance(value, list | tuple) or (is_iterable(value) and np.ndim(value) > 0) for value in given.values()):
         return _many_parameters(given, newmark_beta)
     k = require_within("stiffness k", k, 1e-30, 1e30, "N/m")
     c = require_within("damping c", c, 0.0, 1e30, "N s/m")
@@ -229,9 +229,7 @@ def contact_stiffness(
         if not isinstance(numbers, tuple | list | np.ndarray) or len(require_row(name, numbers, "number")) < 2:
             raise TypeError(f"{name} = {shown(numbers)} has to be at least two numbers")
     direct, impedances = (np.asarray(numbers, dtype=float).tolist() for numbers in (solref, solimp))
-    inverse_weight = require_real("inverse_weight", inverse_weight)
-    if not 0 < inverse_weight < math.inf:
-        raise ValueError(f"inverse_weight = {inverse_weight:g} 1/kg is outside the valid range inverse_weight > 0")
+    inverse_weight = require_within("inverse_weight", inverse_weight, 1e-30, 1e30, "1/kg")
     d, d_width = impedances[:2]
     low, high = IMPEDANCE_RANGE
     if not (direct[0] < 0 and direct[1] <= 0):

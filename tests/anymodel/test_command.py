@@ -1,6 +1,9 @@
 """`python -m mjrock inspect`: a page that one reads of a model with many contacts."""
 
 import csv
+import os
+import subprocess
+import sys
 
 import mujoco
 import numpy as np
@@ -118,3 +121,13 @@ def test_contacts_of_flexes_are_those_of_the_engine(tmp_path, capsys, floor, sof
     assert said[2].startswith(f"soft on floor: k = {found.k[0]:.4g}")
     path.write_text(path.read_text().replace("Euler", "discrete"))
     assert lines_of(capsys, "inspect", path)[3].startswith("For all of them: the integrator `discrete` takes energy")
+
+
+def test_nobody_reads_on(model):
+    """As where its output goes to `head`."""
+    read, write = os.pipe()
+    os.close(read)
+    command = [sys.executable, "-m", "mjrock", "inspect", str(model)]
+    with os.fdopen(write, "wb") as pipe:
+        done = subprocess.run(command, stdout=pipe, stderr=subprocess.PIPE, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")

@@ -504,6 +504,59 @@ def test_a_call_is_answered_or_refused_by_name(call):
     is_answered(call)
 
 
+class Unreadable:
+    def __array__(self, *arguments, **named):
+        raise RuntimeError("there is no array")
+
+
+RAGGED = [[1.0], [1.0, 2.0]]
+AN_ARRAY_IS_TAKEN = {
+    "Damper, space": ("at", "anchor"),
+    "Thrust, space": ("direction",),
+    "Actuator": ("at", "direction"),
+    "collapse_multiplier, in a pose": ("pose",),
+    "push": ("to",),
+    "dynamic_check": ("runs",),
+    "contact_parameters": ("k", "timestep"),
+    "MasonryCase": ("velocity",),
+}
+"""Arguments that take arrays, each by a check of its own."""
+
+
+def test_what_cannot_be_read_is_refused_by_name():
+    """An object that cannot become an array, rows of different lengths, a module."""
+    for name, arguments in AN_ARRAY_IS_TAKEN.items():
+        function, given = CALLS[name]
+        for argument in arguments:
+            for value in (Unreadable(), RAGGED, np):
+                is_answered((name, function, given | {argument: value}))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(CALLS))
+def test_what_cannot_be_read_is_refused_by_name_everywhere(name):
+    function, given = CALLS[name]
+    for argument in given:
+        for value in (Unreadable(), RAGGED, np, np.ma.masked_all(3), np.array([1.0, None]), {"a": 1}, [[[[[1.0]]]]]):
+            is_answered((name, function, given | {argument: value}))
+
+
+@pytest.mark.parametrize(
+    ("name", "argument", "value"),
+    [
+        ("Tie", "strength", 1e308),
+        ("contact_stiffness", "inverse_weight", 1e308),
+        ("StiffnessRange", "basis", math.nan),
+        ("StiffnessRange", "basis", float),
+        ("StiffnessRange", "basis", np.ones(3)),
+    ],
+)
+def test_what_no_wall_has_is_refused(name, argument, value):
+    function, given = CALLS[name]
+    with pytest.raises((ValueError, TypeError), match=argument):
+        function(**given | {argument: value})
+
+
 @pytest.mark.slow
 @given(calls())
 @settings(max_examples=10_000, deadline=None, derandomize=True, suppress_health_check=HEALTH)

@@ -1,3 +1,4 @@
+import contextlib
 import dataclasses
 import sqlite3
 
@@ -30,6 +31,32 @@ def test_rows_come_back_in_the_order_asked(tmp_path):
         with pytest.raises(ValueError, match="no column moment"):
             store.rows(moment=3)
     assert [p.name for p in tmp_path.iterdir()] == ["c.sqlite"]
+
+
+COLUMNS = "key, position, status, error, version, seconds, checksum"
+FOREIGN = {
+    "an endless view": "CREATE VIEW cases AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) "
+    "SELECT x key, x position, 'done' status, NULL error, 1 version, 1.0 seconds, 'a' checksum FROM c",
+    "a computed column": f"CREATE TABLE cases ({COLUMNS}, room GENERATED ALWAYS AS (zeroblob(1000000000)))",
+    "a virtual table": f"CREATE VIRTUAL TABLE cases USING fts5({COLUMNS})",
+}
+
+
+@pytest.mark.parametrize("kind", FOREIGN)
+def test_rows_that_are_computed_are_not_read(tmp_path, kind):
+    """A file that others made can look like a store and have no end. A view beside the table is the user's own."""
+    path = tmp_path / "c.sqlite"
+    with Store(path, writing=True) as store:
+        store.add([row("a")])
+    with contextlib.closing(sqlite3.connect(path)) as own:
+        own.execute("CREATE VIEW mine AS SELECT key FROM cases")
+    assert len(Store(path)) == 1
+    with contextlib.closing(sqlite3.connect(path)) as foreign:
+        foreign.execute("DROP TABLE cases")
+        foreign.execute(FOREIGN[kind])
+    with pytest.raises(ValueError, match="its rows are computed as they are read"):
+        Store(path)
+    assert Store.rescue(path, tmp_path / "rescued.sqlite") == 0
 
 
 def test_a_frame(tmp_path):

@@ -19,6 +19,7 @@ from ...quantities import (
     require_kind,
     require_real,
     require_stiffness,
+    require_text,
     require_within,
     short_repr,
     shown,
@@ -210,6 +211,7 @@ class StiffnessRange:
 
     def __post_init__(self) -> None:
         keep(self, **{name: require_stiffness(name, getattr(self, name)) for name in ("low", "best", "high")})
+        keep(self, basis=require_text("basis", self.basis))
         if not self.low <= self.best <= self.high:
             raise ValueError(f"best = {self.best:g} N/m3 is outside the valid range {self.low:g} to {self.high:g} N/m3")
 

@@ -83,10 +83,10 @@ class Actuator(Effect):
             keep(self, block=require_whole("block of the actuator", self.block, 0, BLOCKS))
         if self.displacement is None:
             keep(self, displacement=((0.0,), (0.0,)))
-        shaped = self.direction if self.at is None else self.at
+        shaped = require_reals("direction of the actuator", self.direction if self.at is None else self.at, "a vector")
         keep(
             self,
-            direction=_unit(self.direction, 3 if np.shape(shaped) == (3,) else 2),
+            direction=_unit(self.direction, 3 if shaped.shape == (3,) else 2),
             displacement=history_of(
                 "displacement of the actuator", self.displacement, LARGEST_STROKE, "m", from_zero=True
             ),

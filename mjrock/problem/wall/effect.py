@@ -15,7 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...compiled import inlined
-from ...quantities import Array, keep, keep_declared, require_array, require_whole, require_within, short_repr
+from ...quantities import (
+    Array,
+    keep,
+    keep_declared,
+    require_array,
+    require_reals,
+    require_whole,
+    require_within,
+    short_repr,
+)
 
 Point = tuple[float, float, float]
 PointOf = tuple[float, ...]
@@ -41,11 +50,11 @@ def place_or_none(name: str, value: Any, least: int = 2) -> PointOf | None:
     """
     if value is None:
         return None
-    shape = np.shape(value)
-    count = 2 if shape == (2,) and least == 2 else 3
+    point = require_reals(name, value, "x, z or x, y, z")
+    count = 2 if point.shape == (2,) and least == 2 else 3
     return tuple(
         require_within(name, each, -FARTHEST_POINT, FARTHEST_POINT, "m")
-        for each in require_array(name, value, (count,))
+        for each in require_array(name, point, (count,))
     )
 
 

@@ -14,6 +14,8 @@ GOVERNING = ("bar", "punching", "bearing", "other end")
 Diameter = Annotated[float, Within(0.004, 0.2, "m", "diameter of the bar")]
 YieldStress = Annotated[float, Within(50e6, 2e9, "Pa", "yield_stress of the bar")]
 Thickness = Annotated[float, Within(0.05, 10, "m", "thickness of the wall")]
+STRONGEST = 1e12
+"""Largest strength of a tie [N]."""
 ShearStrength = Annotated[float, Within(1e3, 5e6, "Pa", "shear_strength of the masonry")]
 Strength = Annotated[float, Within(1e5, 1e8, "Pa", "compressive_strength of the masonry")]
 Count = Annotated[int, Within(1, 1000, name="number of ties", whole=True)]
@@ -32,7 +34,7 @@ class Tie(Anchored):
         height: where it holds the wall [m].
         stiffness: E A over its length [N/m], 1 to 1e12.
         slack: elongation before it pulls [m], 0 to 10.
-        strength: force at which it yields [N], above 0; infinite for one that does not.
+        strength: force at which it yields [N], above 0 to 1e12; infinite for one that does not.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
         anchor_height: height of the anchor [m], -200 to 200; None is that of the tie.
         block: the block that it holds.
@@ -76,9 +78,10 @@ class Tie(Anchored):
     def __post_init__(self) -> None:
         super().__post_init__()
         keep(self, strength=require_real("strength of the tie", self.strength))
-        if not self.strength > 0:
+        if not (0 < self.strength <= STRONGEST or self.strength == math.inf):
             raise ValueError(
-                f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
+                f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N to "
+                f"{STRONGEST:g} N, or inf for a tie that does not yield"
             )
         if self.governed_by is not None:
             require_one_of("governed_by of the tie", self.governed_by, GOVERNING)

@@ -112,6 +112,8 @@ class Store:
             if missing:
                 names = ", ".join(sorted(missing))
                 raise sqlite3.DatabaseError(f"it has no column {names}, or an earlier version of mjrock wrote it")
+            if not _is_written(self._rows):
+                raise ValueError(f"{self.path} is not the store of a campaign: its rows are computed as they are read")
         if writing:
             self._rows.execute("PRAGMA journal_mode = WAL")
             self._rows.execute("PRAGMA synchronous = NORMAL")
@@ -270,12 +272,21 @@ class Store:
         return pandas.DataFrame(self.rows(), columns=self.columns)
 
 
+def _is_written(connection: sqlite3.Connection) -> bool:
+    """Whether the cases of a store are no view, which may be endless, no virtual table, and have no computed column."""
+    is_table = "SELECT count(*) FROM sqlite_master WHERE name = 'cases' AND sql LIKE 'CREATE TABLE%'"
+    computed = "SELECT count(*) FROM pragma_table_xinfo('cases') WHERE hidden"
+    return connection.execute(f"SELECT ({is_table}) > ({computed})").fetchone() == (1,)
+
+
 def readable(path: Path) -> list[Row]:
     """The rows of a damaged store that are as they were written: those before the first and after the last damage."""
     kept: dict[str, Row] = {}
     for order in ("ASC", "DESC"):
         with contextlib.suppress(*UNREADABLE), contextlib.closing(sqlite3.connect(path)) as connection:
             connection.text_factory = lambda text: text.decode("utf-8", "replace")
+            if not _is_written(connection):
+                return []
             cursor = connection.execute(f"SELECT * FROM cases NOT INDEXED ORDER BY rowid {order}")
             names = [column[0] for column in cursor.description]
             for values in cursor:

@@ -893,8 +893,8 @@ class _Judged(NamedTuple):
 
 def _cases_of(runs: Sequence[Response | Analysis], curve: LimitCurve | Push | None) -> list[AnyCase]:
     """The cases of runs of one kind, which are of one wall or masonry with the same effects."""
-    first = runs[0].case
-    masonry = None
+    require_kind("runs[0]", runs[0], Response, Analysis)
+    first, masonry = runs[0].case, None
     if isinstance(curve, Push):
         _require_whole(curve)
         masonry = curve.answer.case.built

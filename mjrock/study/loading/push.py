@@ -22,7 +22,17 @@ from ...problem.masonry.actuator import LARGEST_STROKE, Actuator
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effect import Effect
-from ...quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown, warn_of
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Implausible,
+    require_kind,
+    require_reals,
+    require_row,
+    require_within,
+    shown,
+    warn_of,
+)
 from ...result.problem import required_start
 from ...result.response import End, Response, State
 from ...result.ties import warn_of_ties
@@ -174,7 +184,7 @@ def push(
     require_kind("masonry", masonry, Masonry)
     allowed = require_within("inertia", inertia, 1e-4, 0.5)
     falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
-    turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
+    turns = require_row("to", np.atleast_1d(require_reals("to", to, "displacements")), "displacement")
     require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST_STROKE, LARGEST_STROKE, "m")
     if turns.any():
         require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST_STROKE, "m")

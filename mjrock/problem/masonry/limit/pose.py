@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ....geometry.convex import within
 from ....geometry.poses import at_rest, rotations
-from ....quantities import Array, Flags, Integers, keep, require_array
+from ....quantities import Array, Flags, Integers, keep, require_array, require_reals
 from ...wall.effect import Anchored, Effect
 from ..blocks.compound import AnyBlock, Compound
 from ..blocks.joints import Joint
@@ -41,8 +41,9 @@ def pose_of_all(masonry: Masonry, pose: ArrayLike) -> Array:
     """
     blocks, freedom = len(masonry.blocks), masonry.freedom
     moved = at_rest(blocks, freedom).reshape(blocks, freedom.nq)
-    some = list(range(blocks)) if np.shape(pose) == moved.shape else list(masonry.free)
-    moved[some] = require_array("pose", pose, moved[some].shape)
+    given = require_reals("pose", pose, "a pose of all blocks, or of those that are free")
+    some = list(range(blocks)) if given.shape == moved.shape else list(masonry.free)
+    moved[some] = require_array("pose", given, moved[some].shape)
     if masonry.in_space:
         length = np.linalg.norm(moved[:, 3:], axis=1)
         if (off := np.abs(length - 1)).max() > OFF_UNIT:
