@@ -180,7 +180,7 @@ def contact_parameters(
         ValueError: for a value outside its range, or one that needs an impedance which MuJoCo would silently clamp.
     """
     given = {"stiffness k": k, "damping c": c, "timestep": timestep, "inverse_weight": inverse_weight}
-    if any(isinstance(value, list | tuple) or (is_iterable(value) and np.ndim(value) > 0) for value in given.values()):
+    if any(isinstance(value, list | tuple) or np.ndim(value) > 0 for value in given.values() if is_iterable(value)):
         return _many_parameters(given, newmark_beta)
     k = require_within("stiffness k", k, 1e-30, 1e30, "N/m")
     c = require_within("damping c", c, 0.0, 1e30, "N s/m")

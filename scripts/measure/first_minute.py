@@ -4,25 +4,35 @@ Each row is a process of its own that imports the package and solves one problem
 "compiled first" has nothing stored either and waits for the compiler, as MJROCK_INTERPRET=0 asks. "full speed" is the
 time after which another process has stored the loops. "stored" takes stored loops. "plain" is without the compiler.
 With --clone the demo of a fresh clone is timed too, of this commit and of --against, in turn.
+
+A second table has three starts of one short script, one after the other: the wall of the README eight times in each
+solver. The next start begins when no process compiles any more. "before" is KILLED, the last commit whose compiler
+ended with the script.
 """
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from filelock import FileLock
 from tqdm import tqdm
 
+from mjrock.patience import ENDING
 from scripts.shared import cli
 
 ROOT = Path(__file__).parents[2]
 BEFORE = "15d7b1f"
 """The last commit that waited for the compiler."""
+KILLED = "1fb55d24"
+"""The last commit whose compiler ended with the script."""
 SET_UP = """
 import time; begun = time.perf_counter()
 import sys, mjrock as mr
@@ -39,10 +49,25 @@ print(first)
 """
 UNTIL_STORED = """
 from mjrock import patience
-while "numba" not in sys.modules and patience._here.compiling is not None and time.perf_counter() - begun < 300:
+while "numba" not in sys.modules and patience._here.compiler is not None and time.perf_counter() - begun < 300:
     time.sleep(0.2)
     patience.news()
 print(time.perf_counter() - begun)
+"""
+STARTS = """
+import time; begun = time.perf_counter()
+import mjrock as mr
+wall = mr.Block.from_size(0.6, 4.2)
+e = mr.Restitution.from_geometry(wall)
+contacts = mr.Contacts.from_law(wall, e, k_base=5e8, k_side=5e8)
+case, found = mr.Case(wall, 0.5 * wall.alpha, 3.0), []
+for solve in (lambda: mr.solve_analytical(case, e), lambda: mr.simulate(case, contacts),
+              lambda: mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 0.05), contacts, 1e-4)):
+    for _ in range(8):
+        once = time.perf_counter()
+        solve()
+    found.append(time.perf_counter() - once)
+print(time.perf_counter() - begun, *found)
 """
 RUNS = {
     "the wall of the README, 3 s": "mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 3.0), contacts)",
@@ -56,6 +81,7 @@ RUNS = {
 def seconds(folder: Path, code: str, **environment: str) -> list[float]:
     """What a program prints that takes the package in a folder [s]."""
     setting = {name: value for name, value in os.environ.items() if not name.startswith(("MJROCK_", "NUMBA_"))}
+    setting = {name: value for name, value in setting.items() if name not in ENDING}
     setting |= {"PYTHONPATH": str(folder), "PYTHONWARNINGS": "ignore"} | environment
     command = [sys.executable, "-c", code]  # which looks for the package in its folder first
     done = subprocess.run(command, cwd=folder, env=setting, capture_output=True, text=True, check=True)
@@ -82,6 +108,31 @@ def times(folder: Path, name: str) -> list[str]:
     return [f"{first:.2f}", "" if name == EXPLICIT else f"{full:.1f}", f"{compiled:.1f}", f"{stored:.2f}", plain]
 
 
+def starts(folder: Path) -> list[list[str]]:
+    """Three starts of a script with the package in a folder: the script [s], and the last of eight calls of theory, of
+    steps in MuJoCo that fit the motion and of steps of one length [ms]."""
+    rows, elsewhere = [], folder / "tmp"  # the package does not lie in a folder of temporary files
+    elsewhere.mkdir()
+    emptied(folder)
+    for number in ("first", "second", "third"):
+        took, *calls = seconds(folder, STARTS, TMPDIR=str(elsewhere))
+        rows.append([number, f"{took:.2f}", *(f"{1e3 * call:.2f}" for call in calls)])
+        with FileLock(folder / "mjrock/__pycache__/compiler.lock"):  # which the process that compiles holds to its end
+            pass
+    return rows
+
+
+def package(revision: str | None, folder: Path) -> Path:
+    """A folder with the package of a revision, or with that of this checkout, without loops."""
+    if revision is None:
+        shutil.copytree(ROOT / "mjrock", folder / "mjrock", ignore=shutil.ignore_patterns("__pycache__"))
+        return folder
+    archive = subprocess.run(["git", "-C", str(ROOT), "archive", revision, "mjrock"], capture_output=True, check=True)
+    with tarfile.open(fileobj=io.BytesIO(archive.stdout)) as files:
+        files.extractall(folder, filter="data")
+    return folder
+
+
 def demo(revision: str, folder: Path) -> float:
     """Time from a fresh clone of a revision to the picture of `make demo` [s]."""
     subprocess.run(["git", "clone", "--quiet", str(ROOT), str(folder)], check=True)
@@ -103,14 +154,20 @@ def main(argv: Sequence[str] | None = None) -> None:
     header = ["[s]", "first answer", "full speed after", "compiled first", "stored", "plain"]
     rows: list[list[object]] = []
     with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        shutil.copytree(ROOT / "mjrock", folder / "mjrock", ignore=shutil.ignore_patterns("__pycache__"))
+        folder = package(None, Path(made) / "now")
         for name in tqdm(names, desc="first runs", disable=None, leave=False):
             rows.append([name, *times(folder, name)])
         if args.clone:
             for revision in (args.against, "HEAD"):
                 rows.append([f"make demo of {revision}", f"{demo(revision, folder / 'clone'):.0f}", "", "", "", ""])
-    cli.report(out / "first_minute", cli.table(header, rows), header, rows)
+        cli.report(out / "first_minute", cli.table(header, rows), header, rows)
+        if args.quick:
+            return
+        header, rows = ["start", "script [s]", "theory [ms]", "fitted steps [ms]", "fixed steps [ms]"], []
+        for name, revision in (("before", KILLED), ("now", None)):
+            found = starts(package(revision, Path(made) / name / "starts"))
+            rows += [[f"{number}, {name}", *more] for number, *more in found]
+        cli.report(out / "starts", cli.table(header, rows), header, rows)
 
 
 if __name__ == "__main__":

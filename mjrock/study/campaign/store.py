@@ -276,7 +276,8 @@ def _is_written(connection: sqlite3.Connection) -> bool:
     """Whether the cases of a store are no view, which may be endless, no virtual table, and have no computed column."""
     is_table = "SELECT count(*) FROM sqlite_master WHERE name = 'cases' AND sql LIKE 'CREATE TABLE%'"
     computed = "SELECT count(*) FROM pragma_table_xinfo('cases') WHERE hidden"
-    return connection.execute(f"SELECT ({is_table}) > ({computed})").fetchone() == (1,)
+    (is_plain,) = connection.execute(f"SELECT ({is_table}) > ({computed})").fetchone()
+    return bool(is_plain)
 
 
 def readable(path: Path) -> list[Row]:
