@@ -14,7 +14,7 @@ GOVERNING = ("bar", "punching", "bearing", "other end")
 Diameter = Annotated[float, Within(0.004, 0.2, "m", "diameter of the bar")]
 YieldStress = Annotated[float, Within(50e6, 2e9, "Pa", "yield_stress of the bar")]
 Thickness = Annotated[float, Within(0.05, 10, "m", "thickness of the wall")]
-STRONGEST = 1e12
+STRONGEST_TIE = 1e12
 """Largest strength of a tie [N]."""
 ShearStrength = Annotated[float, Within(1e3, 5e6, "Pa", "shear_strength of the masonry")]
 Strength = Annotated[float, Within(1e5, 1e8, "Pa", "compressive_strength of the masonry")]
@@ -78,10 +78,10 @@ class Tie(Anchored):
     def __post_init__(self) -> None:
         super().__post_init__()
         keep(self, strength=require_real("strength of the tie", self.strength))
-        if not (0 < self.strength <= STRONGEST or self.strength == math.inf):
+        if not (0 < self.strength <= STRONGEST_TIE or self.strength == math.inf):
             raise ValueError(
                 f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N to "
-                f"{STRONGEST:g} N, or inf for a tie that does not yield"
+                f"{STRONGEST_TIE:g} N, or inf for a tie that does not yield"
             )
         if self.governed_by is not None:
             require_one_of("governed_by of the tie", self.governed_by, GOVERNING)
