@@ -28,6 +28,8 @@ SHIFT = 1e-9
 nothing resists are then no exception."""
 MIXTURES = 4
 """Motions that stand for all that are loose in a large structure."""
+LARGE = 0.5
+"""Component of a mode that may give it its sign, over its largest [-]."""
 SEARCHED = 1e-12
 """Tolerance of the search for a frequency of a large structure, over its square [-]."""
 
@@ -131,7 +133,10 @@ def _factors(matrix: csc_array) -> scipy.sparse.linalg.SuperLU:
 
 
 def lowest_mode(matrix: csr_array, most: float) -> tuple[float, Array]:
-    """The lowest eigenvalue of a symmetric matrix, none of which is below -most, and its unit vector."""
+    """The lowest eigenvalue of a symmetric matrix, none of which is below -most, and its unit vector.
+
+    The first of its large components is positive: no rounding decides which way it points.
+    """
     n = matrix.shape[0]
     if n <= FEW:
         values, modes = np.linalg.eigh(matrix.toarray())
@@ -140,7 +145,8 @@ def lowest_mode(matrix: csr_array, most: float) -> tuple[float, Array]:
         values, modes = scipy.sparse.linalg.eigsh(
             csc_array(matrix), 1, sigma=-2 * most, which="LM", tol=SEARCHED, v0=start
         )
-    return float(values[0]), modes[:, 0]
+    mode = modes[:, 0]
+    return float(values[0]), mode * np.sign(mode[np.argmax(np.abs(mode) > LARGE * np.abs(mode).max())])
 
 
 def loose(rows: csr_array) -> Array:

@@ -152,18 +152,24 @@ class Gap(NamedTuple):
 
 @inlined
 def meeting(places: Places, i: int, frames: Array) -> Meeting:
-    """Where point i and its face meet at a pose."""
+    """Where point i and its face meet at a pose.
+
+    The gap is that at rest, and what displacements add to it: displacements are far smaller than the vectors between
+    points and faces, and so is their rounding, which a stiff spring turns into a force.
+    """
     axes, body, face = places.axes, places.body[i], places.face_body[i]
-    at, normal = vector(places.at, i, axes), vector(places.normal, i, axes)
-    between = plus(vector(places.between, i, axes), place(frames, body, axes))
-    arm, across = plus(at, rotation_change(frames, body, at)), displaced(between, frames, body, at)
+    at, normal, between = vector(places.at, i, axes), vector(places.normal, i, axes), vector(places.between, i, axes)
+    apart, moves = displaced(place(frames, body, axes), frames, body, at), dot(normal, between)
+    arm = plus(at, rotation_change(frames, body, at))
     if face < 0:
-        return Meeting(dot(normal, across), normal, across, arm, across)
+        across = plus(between, apart)
+        return Meeting(moves + dot(normal, apart), normal, across, arm, across)
     at = vector(places.face_at, i, axes)
-    across = minus(across, displaced(place(frames, face, axes), frames, face, at))
-    normal = displaced(normal, frames, face, normal)
+    apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
+    across, turning = plus(between, apart), rotation_change(frames, face, normal)
     face_arm = plus(plus(at, rotation_change(frames, face, at)), across)
-    return Meeting(dot(normal, across), normal, across, arm, face_arm)
+    gap = moves + (dot(normal, apart) + dot(turning, across))
+    return Meeting(gap, plus(normal, turning), across, arm, face_arm)
 
 
 @inlined

@@ -130,9 +130,10 @@ def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> Val
             f"{'more friction' if friction else 'more to stand on'}, or a support or a tie"
         )
     return ValueError(
-        f"the masonry cannot stand: {gone} would slide down, however large k_n is. Friction would hold them if "
-        "their joints were pressed together, as by wedges, but the weight alone does not press them enough; give the "
-        "joints more friction, or the blocks a support or a tie"
+        f"no pose of rest was found: {gone} would slide down from the drawn pose on joints of any stiffness that was "
+        "tried, although limit analysis finds forces that hold rigid blocks. These joints hold by friction where they "
+        "are pressed together, as by wedges, and the weight alone does not press them enough; give the joints more "
+        "friction, or the blocks a support or a tie"
     )
 
 
@@ -163,10 +164,10 @@ def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...
 
 def stands_on_stiff_joints(scene: Scene) -> bool:
     """Whether masonry comes to rest on joints that give by no more than STIFF under its heaviest block."""
-    k = scene.contacts.k
+    k, k_s = scene.contacts.k, np.asarray(scene.contacts.k_s)
     factor = max(1.0, float(scene.bodies.mass.max()) * GRAVITY / (SETTLEMENT_OF_STIFF * float(k.min())))
     try:
-        _ = replace(scene, contacts=replace(scene.contacts, k=factor * k)).at_rest
+        _ = replace(scene, contacts=replace(scene.contacts, k=factor * k, k_s=factor * k_s)).at_rest
     except UnsettledError:
         return False
     return True

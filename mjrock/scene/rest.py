@@ -1,10 +1,16 @@
 """Bodies at rest: a pose and friction within its cones in which the springs of contacts and ties carry the weight.
 
 Contacts push only. Along the face each has a spring with a slider that slips where the spring would pass the friction.
-Where many slip, friction accumulates from pose to pose as it does in the explicit steps. The search is Newton's method.
-Keeping the shear stiffness of slipping contacts converges safely and slowly; dropping it converges fast or not at all.
-The share of the stiffness that is kept is therefore halved from pose to pose, and is whole again when more force is
-missing than before.
+The springs are those of the joints, or nearly rigid ones where joints stick rigidly. Many poses may be at rest, as
+sliders may stand anywhere. The one that is sought is that in which every spring has been stretched once, from the drawn
+pose: of all that need no slip it has the least energy in its springs. The equations have one text, so that the pose
+depends on no path and on no rounding.
+
+The search is Newton's method. Its exact step, in which the limit of friction follows the pressure, is taken where it
+halves the force that is missing. Elsewhere a step is taken that lowers the energy at the present limits. Keeping the
+shear stiffness of slipping contacts converges safely and slowly; dropping it converges fast or not at all. The share of
+the stiffness that is kept is therefore halved from pose to pose, and is whole again when more force is missing than
+before.
 """
 
 from __future__ import annotations
@@ -24,8 +30,8 @@ from .potential import Potential, Structure
 
 FORCE_TOLERANCE = 1e-9
 """Force that may be missing at rest, over the weight of the heaviest body [-]."""
-LENGTH_ROUNDING = 16 * np.finfo(float).eps
-"""Rounding of the length of a tie, over that length [-]."""
+ROUNDING = 16 * np.finfo(float).eps
+"""Rounding of the displacements of bodies and of the lengths of ties, over these [-]."""
 LEANING = 1e-6
 """Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
 ROTATION_OF_FALLEN = 0.5
@@ -42,47 +48,21 @@ ENERGY_ROUNDING, RAISES, SMALLEST_PART = 1e-13, 1e-6, 1e-6
 """Rounding of the energy, over the weight of a body times a metre [-]; by how much a step of Newton's method may raise
 the energy, over itself, as friction acts halfway between point and face where slip is that of the point [-]; and the
 smallest part of a step that is tried."""
-PUSHES, PUSH = 4, 1e-2
-"""Most pushes off poses at which the bodies balance and do not stand, and the first motion of one, over the deepest
-penetration [-]."""
+BEGINNING = LOOSE, 1.0, SLIPPING, np.inf
+"""What is lent, shares and least shares of slipping contacts, and the force that was missing, where a search begins."""
+PUSH = 1e-2
+"""First motion of a push off a pose at which the bodies balance and do not stand, over the deepest penetration [-]."""
 LITTLE_PROGRESS = 0.5
-"""Force that is missing, over that of the pose before, above which a pose that is near enough ends the search [-].
-Faces that touch without force are then apart by less than the resolution of the coordinates."""
-
-
-class Search(NamedTuple):
-    """A search for rest.
-
-    Args:
-        shear: shear stiffness of the contacts over their normal stiffness [-].
-        poses: how many are tried at most.
-        limited: whether friction has its limit. Without one it holds the mean slip of the points of a joint that touch:
-            points that were all held would lock its rotation.
-        accumulates: whether sliders stay where they have slipped to from pose to pose.
-        resumes: whether it starts where the one without a limit has ended, or from the undeformed pose.
-    """
-
-    shear: float
-    poses: int
-    limited: bool = True
-    accumulates: bool = False
-    resumes: bool = False
-
-
-SEARCHES_FOR_REST = (
-    Search(1e3, 20),
-    Search(1e3, 20, limited=False),
-    Search(1e3, 80, resumes=True),
-    Search(1.0, 150, accumulates=True),
-    Search(0.1, 300, accumulates=True),
-)
-"""Searches in turn, until one with limits ends. The first ones are nearly rigid along the faces. Contacts are softer
-there in the last ones, as stiff ones slip more on the way."""
-
-
-SEARCH_WITHOUT_LIMIT = Search(1e4, 100, limited=False)
-"""The search in which friction holds without a limit. With 1e6 in place of 1e4, rounding of the slip makes a larger
-force than may be missing."""
+"""Force that is missing, over that of the pose before, above which an exact step is not taken, and a pose that is near
+enough ends the search [-]."""
+RIGID, RIGID_WITHOUT_LIMIT = 1e3, 1e4
+"""Shear stiffness of contacts that stick rigidly, over their normal stiffness [-]: with the limit of friction, and
+without one. More makes rounding of the slip a larger force than may be missing."""
+SOFT = 0.1
+"""Shear stiffness, over the normal one, at which the pose is found from which a search starts that finds none from the
+undeformed pose [-]: stiff springs slip more on the way."""
+POSES = 300
+"""Most poses of a search."""
 
 
 class UnsettledError(ValueError):
@@ -97,19 +77,30 @@ class UnsettledError(ValueError):
         self.pose = pose
 
 
+class Search(NamedTuple):
+    """What is sought.
+
+    Args:
+        shear: stiffness of the contacts along their faces [N/m], shape (m,).
+        limited: whether friction has its limit. Without one it holds the mean slip of the points of a joint that touch:
+            points that were all held would lock its rotation.
+    """
+
+    shear: Array
+    limited: bool
+
+
 class Sliders(NamedTuple):
     """Springs of the contacts along their faces, which slip where they would pass the friction.
 
     Args:
         stiffness: of the springs [N/m], shape (m,).
         limit: friction that each contact can have, negative for one that is open or smooth [N], shape (m,).
-        place: how far each slider has moved [m], shape (m, ways): one way in the plane, two in space.
-        shares: share of the slip of every point in the elongation of each spring [-], shape (m, m).
+        shares: share of the slip of every point in the stretch of each spring [-], shape (m, m).
     """
 
     stiffness: Array
     limit: Array
-    place: Array
     shares: csr_array
 
 
@@ -121,25 +112,64 @@ class Grips(NamedTuple):
         drag: friction on the bodies of the points [N], shape (m, ways).
         stiffness: of the chord where a point slips [N/m], shape (m,).
         slips: whether a point slips, shape (m,).
-        slider: how far the slider of each point has moved [m], shape (m, ways).
     """
 
     rates: tuple[csr_array, ...]
     drag: Array
     stiffness: Array
     slips: Flags
-    slider: Array
 
     @property
     def held(self) -> Array:
         """Generalised force of the friction, shape (n nv,)."""
         return np.sum([rates.T @ drag for rates, drag in zip(self.rates, self.drag.T, strict=True)], axis=0)
 
+    @property
+    def slipping(self) -> Flags:
+        """Which points slip and have friction, shape (m,)."""
+        return np.asarray(self.slips & (self.stiffness > 0))
 
-def settled(potential: Potential) -> tuple[Array, Array]:
+    def along(self, slips: Flags) -> csr_array:
+        """Rates of points that slip along the friction that they have, shape (points, n nv)."""
+        ways = (self.drag[slips] / np.linalg.norm(self.drag[slips], axis=1)[:, None]).T
+        rows = (times(way, rates[slips]) for way, rates in zip(ways, self.rates, strict=True))
+        return csr_array(sum(rows, start=csr_array((int(slips.sum()), self.rates[0].shape[1]))))
+
+
+class Trial(NamedTuple):
+    """A pose that is tried, and the forces there.
+
+    Args:
+        pose: shape (n nq,).
+        closed: which springs act, shape (m + t,).
+        rates: of their openings for unit velocities, shape (m + t, n nv).
+        push: force of each [N], shape (m + t,).
+        sliders, grips: the friction.
+        missing: generalised force that is missing, moments over the size of the body [N], shape (n nv,).
+    """
+
+    pose: Array
+    closed: Flags
+    rates: csr_array
+    push: Array
+    sliders: Sliders
+    grips: Grips
+    missing: Array
+
+    @property
+    def left(self) -> float:
+        """Sum of the forces that are missing [N]."""
+        return float(np.abs(self.missing).sum())
+
+
+def settled(potential: Potential, k_s: Array) -> tuple[Array, Array]:
     """The pose in which the springs of contacts and ties carry weight and forces, and the friction there.
 
     Where nothing holds a direction, the bodies stay where they are.
+
+    Args:
+        potential: of the bodies.
+        k_s: stiffness of the contacts along their faces [N/m], infinite where they stick rigidly, shape (m,).
 
     Returns:
         The pose, shape (n, nq), and the friction on the bodies of the points along the ways of `Potential.slip_rates`
@@ -148,86 +178,114 @@ def settled(potential: Potential) -> tuple[Array, Array]:
     Raises:
         UnsettledError: if no such pose is found near the undeformed one, or the bodies fall from it.
     """
-    start = None
-    for search in SEARCHES_FOR_REST:
-        if search.resumes and start is None:
-            continue
-        try:
-            pose, grips = searched(potential, search, start if search.resumes else None)
-        except UnsettledError as error:
-            unsettled = error
-            continue
-        if search.limited:
-            pose, grips = left_falling(potential, search, (pose, grips))
-            return pose.reshape(-1, potential.structure.places.freedom.nq), grips.drag
-        start = pose
-    raise unsettled
+    k = potential.structure.places.k
+    search = Search(np.where(np.isfinite(k_s), k_s, RIGID * k), limited=True)
+    try:
+        pose, grips = searched(potential, search)
+    except UnsettledError:
+        start, _ = searched(potential, Search(SOFT * k, limited=True))
+        pose, grips = searched(potential, search, start)
+    return pose.reshape(-1, potential.structure.places.freedom.nq), grips.drag
 
 
 def held(potential: Potential) -> Array:
     """The pose of rest of bodies that friction holds without a limit, shape (n, nq), see `settled`."""
-    pose, _ = left_falling(potential, SEARCH_WITHOUT_LIMIT, searched(potential, SEARCH_WITHOUT_LIMIT, None))
+    pose, _ = searched(potential, Search(RIGID_WITHOUT_LIMIT * potential.structure.places.k, limited=False))
     return pose.reshape(-1, potential.structure.places.freedom.nq)
 
 
-def left_falling(potential: Potential, search: Search, found: tuple[Array, Grips]) -> tuple[Array, Grips]:
-    """The pose of rest to which bodies fall from one that was found, which is the same where they stand there.
+def searched(potential: Potential, search: Search, start: Array | None = None) -> tuple[Array, Grips]:
+    """The pose of rest, shape (n nq,), and the friction there.
+
+    The search starts from a pose, or with None from the undeformed one, at which all contacts touch. Bodies that
+    balance at a pose and do not stand there are pushed off it, and the search goes on where energy falls.
 
     Raises:
-        UnsettledError: if they stand nowhere near it.
+        UnsettledError: if there is none within the number of poses.
     """
-    for _ in range(PUSHES):
-        pose, grips = found
-        way = falling_way(potential, grips, pose)
-        if way is None:
-            return found
-        found = searched(potential, search, let_go(potential, grips, pose, way))
-    raise UnsettledError(found[0].reshape(-1, potential.structure.places.freedom.nq))
-
-
-def searched(potential: Potential, search: Search, start: Array | None) -> tuple[Array, Grips]:
-    """The pose of rest, shape (n nq,), and the friction there, by one of the searches.
-
-    It starts from a pose, or with None from the undeformed one.
-
-    Raises:
-        UnsettledError: if there is none within its number of poses.
-    """
-    k, masses, freedom = potential.springs, potential.structure.masses, potential.structure.places.freedom
-    size = np.sqrt(masses / np.repeat(masses[:: freedom.nv], freedom.nv))  # compares moments with forces
-    loose, share, least, last = LOOSE, 1.0, SLIPPING, np.inf
-    m, pose = len(potential.structure.places.k), potential.unmoved if start is None else start
-    openings, slipped = potential.openings(pose), np.zeros((m, freedom.translations - 1))
-    closed = touching(potential, pose) if start is None else potential.closed(openings)
-    for tried in range(search.poses):
-        rates, push = potential.rates(pose), potential.forces_at(openings)
-        sliders = sliders_at(potential.structure.places, search, np.where(closed, push, -1.0)[:m], slipped)
-        grips = grips_at(potential, pose, sliders)
-        missing = (potential.load(pose) + rates.T @ push + grips.held) / size
-        left, slipped = float(np.abs(missing).sum()), grips.slider if search.accumulates else slipped
-        ends = left >= LITTLE_PROGRESS * last or tried == search.poses - 1
-        if ends and np.abs(missing).max() < tolerance(potential):
-            return pose, grips
-        if left < last:
+    freedom, (loose, share, least, last) = potential.structure.places.freedom, BEGINNING
+    trial, pushed = tried(potential, search, potential.unmoved if start is None else start, start is None), False
+    for poses in range(POSES):
+        ending = trial if start is None and not poses else ended(potential, search, trial)
+        if balances(potential, search, ending):
+            way = falling_way(potential, search, ending)
+            if way is None:
+                return ending.pose, ending.grips
+            if not pushed or balances(potential, search, trial):
+                trial, pushed = tried(potential, search, let_go(potential, ending.grips, ending.pose, way)), True
+                loose, share, least, last = BEGINNING
+        if trial.left < last:
             loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
         else:
             loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
-        last = left
-        stiffness = sprung(rates, np.where(closed, k, LEANING * k)) + shear_stiffness(grips, share)
-        scaled = times(1 / size, csr_array(stiffness))
-        scaled.data *= (1 / size)[scaled.indices]
-        lent = np.full(len(size), loose * float(scaled.diagonal().max()))
-        motion = scipy.sparse.linalg.splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
-        pose = lowering(potential, pose, motion, sliders)
-        openings = potential.openings(pose)
-        closed = potential.closed(openings)
-        if loose > MOST_LOOSE or not turned(pose, freedom).max() < ROTATION_OF_FALLEN:
+        last = trial.left
+        springs = np.where(trial.closed, potential.springs, LEANING * potential.springs)
+        stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.grips, share)
+        motion = solved(potential, stiffness, trial.missing, loose)
+        trial = tried(potential, search, lowering(potential, trial.pose, motion, trial.sliders))
+        if loose > MOST_LOOSE or not turned(trial.pose, freedom).max() < ROTATION_OF_FALLEN:
             break
-    raise UnsettledError(pose.reshape(-1, freedom.nq))
+    raise UnsettledError(trial.pose.reshape(-1, freedom.nq))
 
 
-def sliders_at(contacts: Places, search: Search, push: Array, slipped: Array) -> Sliders:
-    """Sliders at places [m], shape (m, ways), under forces of the contacts, negative where one is open [N], (m,)."""
+def balances(potential: Potential, search: Search, trial: Trial) -> bool:
+    """Whether no force is missing at a pose."""
+    return bool(np.abs(trial.missing).max() < tolerance(potential, trial.pose, search))
+
+
+def ended(potential: Potential, search: Search, trial: Trial) -> Trial:
+    """The pose to which exact steps lead that each halve what is missing."""
+    while (better := exact(potential, search, trial)).left < LITTLE_PROGRESS * trial.left:
+        trial = better
+    return trial
+
+
+def tried(potential: Potential, search: Search, pose: Array, touches: bool = False) -> Trial:
+    """The forces at a pose of shape (n nq,); where the search starts, all contacts touch."""
+    openings, rates = potential.openings(pose), potential.rates(pose)
+    closed = touching(potential, pose) if touches else potential.closed(openings)
+    push = potential.forces_at(openings)
+    sliders = sliders_at(potential.structure.places, search, np.where(closed, push, -1.0)[: len(search.shear)])
+    grips = grips_at(potential, pose, sliders)
+    missing = (potential.load(pose) + rates.T @ push + grips.held) / sizes(potential)
+    return Trial(pose, closed, rates, push, sliders, grips, missing)
+
+
+def exact(potential: Potential, search: Search, trial: Trial) -> Trial:
+    """The pose to which the derivatives of all forces lead."""
+    motion = solved(potential, stiffness_at(potential, search, trial), trial.missing, LEAST_LOOSE)
+    return tried(potential, search, moved(trial.pose, motion, potential.structure.places.freedom))
+
+
+def stiffness_at(potential: Potential, search: Search, trial: Trial) -> csr_array:
+    """What is missing more per motion, shape (n nv, n nv): the limit of friction grows with the pressure too."""
+    places, slipping, m = potential.structure.places, trial.grips.slipping, len(search.shear)
+    springs = np.where(trial.closed, potential.springs, LEANING * potential.springs)
+    stiffness = sprung(trial.rates, springs) + potential.curvature(trial.pose) + shear_stiffness(trial.grips, 0.0)
+    pressed = (trial.push[:m] > 0)[slipping]
+    rises = np.where(pressed, shear_limit(Law(friction=places.friction), places.k)[slipping], 0.0)  # with depth [N/m]
+    return csr_array(stiffness + trial.grips.along(slipping).T @ times(rises, csr_array(trial.rates[:m][slipping])))
+
+
+def solved(potential: Potential, stiffness: csr_array, missing: Array, loose: float) -> Array:
+    """The motion that makes up for forces that are missing, with a stiffness that is lent to all, over the largest."""
+    size = sizes(potential)
+    scaled = times(1 / size, csr_array(stiffness))
+    scaled.data *= (1 / size)[scaled.indices]
+    lent = np.full(len(size), loose * float(np.abs(scaled.diagonal()).max()))
+    motion: Array = scipy.sparse.linalg.splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
+    return motion
+
+
+def sizes(potential: Potential) -> Array:
+    """What the velocities of bodies are multiplied by to compare moments with forces: 1, and the radius of inertia [m],
+    shape (n nv,)."""
+    masses, nv = potential.structure.masses, potential.structure.places.freedom.nv
+    return np.asarray(np.sqrt(masses / np.repeat(masses[::nv], nv)))
+
+
+def sliders_at(contacts: Places, search: Search, push: Array) -> Sliders:
+    """Sliders under forces of the contacts, negative where one is open [N], shape (m,)."""
     bonded, m = contacts.tension > 0, len(push)
     rubs = bonded | ((push >= 0) & (contacts.friction > 0))
     most = contacts.cohesion + shear_limit(Law(friction=contacts.friction), np.maximum(push, 0.0))
@@ -237,7 +295,7 @@ def sliders_at(contacts: Places, search: Search, push: Array, slipped: Array) ->
     else:
         points = csr_array((rubs.astype(float), (contacts.joint, np.arange(m))))
         shares = csr_array(points.T @ times(1 / np.maximum(points.sum(axis=1), 1.0), points))
-    return Sliders(search.shear * contacts.k, limit, slipped, shares)
+    return Sliders(search.shear, limit, shares)
 
 
 def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
@@ -254,43 +312,41 @@ def energy_with(sliders: Sliders, potential: Potential, pose: Array) -> float:
 
     The forces that are missing at a pose are those along which it falls.
     """
-    stretch = np.linalg.norm(sliders.shares @ potential.slips(pose) - sliders.place, axis=1)
+    stretch = np.linalg.norm(sliders.shares @ potential.slips(pose), axis=1)
     elastic = np.minimum(stretch, np.maximum(sliders.limit, 0.0) / sliders.stiffness)
     return potential.energy(pose) + float((sliders.stiffness * elastic * (stretch - 0.5 * elastic)).sum())
 
 
 def grips_at(potential: Potential, pose: Array, sliders: Sliders) -> Grips:
     """Friction at a pose of shape (n nq,)."""
-    stretch = sliders.shares @ potential.slips(pose) - sliders.place
+    stretch = sliders.shares @ potential.slips(pose)
     held = sliders.stiffness * np.linalg.norm(stretch, axis=1)
     slips = held > sliders.limit
     stays = np.where(slips, np.maximum(sliders.limit, 0.0) / np.where(held > 0, held, 1.0), 1.0)
-    stiffness, slider = stays * sliders.stiffness, sliders.place + (1 - stays)[:, None] * stretch
+    stiffness = stays * sliders.stiffness
     rates = tuple(csr_array(sliders.shares @ rates) for rates in potential.slip_rates(pose))
-    return Grips(rates, -stiffness[:, None] * stretch, stiffness, slips, slider)
+    return Grips(rates, -stiffness[:, None] * stretch, stiffness, slips)
 
 
 def shear_stiffness(grips: Grips, share: float) -> csr_array:
     """Stiffness of the points along their faces, shape (n nv, n nv). Along its slip a point has a share of it."""
     rates, springs = list(grips.rates), [grips.stiffness for _ in grips.rates]
-    slips = grips.slips & (grips.stiffness > 0)
-    if slips.any():
-        ways = (grips.drag[slips] / np.linalg.norm(grips.drag[slips], axis=1)[:, None]).T
-        rates.append(sum(times(way, rate[slips]) for way, rate in zip(ways, grips.rates, strict=True)))
-        springs.append((share - 1) * grips.stiffness[slips])
+    if (slipping := grips.slipping).any():
+        rates.append(grips.along(slipping))
+        springs.append((share - 1) * grips.stiffness[slipping])
     return sprung(csr_array(vstack(rates)), np.concatenate(springs))
 
 
-def falling_way(potential: Potential, grips: Grips, pose: Array) -> Array | None:
+def falling_way(potential: Potential, search: Search, trial: Trial) -> Array | None:
     """The motion that lowers the energy most from a pose at rest while its friction holds, or None where it stands.
 
     A contact that touches without force has no stiffness: a motion the other way opens it.
     """
-    presses = (potential.pushes(pose) > tolerance(potential)) | potential.bonded
-    bent = potential.curvature(pose)
-    stiffness = potential.stiffness(pose, np.where(presses, potential.springs, 0.0))
+    presses = (trial.push > tolerance(potential, trial.pose, search)) | potential.bonded
+    bent = potential.curvature(trial.pose)
+    stiffness = sprung(trial.rates, np.where(presses, potential.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
-    lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(grips, 1.0) + bent), most)
+    lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(trial.grips, 1.0) + bent), most)
     return way if lowest < -NEGLIGIBLE_STIFFNESS * float(abs(stiffness).max()) else None
 
 
@@ -320,10 +376,15 @@ def heaviest(potential: Potential) -> float:
     return GRAVITY * float(potential.structure.masses[:: freedom.nv].max())
 
 
-def tolerance(potential: Potential) -> float:
-    """Force that may be missing at rest [N]."""
-    ties = potential.structure.ties
-    return max(FORCE_TOLERANCE * heaviest(potential), LENGTH_ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+def tolerance(potential: Potential, pose: Array, search: Search) -> float:
+    """Force that may be missing at rest [N]: a share of the weight, or what the springs round to."""
+    places, ties = potential.structure.places, potential.structure.ties
+    size = np.abs(places.at).max(initial=0.0)
+    moves = np.abs((pose - potential.unmoved).reshape(-1, places.freedom.nq)[:, : places.freedom.translations]).max()
+    moves = min(moves + turned(pose, places.freedom).max() * size, size)
+    stiffest = max(places.k.max(initial=0.0), search.shear.max(initial=0.0))
+    rounding = ROUNDING * max(stiffest * moves, (ties.k * ties.reach).max(initial=0.0))
+    return float(max(FORCE_TOLERANCE * heaviest(potential), rounding))
 
 
 def lowered(structure: Structure, pose: Array) -> Array:

@@ -166,7 +166,7 @@ class Scene:
     @cached_property
     def found(self) -> tuple[Array, Array]:
         """The pose of rest that was searched for, and the friction that holds the bodies there, see `rest.settled`."""
-        return settled(self.potential)
+        return settled(self.potential, np.asarray(self.contacts.k_s))
 
     @cached_property
     def bears(self) -> Array:

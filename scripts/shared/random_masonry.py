@@ -112,7 +112,7 @@ def broken_promise(structure: Structure) -> str | None:
     try:
         run = mr.simulate(structure.make(), ledger=True)
     except ValueError as refused:
-        known = ("cannot stand", "valid range", "no joint that a motion could compress")
+        known = ("cannot stand", "no pose of rest", "valid range", "no joint that a motion could compress")
         return None if any(words in str(refused) for words in known) else str(refused)
     except mr.SimulationError as error:
         return str(error)

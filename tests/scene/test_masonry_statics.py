@@ -118,13 +118,16 @@ def test_a_stack_without_friction_is_not_told_to_be_stiffer(k_n):
 
 @pytest.mark.parametrize("k_n", among([1e6, 1e10], 1e6))
 def test_a_keystone_without_thrust_is_not_told_to_be_stiffer(k_n):
-    """Between upright jambs friction would hold it if they were pushed together, and limit analysis says so."""
+    """Between upright jambs friction would hold it if they were pushed together, and limit analysis says so. The search
+    alone finds no rest, and the message does not say more than that."""
     jambs = [box(-2, -0.5, -1, 1, fixed=True, name="left"), box(0.5, 2, -1, 1, fixed=True, name="right")]
     masonry = mr.Masonry([*jambs, box(-0.5, 0.5, 0, 0.4, name="key")], k_n=k_n)
     assert falling(masonry) == ()
-    with pytest.raises(ValueError, match=r"cannot stand: key would slide down, however large k_n is.*press") as said:
+    with pytest.raises(
+        ValueError, match=r"^no pose of rest was found: key would slide.*limit analysis finds.*press"
+    ) as said:
         require_standing(masonry)
-    assert "raise k_n" not in str(said.value)
+    assert not re.search(r"raise k_n|however large", str(said.value))
 
 
 def test_a_brick_that_hangs_over_by_half_tips_and_one_at_the_angle_of_friction_slides():

@@ -136,7 +136,7 @@ class TestPotential:
 class TestRest:
     def test_friction_within_its_cones_holds_what_springs_do_not(self):
         scene = pulled()
-        pose, drag = settled(scene.potential)
+        pose, drag = settled(scene.potential, scene.contacts.k_s)
         left = scene.potential.gradient(pose.ravel())
         assert np.linalg.norm(left) > 100.0
         held = sum(

@@ -7,17 +7,20 @@ import pytest
 from scenes import changed, two_blocks
 
 import mjrock as mr
+from mjrock.geometry.poses import moved
 from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene import rest
 from mjrock.scene.parts import ConstantForces, Links
 
 WEIGHT = 2000.0 * 0.6 * 2.1 * mr.GRAVITY
-LIMITED, HELD = rest.Search(1e3, 20), rest.Search(1e3, 20, limited=False)
 
 
-def sliders(scene, push, search=LIMITED, slipped=None):
-    slipped = np.zeros((len(scene.contacts.k), 1)) if slipped is None else slipped
-    return rest.sliders_at(scene.places, search, np.array(push, dtype=float), slipped)
+def search_in(scene, *, limited=True):
+    return rest.Search(1e3 * scene.contacts.k, limited)
+
+
+def sliders(scene, push, *, limited=True):
+    return rest.sliders_at(scene.places, search_in(scene, limited=limited), np.array(push, dtype=float))
 
 
 def test_a_slider_holds_friction_times_push_and_only_where_faces_touch():
@@ -34,7 +37,7 @@ def test_a_slider_holds_friction_times_push_and_only_where_faces_touch():
 
 
 def test_without_a_limit_sliders_hold_the_mean_slip_of_the_points_of_a_joint_that_touch():
-    found = sliders(two_blocks(), [10.0, 1.0, -1.0, 5.0], HELD)
+    found = sliders(two_blocks(), [10.0, 1.0, -1.0, 5.0], limited=False)
     np.testing.assert_array_equal(found.limit, [np.inf, np.inf, -np.inf, np.inf])
     means = np.zeros((4, 4))
     means[:2, :2], means[3, 3] = 0.5, 1.0
@@ -43,22 +46,19 @@ def test_without_a_limit_sliders_hold_the_mean_slip_of_the_points_of_a_joint_tha
 
 @pytest.mark.parametrize(("slid", "slips"), [(1e-6, False), (1e-3, True), (-1e-3, True)])
 def test_a_slider_sticks_or_has_what_the_face_holds_against_its_slip(slid, slips):
-    """The lower block has slid on the ground, whose sliders had moved by a micrometre before."""
+    """The lower block has slid on the ground."""
     scene = two_blocks()
-    before = np.array([[1e-7], [0.0], [0.0], [0.0]])
-    found = sliders(scene, [1e6, 2e6, 1.0, 1.0], slipped=before)
+    found = sliders(scene, [1e6, 2e6, 1.0, 1.0])
     pose = np.array([slid, 0.0, 0.0, slid, 0.0, 0.0])
     grips = rest.grips_at(scene.potential, pose, found)
-    stretch = np.array([slid, slid, 0.0, 0.0]) - before[:, 0]
     k = 1e3 * scene.contacts.k
     sense = np.sign(scene.potential.slips(pose)[0, 0] * slid)
     assert abs(sense) == 1
-    held = np.clip(k * (sense * np.array([slid, slid, 0.0, 0.0]) - before[:, 0]), -found.limit, found.limit)
+    stretch = sense * np.array([slid, slid, 0.0, 0.0])
+    held = np.clip(k * stretch, -found.limit, found.limit)
     np.testing.assert_allclose(grips.drag[:, 0], -held, rtol=1e-9, atol=1e-9)
     assert (grips.slips[:2] == slips).all()
     assert not grips.slips[2:].any()
-    stretch = sense * np.array([slid, slid, 0.0, 0.0]) - before[:, 0]
-    np.testing.assert_allclose(grips.slider[:, 0], before[:, 0] + stretch - held / k, rtol=1e-9, atol=1e-15)
     chord = np.divide(held, stretch, out=k.copy(), where=stretch != 0)
     np.testing.assert_allclose(grips.stiffness, chord, rtol=1e-9)
     np.testing.assert_allclose(grips.held[0], -sense * held.sum(), rtol=1e-9)
@@ -70,6 +70,24 @@ def test_a_slider_sticks_or_has_what_the_face_holds_against_its_slip(slid, slips
     stored = (k * elastic * (np.abs(stretch) - 0.5 * elastic)).sum()
     energy = rest.energy_with(found, scene.potential, pose) - scene.potential.energy(pose)
     assert energy == pytest.approx(stored, rel=1e-9, abs=1e-15 * WEIGHT)
+
+
+def test_an_exact_step_follows_the_derivatives_of_all_forces():
+    """Points that stick, slip and are open: what is missing after a small motion, by the forces themselves. The limit
+    of friction of a point that slips grows with its pressure."""
+    scene = two_blocks()
+    search, freedom = search_in(scene), scene.freedom
+    lower, upper = 4e-5, -3e-4
+    pose = scene.at_rest.ravel() + np.array([2e-3, 0.0, lower, 2e-3 + 1.05 * (lower + upper), 0.0, upper])
+    trial = rest.tried(scene.potential, search, pose)
+    assert 0 < trial.grips.slipping.sum() < trial.closed.sum() < 4
+    size = rest.sizes(scene.potential)
+    derivatives = np.empty((6, 6))
+    for i, way in enumerate(1e-8 * np.eye(6)):
+        ahead, behind = (rest.tried(scene.potential, search, moved(pose, s * way, freedom)).missing for s in (1, -1))
+        derivatives[:, i] = (behind - ahead) / 2e-8 * size
+    found = rest.stiffness_at(scene.potential, search, trial).toarray()
+    np.testing.assert_allclose(found, derivatives, rtol=1e-5, atol=1e-5 * np.abs(derivatives).max())
 
 
 def test_open_sliders_hold_nothing():
@@ -85,9 +103,7 @@ def test_friction_in_space_is_softer_along_its_slip_alone():
     """k (1 - a a) + share k a a with a the way of the slip, along two ways of the face."""
     rates = [np.array([[1.0, 0.0, 0.3]]), np.array([[0.0, 1.0, -0.2]])]
     one = rest.csr_array
-    grips = rest.Grips(
-        tuple(one(rate) for rate in rates), np.array([[-3.0, 4.0]]), np.array([7.0]), np.array([True]), np.zeros((1, 2))
-    )
+    grips = rest.Grips(tuple(one(rate) for rate in rates), np.array([[-3.0, 4.0]]), np.array([7.0]), np.array([True]))
     way = np.array([-0.6, 0.8])
     matrix = 7.0 * (np.eye(2) - 0.75 * np.outer(way, way))
     both = np.vstack(rates)
@@ -95,13 +111,22 @@ def test_friction_in_space_is_softer_along_its_slip_alone():
     np.testing.assert_allclose(grips.held, both.T @ [-3.0, 4.0])
 
 
-def test_what_may_be_missing_is_a_billionth_of_the_heaviest_body_or_the_rounding_of_a_tie():
+def test_what_may_be_missing_is_a_billionth_of_the_heaviest_body_or_what_springs_round_to():
+    """The springs of contacts round with the displacements of bodies, up to their size, and ties with their length."""
     scene = changed(two_blocks(), bodies={"mass": [3000.0, 1000.0]})
     assert rest.heaviest(scene.potential) == pytest.approx(3000.0 * mr.GRAVITY)
-    assert rest.tolerance(scene.potential) == pytest.approx(1e-9 * 3000.0 * mr.GRAVITY)
+
+    def tolerance(scene, lifted=0.0):
+        return rest.tolerance(scene.potential, np.array([0.0, lifted, 0.0, 0.0, 0.0, 0.0]), search_in(scene))
+
+    assert tolerance(scene) == pytest.approx(1e-9 * 3000.0 * mr.GRAVITY)
+    stiff = changed(two_blocks(k_n=1e13), bodies={"mass": [3000.0, 1000.0]})
+    eps, k = np.finfo(float).eps, 1e3 * stiff.contacts.k.max()
+    for far, counts in ((1e-3, 1e-3), (5.0, 1.05)):
+        assert tolerance(stiff, far) == pytest.approx(16 * eps * k * counts)
     tie = Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], [LinkLaw(3e12, 0.5)])
     rounding = 16 * np.finfo(float).eps * 3e12 * 0.5
-    assert rest.tolerance(changed(scene, links=tie).potential) == pytest.approx(rounding)
+    assert tolerance(changed(scene, links=tie)) == pytest.approx(rounding)
     closed = rest.touching(changed(scene, links=tie).potential, np.zeros(6))
     length = math.hypot(0.6, 2.6)
     np.testing.assert_array_equal(closed, [True] * 4 + [length > 0.5])
@@ -130,8 +155,8 @@ def test_a_stack_settles_by_its_weight_over_its_springs():
     k = scene.contacts.k[:2].sum()
     np.testing.assert_allclose(scene.at_rest[:, 1], [-2 * WEIGHT / k, -3 * WEIGHT / k], rtol=1e-9)
     pose = scene.at_rest.ravel()
-    grips = rest.grips_at(scene.potential, pose, sliders(scene, scene.contacts.k * scene.bears))
-    assert rest.falling_way(scene.potential, grips, pose) is None
+    search = search_in(scene)
+    assert rest.falling_way(scene.potential, search, rest.tried(scene.potential, search, pose)) is None
 
 
 def test_the_whole_motion_is_made_where_it_takes_energy_and_a_part_where_it_gives_some():
@@ -150,8 +175,9 @@ def test_bodies_fall_along_the_way_that_takes_the_most_energy():
     scene = two_blocks(k_n=1e6)
     k = scene.contacts.k[:2].sum()
     pose = np.array([0.0, -2 * WEIGHT / k, 0.0, 0.0, -3 * WEIGHT / k, 0.0])
-    grips = rest.grips_at(scene.potential, pose, sliders(scene, scene.potential.pushes(pose)))
-    way = rest.falling_way(scene.potential, grips, pose)
+    search = search_in(scene)
+    trial = rest.tried(scene.potential, search, pose)
+    grips, way = trial.grips, rest.falling_way(scene.potential, search, trial)
     assert way is not None
     assert abs(way[2]) > 0
     assert way[2] * way[5] > 0
