@@ -241,7 +241,9 @@ EQUIVALENT = {
     **{
         f"rest.py: {line}": "the search ends at the same pose"
         for line in (
-            "loose, share, least, last = LOOSE, 2.0, SLIPPING, np.inf",
+            "BEGINNING = LOOSE, 2.0, SLIPPING, np.inf",
+            "POSES = 600",
+            "SOFT = 0.2",
             "loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.25 * share, least)",
             "loose, share, least = 2 * loose, 1.0, min(RAISED / least, 1.0)",
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 2e-12, 1.0",
@@ -249,14 +251,8 @@ EQUIVALENT = {
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 1e-12, 2.0",
         )
     },
-    **{
-        f"rest.py: {line}": "faces are as good as rigid along themselves in either search, or soft in either"
-        for line in (
-            "Search(2000.0, 20),",
-            "Search(0.2, 300, accumulates=True),",
-            "SEARCH_WITHOUT_LIMIT = Search(20000.0, 100, limited=False)",
-        )
-    },
+    "rest.py: RIGID, RIGID_WITHOUT_LIMIT = 2000.0, 1e4": "faces are as good as rigid along themselves with either",
+    "rest.py: RIGID, RIGID_WITHOUT_LIMIT = 1e3, 20000.0": "faces are as good as rigid along themselves with either",
     "rest.py: NEGLIGIBLE_STIFFNESS = 2e-12": "what is put down to rounding is far below what lets bodies fall",
     "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
     "handover.py: sense = old.sense / new.sense": "a sense is 1 or -1",

@@ -38,7 +38,7 @@ shake = mr.GroundMotion.sine(amplitude=-10.0, period=0.6, cycles=2.0)  # m/s2, s
 answer = mr.solve_explicit(
     mr.MasonryCase(wall, 1.4, motion=shake), output_step=0.02
 )
-print(f"{len(answer.fallen)} of {len(wall.free)} blocks fall")
+print("blocks fall" if answer.fallen else "the wall stands")
 figure = Figure(figsize=(7.0, 3.2), layout="constrained")
 for ax, t in zip(
     figure.subplots(1, 2, subplot_kw={"projection": "3d"}),

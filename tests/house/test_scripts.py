@@ -98,6 +98,7 @@ WRITES = {
     "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "rocking_by_the_guide": {"rocking_by_the_guide.csv", "rocking_by_the_guide.txt"},
+    "rest_on_processors": {"rest_on_processors.txt"},
     "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
     "fragility_coverage": {"fragility_coverage.txt"},

@@ -87,7 +87,8 @@ def test_an_exact_step_follows_the_derivatives_of_all_forces():
         ahead, behind = (rest.tried(scene.potential, search, moved(pose, s * way, freedom)).missing for s in (1, -1))
         derivatives[:, i] = (behind - ahead) / 2e-8 * size
     found = rest.stiffness_at(scene.potential, search, trial).toarray()
-    np.testing.assert_allclose(found, derivatives, rtol=1e-5, atol=1e-5 * np.abs(derivatives).max())
+    # friction acts halfway between point and face, where slip is that of the point: 1e-4 of the arm of a block
+    np.testing.assert_allclose(found, derivatives, rtol=2e-4, atol=1e-6 * np.abs(derivatives).max())
 
 
 def test_open_sliders_hold_nothing():

@@ -1,0 +1,67 @@
+"""Rest is one pose, on any processor: the springs along faces are stretched once from the drawn pose."""
+
+import numpy as np
+import pytest
+from masonry_blocks import GROUND, box
+
+import mjrock as mr
+from mjrock.problem.masonry.limit.statics import falling
+from mjrock.scene.masonry import standing_masonry
+from scripts.checks.rest_on_processors import KERNELS, compared, rest
+
+
+@pytest.mark.parametrize(("thin", "count", "k_n"), [(0.1332, 49, 1.76e11), (0.1782, 80, 5.2e10), (0.1166, 46, 1e12)])
+def test_stiff_arches_that_stand_are_at_rest_and_bear_what_soft_ones_do(thin, count, k_n):
+    """By similarity forces do not depend on the stiffness, but for the small rotations of a stiff arch."""
+
+    def thrusts(k_n):
+        arch = mr.Masonry.arch(5.0, 5 * thin, voussoirs=count, k_n=k_n, k_s=0.5 * k_n, friction=0.7)
+        scene = standing_masonry(arch)
+        return scene.contacts.k * scene.bears
+
+    stiff, soft = thrusts(k_n), thrusts(k_n / 100)
+    np.testing.assert_allclose(stiff, soft, atol=0.02 * soft.max())
+
+
+@pytest.mark.parametrize("seed", [6, 7, 33, 34])
+def test_random_masonry_that_limit_analysis_holds_is_at_rest(seed):
+    answer = rest(seed)
+    assert answer is None or not answer.refused
+
+
+@pytest.mark.slow
+def test_rest_is_the_same_under_the_kernels_of_other_processors(tmp_path):
+    """500 by `scripts/checks/rest_on_processors.py`: none refused, and equal to 1e-9."""
+    rows = compared(range(30), tmp_path, KERNELS[:3])
+    assert len(rows) > 1
+    assert [row[2] for row in rows] == [0] * len(rows)
+    assert max(float(str(row[3])) for row in rows) < 1e-9
+
+
+def test_a_tie_aslant_leaves_the_shear_springs_stretched():
+    """A block under a tendon of 4 kN. The equations of its rest: k_n and k_s under the base, the tie between its ends,
+    the weight. The case that starts as drawn comes to the same pose."""
+    width, height, k_n, k_s, k = 0.8, 2.0, 2e8, 1e8, 3e6
+    masonry = mr.Masonry([GROUND, box(-0.4, 0.4, 0, height, name="wall")], joints=mr.Dry(k_n, 1.5, 0.5, k_s, 50.0))
+    tie = mr.Tie(stiffness=k, prestress=4e3, at=(-0.4, 1.8), anchor=(-2.0, 2.9), block="wall")
+    answer = mr.solve_explicit(mr.MasonryCase(masonry, 1e-3, effects=tie), forces=True)
+    x, z, theta = answer.pose[0, 0]
+    at, anchor = np.array([-0.4, 1.8 - 1.0]), np.array([-2.0, 2.9 - 1.0])
+    sine, versine = np.sin(theta), 1 - np.cos(theta)
+    held = at + np.array([x + at[1] * sine - at[0] * versine, z - at[0] * sine - at[1] * versine])
+    across, drawn = anchor - held, np.linalg.norm(anchor - at)
+    pull = 4e3 + k * (np.linalg.norm(across) - drawn)
+    assert answer.forces.links["tie_0"][0] == pytest.approx(pull, rel=1e-6)
+    assert pull == pytest.approx(3562, abs=1)
+    sideways = pull * across[0] / np.linalg.norm(across)
+    assert k_s * width * (x - theta) == pytest.approx(sideways, rel=1e-3)
+    later = mr.solve_explicit(mr.MasonryCase(masonry, 1.0, effects=tie, settled=False), mass_damping=30.0)
+    np.testing.assert_allclose(later.pose[-1], answer.pose[0], atol=1e-3 * abs(x))
+
+
+def test_limit_analysis_holds_what_is_found_at_rest():
+    """A thinner arch than the least is refused by both, and named as what falls."""
+    thin = mr.Masonry.arch(5.0, 0.5, voussoirs=33, k_n=1e11, k_s=1e11, friction=0.7)
+    assert falling(thin)
+    with pytest.raises(ValueError, match="would fall under the weight"):
+        mr.solve_explicit(mr.MasonryCase(thin, 1e-3))
