@@ -30,7 +30,7 @@ from .potential import Potential, Structure
 
 FORCE_TOLERANCE = 1e-9
 """Force that may be missing at rest, over the weight of the heaviest body [-]."""
-ROUNDING = 16 * np.finfo(float).eps
+DISPLACEMENT_ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the displacements of bodies and of the lengths of ties, over these [-]."""
 LEANING = 1e-6
 """Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
@@ -383,7 +383,7 @@ def tolerance(potential: Potential, pose: Array, search: Search) -> float:
     moves = np.abs((pose - potential.unmoved).reshape(-1, places.freedom.nq)[:, : places.freedom.translations]).max()
     moves = min(moves + turned(pose, places.freedom).max() * size, size)
     stiffest = max(places.k.max(initial=0.0), search.shear.max(initial=0.0))
-    rounding = ROUNDING * max(stiffest * moves, (ties.k * ties.reach).max(initial=0.0))
+    rounding = DISPLACEMENT_ROUNDING * max(stiffest * moves, (ties.k * ties.reach).max(initial=0.0))
     return float(max(FORCE_TOLERANCE * heaviest(potential), rounding))
 
 

@@ -31,7 +31,7 @@ from .rest import lowered, settled
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
 surface, which is why it is tiny."""
-ROUNDED = 64 * np.finfo(float).eps
+GAP_ROUNDING = 64 * np.finfo(float).eps
 """Rounding of the gap between a point and its face as drawn, over the largest coordinate [-]."""
 
 
@@ -113,7 +113,7 @@ class Scene:
         points = self.contacts
         between = self.bodies.between(points.body, points.at, points.face_body, points.face_at)
         gap = (points.normal * between).sum(axis=1)
-        rounding = ROUNDED * float(np.abs(self.bodies.rest).max() + self.bodies.extent)
+        rounding = GAP_ROUNDING * float(np.abs(self.bodies.rest).max() + self.bodies.extent)
         between = frozen(between - np.where(np.abs(gap) < rounding, gap, 0.0)[:, None] * points.normal)
         columns = {name: getattr(points, name) for name in Places._fields if hasattr(points, name)}
         return Places(axes=self.freedom.axes, between=between, radius=self.radius, **columns)
