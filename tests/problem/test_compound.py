@@ -112,7 +112,6 @@ def test_what_a_compound_refuses():
         ([box(0, 1, 0, 1), box(2, 3, 0, 1)], ValueError, "part 1 hangs together with part 0 along no edge"),
         ([box(0, 1, 0, 1), box(1, 2, 1, 2)], ValueError, "along no edge"),
         ([box(0, 1, 0, 1), box(0.5, 2, 0, 1)], ValueError, "part_0 and part_1 overlap by 0.5 m"),
-        ([box(0, 1, 0, 1), box(1, 2, 0, 1, length=2.0)], ValueError, "lengths out of the plane from 1 to 2 m"),
         ([box(0, 1, 0, 1), box(1, 2, 0, 1, fixed=True)], ValueError, r"parts\[1\] is fixed"),
         ([box(0, 1, 0, 1), mr.Polyhedron.prism(box(1, 2, 0, 1))], TypeError, "parts of one kind"),
         ([box(0, 1, 0, 1), 3], TypeError, r"parts\[1\] = 3"),
