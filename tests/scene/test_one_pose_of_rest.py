@@ -5,6 +5,7 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
+from mjrock.distinct.setup import setup_of
 from mjrock.problem.masonry.limit.statics import falling
 from mjrock.scene.masonry import standing_masonry
 from scripts.checks.rest_on_processors import KERNELS, compared, rest
@@ -65,3 +66,14 @@ def test_limit_analysis_holds_what_is_found_at_rest():
     assert falling(thin)
     with pytest.raises(ValueError, match="would fall under the weight"):
         mr.solve_explicit(mr.MasonryCase(thin, 1e-3))
+
+
+def test_a_mass_at_the_edge_leaves_no_shear_that_cancels():
+    """Nothing pulls sideways. As the block leans, its two points part by w (1 - cos theta), half of it each."""
+    width, k_s = 0.8, 1e8
+    masonry = mr.Masonry([GROUND, box(-0.4, 0.4, 0, 2.0, name="wall")], joints=mr.Dry(2e8, 1.5, 0.03, k_s, 50.0))
+    case = mr.MasonryCase(masonry, 0.6, effects=mr.AddedMass(900.0, at=(0.3, 1.9), block="wall"))
+    system = setup_of(case, None, None).system
+    parted = 0.5 * width * (1 - np.cos(system.bodies["angle"].item()))
+    grips = system.lines["grip"].ravel() * 0.5 * width * k_s
+    np.testing.assert_allclose(grips, [0.5 * width * k_s * parted, -0.5 * width * k_s * parted], rtol=1e-3)
