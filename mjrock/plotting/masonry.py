@@ -13,7 +13,7 @@ from ..geometry.frames import PLANE, SPACE
 from ..geometry.poses import at_rest
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.limit.collapse import Collapse
+from ..problem.masonry.limit.collapse import Collapse, JointForces
 from ..problem.masonry.limit.pose import pose_of_all
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, require_flag, require_kind, require_within
@@ -183,8 +183,8 @@ def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool 
     """Masonry that has moved a little in its mechanism of collapse, and where joints press as it begins to move.
 
     Each force is a line through the point of its joint where it acts, along the force and as long as half the joint.
-    Its width grows with the force. Lines that follow one another are the path of the thrust. They are drawn at rest, in
-    the plane alone.
+    Its width grows with the force. Lines that follow one another are the path of the thrust. They move with the block
+    below their joint, so that they pass through the hinges. They are drawn in the plane alone.
 
     Args:
         ax: where to draw; of three dimensions for blocks in space.
@@ -210,18 +210,20 @@ def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool 
         pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
     blocks(ax, masonry, pose)
     if forces and not masonry.in_space:
-        _pressed(ax, masonry.plane_joints, collapse)
+        case = MasonryCase(masonry, 1.0)
+        _pressed(ax, Moving(case, np.zeros(1), pose[None]), masonry, collapse.forces)
     return ax
 
 
-def _pressed(ax: Axes, joints: tuple[Joint, ...], collapse: Collapse) -> None:
-    """A line for each force of a joint."""
-    assert collapse.forces is not None
-    normal, shear, along = collapse.forces.normal, collapse.forces.shear, collapse.forces.eccentricity
-    size = np.hypot(normal, shear)
+def _pressed(ax: Axes, moving: Moving, masonry: Masonry, forces: JointForces) -> None:
+    """A line for each force of a joint, where the joint has moved."""
+    normal, along = forces.normal, forces.eccentricity
+    pressing = np.stack([normal, forces.shear], axis=1)
+    size = np.linalg.norm(pressing, axis=1)
+    middles, axes = (of[0] for of in moving.joints(moving.case.standing.frames))
+    widths = [joint.width for joint in masonry.plane_joints]
     ax.set_xlabel(f"{ax.get_xlabel()}\nline {THICK:g} pt wide: {size.max() / 1e3:.3g} kN")
-    for i, joint in enumerate(joints):
-        if normal[i] > 1e-3 * size.max():
-            way = (normal[i] * joint.normal + shear[i] * joint.along) / size[i]
-            ends = joint.middle + along[i] * joint.along + 0.25 * joint.width * np.outer([-1, 1], way)
-            ax.plot(*ends.T, color=FORCE, linewidth=max(0.4, THICK * size[i] / size.max()), solid_capstyle="round")
+    for i in np.flatnonzero(normal > 1e-3 * size.max()):
+        way = pressing[i] @ axes[i] / size[i]
+        ends = middles[i] + along[i] * axes[i, 1] + 0.25 * widths[i] * np.outer([-1, 1], way)
+        ax.plot(*ends.T, color=FORCE, linewidth=max(0.4, THICK * size[i] / size.max()), solid_capstyle="round")

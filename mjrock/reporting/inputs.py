@@ -22,7 +22,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect, Told
 from ..problem.wall.effects import named_effects
 from ..problem.wall.wedge import Corner
-from ..quantities import GRAVITY, Array, declared, named
+from ..quantities import GRAVITY, Array, declared
 from ..study.loading.code_check import Demand
 from ..study.loading.limit_analysis import LimitCurve
 from .pictures import Run, by_variant
@@ -241,7 +241,7 @@ def of_limit_curve(curve: LimitCurve, words: Words) -> list[Input]:
     """Masonry whose mechanism goes on, and what moves in it."""
     masonry = curve.start.masonry
     found = [] if masonry is None else of_masonry(masonry, words)
-    moving = Input("moving", words("in_moving"), named(curve.start.moving), True)
+    moving = Input("moving", words("in_moving"), words.named(curve.start.moving), True)
     return [*found, moving, *of_effects(curve.effects, words)]
 
 
@@ -249,7 +249,11 @@ def of_collapse(found: Collapse, words: Words) -> list[Input]:
     """Masonry or a wall at its limit, with the loads that grow."""
     rows = [] if found.masonry is None else of_masonry(found.masonry, words)
     rows += _growing(found, words)
-    return [*rows, Input("moving", words("in_moving"), named(found.moving), True), *of_effects(found.effects, words)]
+    return [
+        *rows,
+        Input("moving", words("in_moving"), words.named(found.moving), True),
+        *of_effects(found.effects, words),
+    ]
 
 
 def _growing(found: Collapse, words: Words) -> list[Input]:

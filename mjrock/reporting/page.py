@@ -302,11 +302,11 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
 
 def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """What governs, what the results do not say, and what the code asks to be said of a program."""
-    parts = (
-        [element("h2", words("governing")), verdicts.governing(verdicts.ranked(mechanisms), words)]
-        if mechanisms
-        else []
-    )
+    parts = []
+    if mechanisms:
+        motions = [(run.response.case.motion, run.motion) for run in runs]
+        records = {motion.name.removesuffix(REVERSED): called for motion, called in motions if motion is not None}
+        parts += [element("h2", words("governing")), verdicts.governing(verdicts.ranked(mechanisms), records, words)]
     if broken := subject.broken_ties(runs, words):
         parts.append(listed(broken))
     parts += [element("h2", words("limits")), listed([*verdicts.limits(mechanisms, words), *whole.limits(runs, words)])]

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..plotting.bodies import Bodies
-from ..plotting.masonry import mechanism
+from ..plotting.masonry import THICK, mechanism
 from ..plotting.style import OWN, Look, figure_of, legend_below, several
 from ..plotting.wall import elevation, section
 from ..problem.masonry.limit.collapse import Collapse
@@ -26,7 +26,7 @@ from ..study.loading.code_check import MechanismCheck
 from ..study.loading.limit_analysis import LimitCurve
 from ..study.loading.load_check import Borne
 from ..study.loading.pushover import PushoverCurve
-from .texts import Words
+from .texts import FOUND, Words
 from .verdicts import Mechanism, told_name
 
 WIDE = 7.0
@@ -216,7 +216,10 @@ def borne_drawn(result: Borne, words: Words) -> Figure | None:
     figure = Figure(figsize=(WIDE, 2.6), layout="constrained")
     if isinstance(result, Collapse):
         space = result.masonry is not None and result.masonry.in_space
-        mechanism(figure.add_subplot(projection="3d" if space else None), result)
+        ax = mechanism(figure.add_subplot(projection="3d" if space else None), result)
+        if result.forces is not None and not space:  # the scale that the drawing writes in English
+            largest = words.quantity(float(np.hypot(result.forces.normal, result.forces.shear).max()), "N", FOUND)
+            ax.set_xlabel(f"$x$ [m]\n{words('thrust_scale', width=words.number(THICK), force=largest)}")
         return figure
     ax = figure.subplots()
     if isinstance(result, PushoverCurve):

@@ -24,7 +24,7 @@ from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, NAMED, Array, named
+from ..quantities import GRAVITY, Array
 from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
@@ -193,8 +193,7 @@ class ReportedMasonry(Reported):
         moved = largest, response.opening.max(), response.sliding.max()
         sizes = [words.quantity(value, "m", FOUND) for value in moved]
         fell = [words("falls_at", block=block, t=words.quantity(t, "s", FOUND)) for block, t in response.fallen.items()]
-        said = ", ".join(fell[:NAMED]) or DASH
-        return [words(ended), *sizes, words("and_more", names=said, count=len(fell) - NAMED) if fell[NAMED:] else said]
+        return [words(ended), *sizes, words.named(fell) or DASH]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
@@ -239,7 +238,7 @@ def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
         return words.quantity(d, "m", FOUND) if math.isfinite(d) else DASH
 
     if isinstance(result, Collapse):
-        return [("borne_factor", words.number(result.multiplier, FOUND)), ("in_moving", named(result.moving))]
+        return [("borne_factor", words.number(result.multiplier, FOUND)), ("in_moving", words.named(result.moving))]
     if isinstance(result, PushoverCurve):
         start, peak, end = (words.number(value, FOUND) for value in (result.start, result.peak, result.end))
         return [("borne_start", start), ("borne_peak", peak), ("borne_end", end)]
@@ -247,7 +246,7 @@ def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
         unit = "N" if result.unit == "N" else ""
         return [("borne_peak", words.quantity(result.peak, unit, FOUND)), ("step_end", length(result.d_0))]
     start = words.number(float(result.multiplier[0]), FOUND)
-    moving = named(result.start.moving)
+    moving = words.named(result.start.moving)
     return [("borne_start", start), ("step_end", length(result.d_0)), ("in_moving", moving)]
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Sequence
 from decimal import Decimal
 from functools import cache
 from pathlib import Path
 
-from ..quantities import ratio_said, require_kind, require_one_of
+from ..quantities import NAMED, ratio_said, require_kind, require_one_of
 
 FILE = Path(__file__).with_name("texts.toml")
 """The texts of all languages. A further language is a further line of each."""
@@ -98,6 +99,11 @@ class Words:
         suits = (scale for scale in scales if (abs(value) >= scale[0] if value else scale[1] == 1))
         _, factor, name = next(suits, scales[-1])
         return f"{self.number(value / factor, digits)}\u00a0{name}" if name else self.number(value / factor, digits)
+
+    def named(self, names: Sequence[str]) -> str:
+        """Names, not too many."""
+        said = ", ".join(names[:NAMED])
+        return self("and_more", names=said, count=len(names) - NAMED) if names[NAMED:] else said
 
     def share(self, value: float) -> str:
         """A share in per cent."""

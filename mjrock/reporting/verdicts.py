@@ -178,8 +178,14 @@ def _conditions(verdict: Verdict, words: Words) -> list[str]:
     return [*what, *numbers, element("td", words(kind), kind=kind), verdict.clause]
 
 
-def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
-    """The least ratio of each mechanism with its check, and the record with the largest displacement."""
+def governing(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words: Words) -> Markup:
+    """The least ratio of each mechanism with its check, and the record with the largest displacement.
+
+    Args:
+        mechanisms: in their order.
+        records: what records are called in the report, by their names in the checks.
+        words: of the report.
+    """
     rows = []
     shaken = any(mechanism.dynamic for mechanism in mechanisms)
     for mechanism in mechanisms:
@@ -190,7 +196,7 @@ def governing(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
             run = max(runs, key=lambda one: one.d)
             name = run.name.removesuffix(REVERSED)
             d = words("overturned") if math.isinf(run.d) else words.quantity(run.d, "m", FOUND)
-            worst = [name + (f" ({words('reversed')})" if name != run.name else ""), d]
+            worst = [records.get(name, name) + (f" ({words('reversed')})" if name != run.name else ""), d]
         rows.append((mechanism.name, words.ratio(least.ratio), _of(least, words), *worst * shaken))
     columns = ["verdict_mechanism", "least_ratio", "verdict_check", *["worst_record", "run_largest"] * shaken]
     return table([words(name) for name in columns], rows, right=(1, 4))
@@ -288,6 +294,7 @@ def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
     if check.restitution:
         low, middle, high = (words.number(one, FOUND) for one in np.percentile(check.restitution, [5, 50, 95]))
         e = words("restitution_found", middle=middle, low=low, high=high, count=len(check.restitution))
+    way = "; ".join(words.number(part + 0.0) for part in check.way)
     return {
         "state": check.limit_state,
         "runs": words("runs_and_records", runs=len(check.runs), records=check.records),
@@ -297,5 +304,6 @@ def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
         "mean": length(check.mean),
         "capacity": words("share_of", d=length(check.capacity), share=words.number(check.share)),
         "restitution": e,
+        "judged": words("centroid_along", names=words.named(check.moving), way=way) if check.moving else DASH,
         "lacks": "; ".join(check.lacking_in(words.language)) or words("nothing"),
     }

@@ -26,6 +26,25 @@ def test_a_block_that_turns_and_the_force_at_its_toe():
     assert not plotting.mechanism(Figure().subplots(), collapse, forces=False).get_lines()
 
 
+def test_the_thrust_of_an_arch_passes_through_the_blocks_that_have_moved():
+    """Lines moved back with the block below their joint pass through the joint at rest, where its force acts."""
+    arch = mr.Masonry.arch(radius=5.0, thickness=0.9, voussoirs=9)
+    collapse = mr.collapse_multiplier(arch)
+    ax = plotting.mechanism(Figure().subplots(), collapse)
+    points = np.concatenate([block.corners for block in arch.blocks if not block.fixed])
+    pose = 0.1 * np.ptp(points, axis=0).max() / np.linalg.norm(collapse.motion[:, :2], axis=1).max() * collapse.motion
+    lines = [line.get_xydata().mean(axis=0) for line in ax.get_lines()]
+    assert len(lines) == len(arch.joints)
+    for joint, line, off in zip(arch.plane_joints, lines, collapse.forces.eccentricity, strict=True):
+        expected = joint.middle + off * joint.along
+        if not arch.blocks[joint.below].fixed:
+            row = arch.free.index(joint.below)
+            (x, z), theta = expected - arch.centroids[joint.below], pose[row, 2]
+            turned = np.array([x * np.cos(theta) + z * np.sin(theta), z * np.cos(theta) - x * np.sin(theta)])
+            expected = arch.centroids[joint.below] + pose[row, :2] + turned
+        assert line == pytest.approx(expected, abs=1e-9)
+
+
 def test_masonry_in_space_moves_along_the_force():
     box = mr.Masonry.box((0.4, 0.4, 0.2), friction=0.3)
     collapse = mr.collapse_multiplier(box, associated=False)

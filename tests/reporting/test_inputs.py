@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.reporting.pictures import wall_drawn
+from mjrock.reporting.pictures import borne_drawn, wall_drawn
 from mjrock.reporting.texts import Words
 
 SLV = mr.code_spectrum("NTC 2018", ag=2.2345, F0=2.4567, Tc=0.3456, soil="C", topography="T2")
@@ -213,6 +213,40 @@ def test_records_are_called_by_station_component_and_factor(tmp_path):
     answers = [mr.solve_analytical(case, mr.Restitution.from_geometry(wall)) for case in cases]
     text = mr.report(cases[0], answers, tmp_path / "a.html").read_text(encoding="utf-8")
     assert text.count("<td>station ST1, HNE, factor 1.27</td>") == 2  # a row for each polarity
+    check = mr.dynamic_check(answers, natural=True)
+    text = read(mr.report(cases[0], answers, tmp_path / "b.html", checks=check))
+    assert "ST1 HNE x" not in text[text.index("What governs") : text.index("What these results")]
+    assert "station ST1, HNE, factor 1.27" in text[text.index("What governs") : text.index("What these results")]
+
+
+def test_an_italian_report_of_blocks_names_them_in_italian(tmp_path):
+    column = mr.Masonry.stack([mr.Block.from_size(0.4, 0.5)] * 8, k_n=1e9, friction=0.9)
+    curve = mr.limit_curve(column, 1)
+    run = mr.solve_explicit(mr.MasonryCase(column, 0.01, motion=mr.GroundMotion.half_sine(0.5, 0.2)))
+    checks = {
+        "curva": [mr.dynamic_check([run], curve=curve, natural=True)],
+        "limite": [mr.load_check(curve.start, 0.1)],
+    }
+    text = read(mr.report(run.case, run, tmp_path / "a.html", checks=checks, language="it"))
+    assert "e altri 3" in text
+    assert "and 3 more" not in text
+    assert re.search(r"baricentro di block_0, .* e altri 3, lungo \(1; 0\)", text)
+    (ax,) = borne_drawn(curve.start, Words("it")).axes
+    assert "pt wide" not in ax.get_xlabel()
+    forces = curve.start.forces
+    assert Words("it").quantity(float(np.hypot(forces.normal, forces.shear).max()), "N", 3) in ax.get_xlabel()
+
+
+def test_the_linear_ratio_of_a_free_element_stands_over_what_it_is_compared_with():
+    rigid, free = (mr.mechanism_check(case_of(BARE), SLV, elastic_period=T_0) for T_0 in (None, 0.2345))
+    steps = [{step.key: step.value for step in one.steps} for one in (rigid, free)]
+    assert steps[0]["linear_ratio"] == pytest.approx(steps[0]["linear"] / steps[0]["peak"])
+    assert steps[1]["free_linear_ratio"] == pytest.approx(steps[1]["linear"] / steps[1]["free_peak"])
+    assert [sorted(key for key in one if key.endswith("linear_ratio")) for one in steps] == [
+        ["linear_ratio"],
+        ["free_linear_ratio"],
+    ]
+    assert free.code.steps["free_linear_ratio"].formula == "{q a_0}/{S_{eZ}(T_0)}"
 
 
 @pytest.mark.parametrize(("length", "one"), [(4.0, True), (12.0, True), (20.0, True), (40.0, False)])

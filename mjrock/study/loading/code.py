@@ -56,6 +56,7 @@ CHECK_STEPS = {
     "peak": StepOutput("g", 4),
     "free_peak": StepOutput("g", 4),
     "linear_ratio": StepOutput("", 2),
+    "free_linear_ratio": StepOutput("", 2),
     "damage": StepOutput("g", 4),
     "damage_ratio": StepOutput("", 2),
     "elastic_period": StepOutput("s", 3),

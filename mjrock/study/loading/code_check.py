@@ -58,8 +58,8 @@ from .moving_part import MovingPart, multiplier_of
 from .push import Push, of_centroid
 from .pushover import falls_to_zero, pushover
 
-WEAKER = 0.01
-"""How much less masonry has to bear the other way for a warning [-]."""
+WEAKER = 1e-6
+"""How much less masonry has to bear the other way for a warning, more than limit analysis rounds [-]."""
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 SHORT = 0.05
@@ -254,6 +254,11 @@ class MechanismCheck:
         return None if self.peak is None or self.code.linear is None else self.verdicts[0].ratio
 
     @property
+    def free_linear_ratio(self) -> float | None:
+        """The same of an element that vibrates freely; None of another one."""
+        return self.linear_ratio if self._is_free else None
+
+    @property
     def ground_ratio(self) -> float:
         """a_g,SLV over a_g [-], C8.7.1.2.1.8: that of the displacements, and at least a_g,SLD over a_g, where the peak
         acceleration of the demand is known and the code lets it count."""
@@ -301,7 +306,7 @@ class MechanismCheck:
         found += [("ground_ratio", name, self._nonlinear(name).ratio) for name in self.states if self.is_of_start(name)]
         steps = []
         for key, of, value in found:
-            hidden = key == "peak" and self._is_free
+            hidden = key in ("peak", "linear_ratio") and self._is_free and f"free_{key}" in self.code.steps
             if value is not None and key in self.code.steps and not hidden:
                 unit = CHECK_STEPS[key].unit
                 value = value / GRAVITY if unit == "g" else value
@@ -324,7 +329,7 @@ class MechanismCheck:
         rows = [("what moves", "", named(self.moving))] if self.moving else []
         for step in self.steps:
             what, note = self.code.step(step.key, step.of).plain, step.clause
-            if step.key == "linear_ratio":
+            if step.key in ("linear_ratio", "free_linear_ratio"):
                 note = self.verdicts[0].said
             elif step.key == "damage_ratio":
                 note = self.verdicts[-1].said
@@ -634,7 +639,8 @@ class DynamicCheck:
         natural: whether the records are natural ones; None if it is not known.
         code: what it is checked after, which has a check by dynamic runs.
         case: that of the first run, whose wall or masonry and effects all runs have; None where it is not known.
-        judged: of masonry, what is displaced and which way, in words.
+        moving: of masonry, names of the blocks whose common centroid is displaced; none of a wall.
+        way: unit vector along which it is displaced, shape (d,); empty of a wall.
     """
 
     limit_state: str
@@ -644,7 +650,13 @@ class DynamicCheck:
     natural: bool | None
     code: Code = field(default_factory=code_of)
     case: AnyCase | None = None
-    judged: str = ""
+    moving: tuple[str, ...] = ()
+    way: tuple[float, ...] = ()
+
+    @property
+    def judged(self) -> str:
+        """Of masonry, what is displaced and which way, in words; empty of a wall."""
+        return f"the centroid of {named(self.moving)} along {spelt_way(np.array(self.way))}" if self.moving else ""
 
     @property
     def share(self) -> float:
@@ -821,8 +833,8 @@ def dynamic_check(
     )
     impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
     known = tuple(e for e in impacts if not math.isnan(e))
-    said = "" if curve is None else judged.said
-    check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], said)
+    moved = {} if curve is None else {"moving": judged.blocks, "way": tuple(judged.way.tolist())}
+    check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], **moved)
     if check.lacking:
         warn_of(f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}", Implausible)
     return check
@@ -867,11 +879,6 @@ class _Judged(NamedTuple):
             return cls(masonry, part.names, part.way, float(moved[-1]))
         masonry = cast(MasonryCase, curve.answer.case).masonry
         return cls(masonry, tuple(masonry.names[i] for i in masonry.free), curve.way, curve.d_0)
-
-    @property
-    def said(self) -> str:
-        """What is judged, in words."""
-        return f"the centroid of {named(self.blocks)} along {spelt_way(self.way)}"
 
     def warn_of_weaker_way(self) -> None:
         """Warn of masonry that bears less the other way on its own weight."""
