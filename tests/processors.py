@@ -25,8 +25,8 @@ OUT = ROOT / "out" / "processors"
 KERNELS = ("Haswell", "Nehalem", "SkylakeX")
 """Kernels that differ most from each other: Zen's are like the first, those without fused sums like the second."""
 WITHOUT_PHYSICS = ("house", "plotting")
-DIFFERED = ("validation", "invariance", "distinct", "problem", "scene")
-"""Folders whose tests depend on last digits: those of rest, and of motions that multiply rounding."""
+DIFFERED = ("digests", "validation", "invariance", "distinct", "problem", "scene")
+"""Folders whose tests depend on last digits: digests, those of rest, and of motions that multiply rounding."""
 PROBE = "import numpy, mjrock.machine as m; numpy.ones((9, 9)) @ numpy.ones((9, 9)); print(*m.kernels().values())"
 
 

@@ -1,0 +1,52 @@
+"""Answers of every solver as numbers that are kept: which has moved, from which number to which."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from tests.digests.answers import answers, elsewhere, moved, stored
+from tests.digests.scenes import SCENES
+
+KEPT = stored()
+SLOW = ("MuJoCo fitted, box", "SciPy, shaken", "push", "limit analysis, arch without dilatancy")
+"""Scenes that take the longest."""
+EXACT = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "push-over", "check"))]
+INTERPRETED = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "rest", "push-over"))]
+"""Scenes that are short as plain Python."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in SCENES]
+)
+def test_no_answer_has_moved(name):
+    """`python -m tests.digests --write` makes the numbers anew where one has changed on purpose."""
+    assert not moved(name, answers([name])[name], KEPT[name])
+
+
+def test_an_answer_that_moves_is_named_with_both_numbers():
+    kept = {"answers": {"peak [N]": [2.0, 1e-3], "end [N]": [1.0, 1e-3]}}
+    (line,) = moved("push", {"peak [N]": 2.5, "end [N]": 1.0005}, kept)
+    assert line == "push, peak [N]: 2.0 is now 2.5, 5.0e-01 apart for 1.0e-03"
+    assert moved("push", {"peak [N]": float("nan"), "end [N]": 1.0}, kept)
+    assert moved("push", {"peak [N]": 2.0}, kept)
+
+
+def test_scenes_and_answers_are_those_of_the_file():
+    assert list(KEPT) == list(SCENES)
+
+
+@pytest.mark.slow
+def test_equal_to_the_bit_in_another_process_and_order_and_in_threads():
+    """The rest of many blocks takes linear algebra whose last digits depend on where arrays lie: to rounding alone."""
+    here, there = answers(), elsewhere("--backwards")["answers"]
+    assert {name: there[name] for name in EXACT} == {name: here[name] for name in EXACT}
+    assert not [line for name in SCENES for line in moved(name, there[name], KEPT[name])]
+    with ThreadPoolExecutor(2) as pool:
+        for found in pool.map(lambda name: answers([name]), EXACT):
+            assert found.items() <= here.items()
+
+
+@pytest.mark.slow
+def test_equal_to_the_bit_as_plain_python():
+    options = ("--scenes", *INTERPRETED)
+    assert elsewhere(*options, NUMBA_DISABLE_JIT="1")["answers"] == elsewhere(*options)["answers"]
