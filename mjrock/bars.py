@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, wait
+from contextvars import copy_context
 from typing import TypeVar
 
 from tqdm import tqdm
@@ -13,6 +16,8 @@ from tqdm import tqdm
 Value = TypeVar("Value")
 DELAY = 3.0
 """Time that nothing is shown [s]."""
+LOOK = 0.1
+"""Time between two looks at whether something is done [s]."""
 PLAIN = "{desc}: {n:.0f} {unit} [{elapsed}{postfix}]"
 OF_ALL = "{desc}: {percentage:3.0f}%|{bar}| {n:.0f} of {total:g} {unit} [{elapsed}<{remaining}{postfix}]"
 
@@ -79,3 +84,24 @@ def counted(values: Sequence[Value], what: str, unit: str) -> Iterator[Value]:
         for value in values:
             yield value
             bar.add()
+
+
+def waited(function: Callable[[], Value], what: str) -> Value:
+    """The value of a function of another library that leaves the interpreter free, and a bar of the time it takes.
+
+    Ctrl-C ends the wait at once. The function cannot be ended: it goes on beside the script until it is done, or until
+    the process ends, and its value is dropped.
+    """
+    future: Future[Value] = Future()
+
+    def work() -> None:
+        try:
+            future.set_result(function())
+        except BaseException as error:
+            future.set_exception(error)
+
+    threading.Thread(target=copy_context().run, args=(work,), daemon=True, name=what).start()
+    with Bar(what, "s") as bar:
+        while not wait([future], timeout=LOOK).done:
+            bar.to(time.time() - bar.begun)
+    return future.result()

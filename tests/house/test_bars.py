@@ -1,13 +1,18 @@
 """Bars of what takes long: two decimals of seconds, nothing before they are worth it, and widgets in notebooks."""
 
+import _thread
 import contextlib
 import io
 import sys
+import threading
+import time
 import types
 import warnings
 
 import pytest
+import scipy
 
+import mjrock as mr
 from mjrock import bars
 
 
@@ -103,3 +108,33 @@ def test_elsewhere_a_bar_is_shown_on_terminals_alone(monkeypatch):
     assert bars.shown_bar("MuJoCo", "s", 1.0).disable
     monkeypatch.setattr(sys, "stderr", Terminal())
     assert not bars.shown_bar("MuJoCo", "s", 1.0, leave=False).disable
+
+
+def test_a_wait_has_a_bar(monkeypatch):
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stderr", screen)
+    monkeypatch.setattr(bars, "DELAY", 0.0)
+    assert bars.waited(lambda: time.sleep(0.25) or 3, "limit analysis") == 3
+    assert "limit analysis: 0." in screen.getvalue()
+
+
+def test_a_wait_raises_what_the_function_raises():
+    with pytest.raises(ZeroDivisionError):
+        bars.waited(lambda: 1 / 0, "limit analysis")
+
+
+def test_ctrl_c_ends_limit_analysis_while_a_programme_is_solved(monkeypatch):
+    done, ended = threading.Event(), []
+
+    def solving(*given, **options):
+        _thread.interrupt_main()
+        try:
+            done.wait(20)
+        finally:
+            ended.append(True)
+
+    monkeypatch.setattr(scipy.optimize, "linprog", solving)
+    with pytest.raises(KeyboardInterrupt):
+        mr.collapse_multiplier(mr.Masonry.arch(2.0, 0.4, voussoirs=5, k_n=1e9, friction=0.7), 1)
+    assert not ended
+    done.set()

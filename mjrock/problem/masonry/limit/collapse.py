@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 from scipy.sparse import hstack
 
 from ....notebook import Drawn
@@ -18,7 +17,7 @@ from ..blocks.joints_in_space import axes_along
 from ..laws.joint_law import Law, shear_limit
 from ..masonry import Masonry
 from .limit_state import Programme, states_without_dilatancy
-from .statics import Pulls, bonded, cones, edges_of, method, moving, sizes_of, weight_of
+from .statics import Pulls, bonded, cones, edges_of, least_cost, method, moving, sizes_of, weight_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,9 +190,7 @@ def _associated(
     bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
     bounds[-1, 0], prices[-1] = least, -1.0
     columns = hstack([pressed, pulls, ties.columns, raised])
-    answer = scipy.optimize.linprog(
-        prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry)
-    )
+    answer = least_cost(prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry))
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
         return None  # unbounded
     if answer.status == 2 and least < 0:

@@ -32,7 +32,7 @@ from ....quantities import Array, Flags, Integers
 from ..laws.joint_law import Law, shear_limit
 from ..lines import rates
 from ..masonry import Masonry
-from .statics import Pulls, edges_of, method, sizes_of, weight_of
+from .statics import Pulls, edges_of, least_cost, method, sizes_of, weight_of
 
 SLOPE, SHRINKS, LEAST_SLOPE = 0.3, 0.9, 0.01
 """Dilatancy of the first cone that follows the pressures, over the friction, its factor a turn, and the least [-]."""
@@ -136,9 +136,7 @@ class Programme:
             upper[:-1][none_at] = 0.0
         columns = hstack([self.matrix, csc_array(self.grown[:, None])])
         bounds, prices = np.column_stack([np.zeros_like(upper), upper]), np.append(cost, price)
-        return scipy.optimize.linprog(
-            prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT
-        )
+        return least_cost(prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT)
 
     def mechanism(self, cost: Array, only_at: Flags | None = None) -> tuple[Array, Array] | None:
         """Rates z and p of the mechanism without dilatancy that costs least, None where nothing can move.
@@ -151,9 +149,7 @@ class Programme:
             high[:count][~only_at] = 0.0
         bounds, right = np.column_stack([low, high]), np.append(np.zeros(count), 1.0)
         prices = np.append(cost, np.zeros(rows))
-        answer = scipy.optimize.linprog(
-            prices, A_eq=self._moving, b_eq=right, bounds=bounds, method=self.method, options=EXACT
-        )
+        answer = least_cost(prices, A_eq=self._moving, b_eq=right, bounds=bounds, method=self.method, options=EXACT)
         if answer.status != 0:
             return None
         z = np.where(answer.x[:count] > STILL * answer.x[:count].max(), answer.x[:count], 0.0)

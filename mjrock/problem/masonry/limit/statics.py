@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
+from ....bars import waited
 from ....geometry.graph import connected_parts
 from ....linear import loose
 from ....quantities import GRAVITY, Array, Flags
@@ -157,6 +159,11 @@ def method(masonry: Masonry) -> str:
     return "highs-ipm" if masonry.in_space else "highs"
 
 
+def least_cost(prices: Array, **programme: object) -> scipy.optimize.OptimizeResult:
+    """The answer of a linear programme, as `scipy.optimize.linprog`, with a bar. Ctrl-C ends the wait for it."""
+    return waited(partial(scipy.optimize.linprog, prices, **programme), "limit analysis")
+
+
 def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = None) -> csc_array:
     """Generalised forces of unit pressures along the edges of the cones, moments over the size of the block.
 
@@ -226,7 +233,7 @@ def _balanced(
     prices = np.concatenate([*cost, np.ones(2 * len(weight)), np.zeros(len(limits))])
     highest = np.append(np.full(len(prices) - len(limits), np.inf), limits / total)
     bounds = np.column_stack([np.zeros_like(highest), highest])
-    return scipy.optimize.linprog(
+    return least_cost(
         prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), bounds=bounds, method=method(masonry)
     )
 
