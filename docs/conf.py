@@ -145,7 +145,7 @@ def compile_loops() -> None:
     wall = mjrock.Block.from_size(thickness=0.6, height=4.2)
     contacts = mjrock.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
     motion = mjrock.GroundMotion.sine(1.0, 0.1)
-    tie = mjrock.Tie(height=4.0, stiffness=1e6, strength=10.0)
+    tie = mjrock.Tie(height=4.0, stiffness=1e6, strength=1e3)
     case = mjrock.Case(wall, 0.0, 0.1, side_stop=False, motion=motion, effects=(tie,))
     mjrock.simulate(case, contacts)
     mjrock.solve_analytical(case, mjrock.Restitution.from_geometry(wall))

@@ -19,9 +19,6 @@ from ..analysis import Analysis
 from ..campaign.campaign import CampaignOptions, completed
 from .ida import Build, builds_of, built
 
-Band = tuple[float, float]
-"""The least and the largest scale of an edge over all repeats."""
-
 
 class Island(NamedTuple):
     """A range of scales in which a record makes the wall or the masonry fall.
@@ -38,8 +35,8 @@ class Island(NamedTuple):
     falls_to: float
     stands_below: float
     stands_above: float
-    lower: Band
-    upper: Band
+    lower: tuple[float, float]
+    upper: tuple[float, float]
     seen: float
 
     def __str__(self) -> str:
@@ -112,7 +109,7 @@ class Thresholds(Drawn):
         )
 
 
-def _range(band: Band) -> str:
+def _range(band: tuple[float, float]) -> str:
     return f"{band[0]:.4g} to {band[1]:.4g}"
 
 
