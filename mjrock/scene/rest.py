@@ -15,6 +15,7 @@ before.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -58,9 +59,9 @@ enough ends the search [-]."""
 RIGID, RIGID_WITHOUT_LIMIT = 1e3, 1e4
 """Shear stiffness of contacts that stick rigidly, over their normal stiffness [-]: with the limit of friction, and
 without one. More makes rounding of the slip a larger force than may be missing."""
-SOFT = 0.1
-"""Shear stiffness, over the normal one, at which the pose is found from which a search starts that finds none from the
-undeformed pose [-]: stiff springs slip more on the way."""
+SOFT_STARTS = 0.1, 0.01, 100.0
+"""Shear stiffnesses, over the normal one, at which the pose is found from which a search starts that finds none from
+the undeformed pose, in turn [-]: stiff springs slip more on the way. Two vaults of 500 need the last ones."""
 POSES = 300
 """Most poses of a search."""
 
@@ -180,12 +181,20 @@ def settled(potential: Potential, k_s: Array) -> tuple[Array, Array]:
     """
     k = potential.structure.places.k
     search = Search(np.where(np.isfinite(k_s), k_s, RIGID * k), limited=True)
-    try:
-        pose, grips = searched(potential, search)
-    except UnsettledError:
-        start, _ = searched(potential, Search(SOFT * k, limited=True))
-        pose, grips = searched(potential, search, start)
-    return pose.reshape(-1, potential.structure.places.freedom.nq), grips.drag
+    *starts, last = (None, *SOFT_STARTS)
+    for soft in starts:
+        with suppress(UnsettledError):
+            return searched_from(potential, search, soft)
+    return searched_from(potential, search, last)
+
+
+def searched_from(potential: Potential, search: Search, soft: float | None) -> tuple[Array, Array]:
+    """What `settled` returns, by a search from the undeformed pose, or from that on springs of a shear stiffness over
+    the normal one [-]."""
+    k, freedom = potential.structure.places.k, potential.structure.places.freedom
+    start = None if soft is None else searched(potential, Search(soft * k, limited=True))[0]
+    pose, grips = searched(potential, search, start)
+    return pose.reshape(-1, freedom.nq), grips.drag
 
 
 def held(potential: Potential) -> Array:

@@ -173,3 +173,21 @@ def test_the_same_of_records_and_displacement_spectra():
 def test_without_a_demand_of_its_own_there_is_no_condition_of_damage():
     assert mr.mechanism_check(PARAPET, ROOF["SLV"]).damage_ratio is None
     assert len(mr.mechanism_check(PARAPET, ROOF["SLV"]).verdicts) == 3
+
+
+def test_a_wall_that_is_free_both_ways_names_its_weaker_edge():
+    """A chimney whose outer face tapers stands off the middle of its base. Inwards it is the mirrored one outwards."""
+
+    def chimney(plumb):
+        shape = mr.Block.from_size(1.4, 14.0, 1.2, 1300.0, profile=[(0, 1.4), (14, 1.0)], plumb=plumb)
+        return mr.Case(shape, 0.0, 1.0, side_stop=False)
+
+    inner, z = 1.4 / 2 + chimney("inner").wall.centroid_offset, chimney("inner").wall.centroid_height
+    weaker = mr.mechanism_check(chimney("outer"), lambda T, xi: 0.1)
+    assert weaker.alpha_0 == pytest.approx(inner / z)
+    assert weaker.alpha_0 == pytest.approx(0.0916, abs=1e-4)
+    with pytest.warns(mr.Implausible, match=rf"inwards the wall starts at {inner / z:.4g} g"):
+        mr.mechanism_check(chimney("inner"), lambda T, xi: 0.1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        mr.mechanism_check(chimney("outer"), lambda T, xi: 0.1)

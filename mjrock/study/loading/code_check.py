@@ -404,7 +404,8 @@ def mechanism_check(
             limit curve that ends while something is borne.
 
     Warns:
-        Implausible: for ties that still hold at d_SLC and raise it above d_0 of the wall without them.
+        Implausible: for ties that still hold at d_SLC and raise it above d_0 of the wall without them, and for a wall
+            that is free both ways and is weaker inwards.
 
     Examples:
         >>> check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=1.0, soil="A"))
@@ -525,6 +526,7 @@ def _of_wall(case: Case, code: Code) -> _Mechanism:
     curve = pushover(case)
     if not math.isfinite(curve.end):
         raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
+    _warn_of_inner_edge(case, float(curve.multiplier[0]))
     wall = case.wall
     weights, heights = _masses(case)
     first, second = float(weights @ heights), float(weights @ heights**2)
@@ -538,6 +540,18 @@ def _of_wall(case: Case, code: Code) -> _Mechanism:
     if case.pulls:
         tied = float(curve.multiplier[0]) + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
     return _Mechanism(curve.multiplier, d, first**2 / (float(weights.sum()) * second), tied, yielding, breaking)
+
+
+def _warn_of_inner_edge(case: Case, outwards: float) -> None:
+    """Warn of a wall that is free both ways and starts inwards at a lower multiplier than `outwards` [-]."""
+    inner = case.restoring.inner.P / (case.wall.weight * case.wall.centroid_height)
+    if case.lopsided and inner < (1 - WEAKER) * outwards:
+        warn_of(
+            f"case has side_stop=False, and the check is of the way outwards, which starts at {outwards:.4g} g; "
+            f"inwards the wall starts at {inner:.4g} g: check that way too, with the mirrored wall: the other plumb, "
+            "offsets and forces with the other sign",
+            Implausible,
+        )
 
 
 def _warn_of_ties(case: Case, name: str, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
