@@ -8,7 +8,7 @@ from tests.digests.answers import answers, elsewhere, moved, stored
 from tests.digests.scenes import SCENES
 
 KEPT = stored()
-SLOW = ("MuJoCo fitted, box", "SciPy, shaken", "push", "limit analysis, arch without dilatancy")
+SLOW = ("explicit, dome", "rest, vault", "MuJoCo fitted, box", "SciPy, shaken", "push", "limit analysis, arch without dilatancy")
 """Scenes that take the longest."""
 EXACT = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "push-over", "check"))]
 INTERPRETED = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "rest", "push-over"))]
@@ -37,10 +37,10 @@ def test_scenes_and_answers_are_those_of_the_file():
 
 @pytest.mark.slow
 def test_equal_to_the_bit_in_another_process_and_order_and_in_threads():
-    """The rest of many blocks takes linear algebra whose last digits depend on where arrays lie: to rounding alone."""
-    here, there = answers(), elsewhere("--backwards")["answers"]
+    """The rest of many blocks takes linear algebra whose last digits depend on how many threads it has, here one."""
+    here, there, backwards = answers(), elsewhere()["answers"], elsewhere("--backwards")["answers"]
+    assert there == backwards
     assert {name: there[name] for name in EXACT} == {name: here[name] for name in EXACT}
-    assert not [line for name in SCENES for line in moved(name, there[name], KEPT[name])]
     with ThreadPoolExecutor(2) as pool:
         for found in pool.map(lambda name: answers([name]), EXACT):
             assert found.items() <= here.items()
