@@ -30,9 +30,9 @@ K_N = 1e9
 
 
 def _in_mujoco(timestep: float | None) -> None:
-    """A wall with a damper."""
-    contacts = Contacts.from_damping(WALL, k_base=K_N, xi_base=0.05)
-    case = Case(WALL, 0.01, 0.02, side_stop=False, effects=(Damper(height=4.0, c=1e3),))
+    """A wall with a damper under a pulse."""
+    contacts, pulse = Contacts.from_damping(WALL, k_base=K_N, xi_base=0.05), GroundMotion.half_sine(9.0, 0.5)
+    case = Case(WALL, 0.01, 0.02, side_stop=False, motion=pulse, effects=(Damper(height=4.0, c=1e3),))
     simulate(case, contacts, timestep, ledger=True, forces=True)
 
 

@@ -8,7 +8,14 @@ from tests.digests.answers import answers, elsewhere, moved, stored
 from tests.digests.scenes import SCENES
 
 KEPT = stored()
-SLOW = ("explicit, dome", "rest, vault", "MuJoCo fitted, box", "SciPy, shaken", "push", "limit analysis, arch without dilatancy")
+SLOW = (
+    "explicit, dome",
+    "rest, vault",
+    "MuJoCo fitted, box",
+    "SciPy, shaken",
+    "push",
+    "limit analysis, arch without dilatancy",
+)
 """Scenes that take the longest."""
 EXACT = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "push-over", "check"))]
 INTERPRETED = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "rest", "push-over"))]

@@ -9,7 +9,8 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.distinct.kinds.law import JointLaw
-from mjrock.distinct.kinds.link import Table
+from mjrock.distinct.kinds.link import INFINITE_IN_LAW, Table
+from mjrock.distinct.kinds.lists import KINDS
 from mjrock.distinct.limit import longest_step
 from mjrock.scene.explicit_step import stable_step
 
@@ -192,3 +193,10 @@ def test_masonry_without_such_things_keeps_its_step():
     bare = step()
     assert step(mr.Dry(xi=0.02, frequency=60.0)) == bare
     assert step(effects=(soft, weak)) == pytest.approx(bare, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_numbers_of_a_law_that_may_be_infinite_may_be_so_in_every_kind(kind):
+    """A device of one's own with such a number, left at its default by all others, breaks no plain one."""
+    assert INFINITE_IN_LAW == ("reach", "strength", "ultimate")
+    assert set(INFINITE_IN_LAW) <= set(kind.endless)
