@@ -130,7 +130,7 @@ def compared(seeds: Sequence[int], out: Path, named: Sequence[str] = KERNELS) ->
     first = next(iter(found.values()))
     rows: list[list[object]] = []
     for kernel, answer in found.items():
-        refused = [one.label for one in answer.values() if one.refused]
+        refused = [str(one.label) for one in answer.values() if one.refused]
         differences = {str(first[seed].label): apart(first[seed], one) for seed, one in answer.items()}
         worst = max(differences, key=lambda label: differences[label])
         beyond = sum(difference > EQUAL for difference in differences.values())

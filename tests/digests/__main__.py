@@ -14,8 +14,8 @@ import sys
 from mjrock.machine import description, kernels
 
 from ..processors import KERNELS
-from .answers import NUDGED, STORED, answers, elsewhere
-from .scenes import SCENES
+from .digest_answers import NUDGED, STORED, answers, elsewhere
+from .digest_scenes import SCENES
 
 TIMES, FLOOR, GROWS, MOST = 30, 1e-12, 1e-9, 1e-3
 

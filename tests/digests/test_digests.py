@@ -4,8 +4,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from tests.digests.answers import answers, elsewhere, moved, stored
-from tests.digests.scenes import SCENES
+from tests.digests.digest_answers import answers, elsewhere, moved, stored
+from tests.digests.digest_scenes import SCENES
 
 KEPT = stored()
 SLOW = (

@@ -31,7 +31,7 @@ def written(copy):
         ("problem/wall/effects.py", "from .tie import", "from .orifice import OrificeDamper\n{}"),
         ("problem/wall/effects.py", "FrictionDamper, AddedMass", "FrictionDamper, OrificeDamper, AddedMass"),
         ("__init__.py", "    from .problem.wall.tie", "    from .problem.wall.orifice import OrificeDamper\n{}"),
-        ("__init__.py", '"FrictionDamper", ', '{}"OrificeDamper", '),
+        ("__init__.py", '"FrictionDamper",', '{} "OrificeDamper",'),
     ):
         text = (copy / path).read_text()
         assert text.count(old) == 1, (path, old)

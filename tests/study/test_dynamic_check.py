@@ -179,7 +179,7 @@ def test_mirrored_masonry_is_pushed_and_shaken_the_other_way():
 def test_masonry_without_its_curve_is_refused():
     case, _ = shaken(1, 3.0)
     runs = [mr.solve_explicit(replace(case, duration=0.5))]
-    with pytest.raises(TypeError, match=r"runs\[0\] is masonry, .* take curve, its push"):
+    with pytest.raises(TypeError, match=r"runs\[0\] is masonry, .* take curve, its limit_curve or push along"):
         mr.dynamic_check(runs)
     curve = curve_of(1, 0.01)
     with pytest.raises(ValueError, match=r"curve ends at 0.01\d* m, where 9\d% of its peak is borne; push on"):
