@@ -243,9 +243,9 @@ EQUIVALENT = {
         for line in (
             "BEGINNING = LOOSE, 2.0, SLIPPING, np.inf",
             "POSES = 600",
-            "SOFT_STARTS = 0.2, 0.01, 100.0",
-            "SOFT_STARTS = 0.1, 0.02, 100.0",
-            "SOFT_STARTS = 0.1, 0.01, 200.0",
+            "SOFT_STARTS = 200.0, 0.01, 0.1",
+            "SOFT_STARTS = 100.0, 0.02, 0.1",
+            "SOFT_STARTS = 100.0, 0.01, 0.2",
             "loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.25 * share, least)",
             "loose, share, least = 2 * loose, 1.0, min(RAISED / least, 1.0)",
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 2e-12, 1.0",

@@ -59,7 +59,7 @@ enough ends the search [-]."""
 RIGID, RIGID_WITHOUT_LIMIT = 1e3, 1e4
 """Shear stiffness of contacts that stick rigidly, over their normal stiffness [-]: with the limit of friction, and
 without one. More makes rounding of the slip a larger force than may be missing."""
-SOFT_STARTS = 0.1, 0.01, 100.0
+SOFT_STARTS = 100.0, 0.01, 0.1
 """Shear stiffnesses, over the normal one, at which the pose is found from which a search starts that finds none from
 the undeformed pose, in turn [-]: stiff springs slip more on the way. Two vaults of 500 need the last ones."""
 POSES = 300

@@ -168,7 +168,7 @@ def test_one_process_for_each_store_compiles_behind_others(fresh):
         parent = started(fresh, WALL + "sys.stdin.read()", at_home=True)
         process = parent.stdout.readline().split()[-1]
         assert process == "None" or ended(process)
-    assert parent.communicate("")[1] == ""
+        assert parent.communicate("")[1] == ""
 
 
 @pytest.mark.parametrize("setting", [*patience.ENDING, "NUMBA_CACHE_DIR", "first process", "worker"])
