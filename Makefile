@@ -15,7 +15,7 @@ test test-slow test-processors test-oldest test-installed mutants: export OPENBL
 test test-slow test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
 demo: $(READY)
-	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo
+	$(BIN)/python -m mjrock demo --force --output out/demo
 
 test: $(TEST)
 	$(BIN)/pytest -n auto
@@ -68,7 +68,7 @@ models: $(READY)
 	$(BIN)/python scripts/models/make_models.py
 
 figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
-	$(BIN)/python scripts/paper/compare_wall.py --check --out docs/figures/demo
+	$(BIN)/python -m mjrock demo --force --output docs/figures/demo
 	$(BIN)/python scripts/paper/sketch.py --out docs/figures
 	$(BIN)/python scripts/studies/first_pictures.py --out docs/figures
 	$(BIN)/python scripts/paper/figure3.py --out docs/figures

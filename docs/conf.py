@@ -37,7 +37,7 @@ release = version = mjrock.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 extensions += ["sphinx.ext.viewcode", "sphinx_gallery.gen_gallery"]
-exclude_patterns = ["build", "examples", "figures"]
+exclude_patterns = ["build", "figures"]
 default_role = "literal"  # docstrings and examples name things in single backticks
 nitpicky = True  # a name that leads nowhere is an error
 # The site is built without a network, so that names of other packages lead nowhere; nor do types that are not in the
@@ -62,7 +62,7 @@ napoleon_numpy_docstring = False
 napoleon_custom_sections = [("Warns", "returns_style")]
 
 sphinx_gallery_conf = {
-    "examples_dirs": "examples",
+    "examples_dirs": str(Path(mjrock.__file__).parent / "examples"),
     "gallery_dirs": "auto_examples",
     "filename_pattern": r"/\d\d_",
     "ignore_pattern": r"__init__\.py",

@@ -133,7 +133,7 @@ def gallery(text: str) -> str:
 def home(text: str) -> str:
     """The home page: the README with small pictures in its table, and what the page itself has."""
     readme = (HERE.parent / "README.md").read_text(encoding="utf-8").replace("](docs/", "](")
-    readme = re.sub(r"\]\(examples/(\w+)\.py\)", r"](auto_examples/\1.rst)", readme)
+    readme = re.sub(r"\]\(mjrock/examples/(\w+)\.py\)", r"](auto_examples/\1.rst)", readme)
     readme = re.sub(r"\[([^\]]*)\]\(CONTRIBUTING\.md[^)]*\)", r"\1", readme)
     readme = re.sub(r"\[!\[\]\(figures/([\w./]+)\)\]", lambda found: f"[![]({thumbnail(found[1])})]", readme)
     return text.replace("```{readme}\n```", readme)

@@ -1,54 +1,109 @@
-"""`python -m mjrock COMMAND ...`: commands that need no script."""
+"""`mjrock COMMAND ...`, which is `python -m mjrock COMMAND ...`: commands that need no script."""
 
 from __future__ import annotations
 
-import argparse
 import importlib
+import io
 import os
 import sys
+from argparse import SUPPRESS
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from .notice import notice
+from ._version import __version__
+from .command_line import Answer, parser
+from .files import aligned
+from .notice import collect_warnings, notice
+
+BROKEN_PIPE, INTERRUPTED = 141, 130
+"""Exit statuses of a command whose output nobody reads on, and of one that Ctrl-C ended, as shells have them."""
+
+
+class Command(NamedTuple):
+    """A command.
+
+    Args:
+        module: whose function `answer` takes the arguments of the command and returns an `Answer`.
+        line: what it does.
+    """
+
+    module: str
+    line: str
+
 
 COMMANDS = {
-    "compile": ".study.compilation",
-    "inspect": ".anymodel.command",
-    "status": ".study.campaign.progress",
-    "view": ".engine.replay",
+    "demo": Command(".commands.demo", "a wall in MuJoCo beside rocking theory, with a table and a picture"),
+    "examples": Command(".commands.examples", "list the examples, run one, or copy its script"),
+    "compile": Command(".study.compilation", "compile the loops of all solvers and store them, once"),
+    "status": Command(".study.campaign.progress", "how far a campaign is, from its store"),
+    "inspect": Command(".anymodel.command", "contacts of a MuJoCo model in physical units"),
+    "view": Command(".engine.replay", "a model and its motion in MuJoCo's viewer"),
 }
-"""Where the function `answer` of each command is, which takes its arguments and returns a text."""
-HELP = {
-    "compile": "compile the loops of all solvers and store them, once for an installation",
-    "inspect": "contacts of a MuJoCo model in physical units",
-    "status": "how far a campaign is, from its store",
-    "view": "a model and its answer in MuJoCo's viewer",
-}
+"""Every command, in the order of the help."""
+STATUSES = "Exit status: 0 holds or done, 1 does not hold, 2 error, 130 interrupted."
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command that is named; the arguments after it are its own."""
-    told = "; ".join(f"{name}: {text}" for name, text in HELP.items())
-    made = argparse.ArgumentParser(
-        "python -m mjrock", f"python -m mjrock {{{','.join(COMMANDS)}}} ...", "Commands that need no script."
-    )
-    made.add_argument("command", choices=COMMANDS, help=told)
-    return made
+def commands() -> str:
+    """The commands, a line each."""
+    lines = aligned([("", name, command.line) for name, command in COMMANDS.items()], "<")
+    return "\n".join(["commands:", *(line.rstrip() for line in lines)])
+
+
+def answered(given: Sequence[str]) -> Answer:
+    """What the command that is named answers; without one, the help."""
+    made = parser("", "Rocking masonry in MuJoCo, by explicit steps and by theory. Commands that need no script.")
+    made.prog, made.usage = "mjrock", "mjrock COMMAND ..."
+    made.epilog = f"{commands()}\n\nmjrock COMMAND --help says more of a command.\n{STATUSES}"
+    made.add_argument("--version", action="version", version=f"mjrock {__version__}", help="print the version")
+    made.add_argument("command", choices=COMMANDS, metavar="COMMAND", help=SUPPRESS)
+    if not given:
+        return Answer(made.format_help().rstrip())
+    command = COMMANDS[made.parse_args(given[:1]).command]
+    answer: Answer = importlib.import_module(command.module, "mjrock").answer(given[1:])
+    return answer
+
+
+def leave_output() -> None:
+    """Let what is still to be written go nowhere, so that Python does not fail to write it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def write(text: str) -> None:
+    """Write to the standard output; OSError if it is full, and nothing if nobody reads on, as of `| head`."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        leave_output()
+    except OSError as error:
+        leave_output()
+        raise OSError(error.errno, error.strerror, "standard output") from None
+
+
+def message_of(error: Exception) -> str:
+    """What an error says, of a file its name first."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command. Returns the exit code: 2 for what the user can mend."""
-    given = list(sys.argv[1:] if argv is None else argv)
-    module = COMMANDS[parser().parse_args(given[:1]).command]
+    """Run a command. Returns the exit status: 1 for what does not hold, 2 for what the user can mend."""
+    if isinstance(sys.stdout, io.TextIOWrapper) and not sys.stdout.isatty():
+        sys.stdout.reconfigure(encoding="utf-8")  # files of TOML are UTF-8 on every system
     try:
-        text = importlib.import_module(module, "mjrock").answer(given[1:])
-    except (ValueError, TypeError, OSError) as error:
-        notice(str(error), by="error")
+        with collect_warnings(lambda text: notice(text.partition(": ")[2], by="warning")):
+            answer = answered(list(sys.argv[1:] if argv is None else argv))
+        write(answer.text)
+    except KeyboardInterrupt as interrupt:
+        notice(": ".join(filter(None, ("interrupted", str(interrupt)))))
+        return INTERRUPTED
+    except BrokenPipeError:
+        leave_output()
+        return BROKEN_PIPE
+    except (ValueError, TypeError, OSError, RuntimeError, ImportError) as error:
+        notice(message_of(error), by="error")
         return 2
-    try:
-        print(text, flush=True)
-    except BrokenPipeError:  # nobody reads on, as of `| head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return 0
+    return 0 if answer.holds else 1
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""`python -m mjrock inspect model.xml`: what the contacts of a MuJoCo model are in N/m and N s/m.
+"""`mjrock inspect model.xml`: what the contacts of a MuJoCo model are in N/m and N s/m.
 
 The worst contacts come first, and equal notes are given once."""
 
@@ -12,6 +12,7 @@ from pathlib import Path
 
 import mujoco
 
+from ..command_line import Answer, parser
 from ..engine.replay import load
 from ..files import aligned, csv_text, write_text
 from ..quantities import named, require_within
@@ -132,9 +133,9 @@ PAGE = 40
 """Rows that fill a page."""
 
 
-def parser() -> argparse.ArgumentParser:
+def arguments() -> argparse.ArgumentParser:
     """The arguments of the command line."""
-    made = argparse.ArgumentParser("python -m mjrock inspect", description=(__doc__ or "").splitlines()[0])
+    made = parser("inspect", (__doc__ or "").splitlines()[0])
     made.add_argument("model", type=Path, help="MJCF or URDF file, or a compiled .mjb")
     made.add_argument("--geom", action="append", default=[], help="contacts of a geom, such as 'foot*'")
     made.add_argument("--body", action="append", default=[], help="contacts of a body")
@@ -149,13 +150,13 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-def answer(argv: Sequence[str]) -> str:
+def answer(argv: Sequence[str]) -> Answer:
     """The table of the model that is named; the rows are also written where --csv says.
 
     Raises:
         ValueError, TypeError, OSError: for what the user can mend.
     """
-    args = parser().parse_args(argv)
+    args = arguments().parse_args(argv)
     if not args.model.is_file():
         raise FileNotFoundError(f"model {args.model} is not a file")
     keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
@@ -176,5 +177,5 @@ def answer(argv: Sequence[str]) -> str:
         write_text(args.csv, csv_text(header, rows))
     flexes = flex_report(model)
     if not chosen and (args.geom or args.body or args.pair):
-        return "No contact of this model is of these geoms, bodies or pairs." + flexes
-    return table_and_notes(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes
+        return Answer("No contact of this model is of these geoms, bodies or pairs." + flexes)
+    return Answer(table_and_notes(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes)

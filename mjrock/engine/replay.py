@@ -1,4 +1,4 @@
-"""`python -m mjrock view scene.xml answer.csv`: a model in MuJoCo's viewer that replays an answer and goes on."""
+"""`mjrock view scene.xml answer.csv`: a model in MuJoCo's viewer that replays an answer and goes on."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from ..command_line import Answer, parser
 from ..files import require_file
 from ..quantities import Array, require_within
 
@@ -224,12 +225,10 @@ def launcher() -> Callable[..., Any]:
     return viewer.launch_passive
 
 
-def parser() -> argparse.ArgumentParser:
+def arguments() -> argparse.ArgumentParser:
     """The arguments of the command line."""
-    made = argparse.ArgumentParser(
-        "python -m mjrock view",
-        description=f"{__doc__} Space stops and goes on, Backspace begins again. On macOS: mjpython -m mjrock view ...",
-    )
+    keys = "Space stops and goes on, Backspace begins again. On macOS: mjpython -m mjrock view ..."
+    made = parser("view", f"{__doc__}\n{keys}")
     made.add_argument("model", type=Path, help="MJCF file, such as mjcf_of writes, or a compiled .mjb")
     made.add_argument("answer", type=Path, nargs="?", help="its motion, a file of Response.csv; none simulates at once")
     made.add_argument("--speed", type=float, default=1.0, help="seconds of the motion in a second, 0.001 to 1000")
@@ -257,13 +256,13 @@ def unwarned() -> Iterator[None]:
         mujoco.set_mju_user_warning(before)
 
 
-def answer(argv: Sequence[str]) -> str:
+def answer(argv: Sequence[str]) -> Answer:
     """Open the window with the model that is named; the text says until when it was followed.
 
     Raises:
         ValueError, OSError: for what the user can mend, or where there is no display.
     """
-    args = parser().parse_args(argv)
+    args = arguments().parse_args(argv)
     speed = require_within("speed", args.speed, 1e-3, 1e3)
     model = load(args.model)
     replay = Replay(model, None if args.answer is None else read_motion(model, args.answer))
@@ -274,4 +273,4 @@ def answer(argv: Sequence[str]) -> str:
             if "mjpython" not in str(error):
                 raise
             raise OSError("on macOS MuJoCo's launcher opens the window: mjpython -m mjrock view ...") from None
-    return f"{ENDED} at {replay.data.time:.3g} s."
+    return Answer(f"{ENDED} at {replay.data.time:.3g} s.")

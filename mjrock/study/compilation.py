@@ -1,8 +1,7 @@
-"""`python -m mjrock compile`: compile the loops of all solvers once, and store them."""
+"""`mjrock compile`: compile the loops of all solvers once, and store them."""
 
 from __future__ import annotations
 
-import argparse
 import os
 import warnings
 from collections.abc import Callable, Sequence
@@ -11,6 +10,7 @@ from multiprocessing import get_context
 from time import perf_counter
 
 from ..bars import Bar
+from ..command_line import Answer, parser
 from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
 from ..patience import compiles
@@ -65,17 +65,15 @@ def carry_out(number: int) -> None:
         RUNS[number]()
 
 
-def answer(argv: Sequence[str]) -> str:
+def answer(argv: Sequence[str]) -> Answer:
     """Make all `RUNS`, in as many processes as there are cores.
 
     Raises:
         OSError: if no folder can be written.
         ValueError: if there is no compiler.
     """
-    argparse.ArgumentParser(
-        "python -m mjrock compile",
-        description="Compile the loops of all solvers and store them; some two minutes, once for an installation.",
-    ).parse_args(argv)
+    what = "Compile the loops of all solvers and store them; some two minutes, once for an installation."
+    parser("compile", what).parse_args(argv)
     if not compiles():
         raise ValueError("nothing can be compiled: numba is not installed, or NUMBA_DISABLE_JIT is set")
     from ..stored import folder  # which imports numba
@@ -88,4 +86,4 @@ def answer(argv: Sequence[str]) -> str:
     ):
         for _ in pool.map(carry_out, range(len(RUNS))):
             bar.add()
-    return f"the loops are stored in {stored}; {perf_counter() - begun:.0f} s"
+    return Answer(f"the loops are stored in {stored}; {perf_counter() - begun:.0f} s")

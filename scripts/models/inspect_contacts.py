@@ -24,7 +24,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     options.add_argument("model", type=Path, nargs="?", default=wall, help="MJCF or URDF file")
     args, others = options.parse_known_args(argv)
     asked = [str(args.model), "--all", *(["--pairs"] if args.quick else []), *others]
-    cli.report(cli.folder(args.out) / "inspect_contacts", command.answer(asked))
+    cli.report(cli.folder(args.out) / "inspect_contacts", command.answer(asked).text)
 
 
 if __name__ == "__main__":

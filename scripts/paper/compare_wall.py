@@ -1,6 +1,7 @@
 """Rock one wall in MuJoCo beside classical rocking theory: the energy lost at every impact.
 
-Writes scene.xml (the model that ran), comparison.png and comparison.csv, and prints the table.
+It is `mjrock demo` with options: it writes scene.xml (the model that ran), comparison.png and comparison.csv, and
+prints the table.
 """
 
 from __future__ import annotations
@@ -8,14 +9,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-import numpy as np
-from matplotlib.figure import Figure
-
 import mjrock as mr
-from mjrock import plotting
-from mjrock.plotting.wall import section
+from mjrock.commands import demo
 from scripts.shared import cli
-from scripts.shared.labels import beside
 
 LAWS = {"published": mr.PUBLISHED, "calibrated": mr.CALIBRATED, "calibrated-bed": mr.CALIBRATED_BED}
 
@@ -27,28 +23,6 @@ def law(name: str | None, points: int) -> mr.DampingLaw:
     if name not in LAWS and not name.endswith(".toml"):
         raise ValueError(f"law = {name!r} is not one of {', '.join(LAWS)} and not a .toml file")
     return LAWS[name] if name in LAWS else mr.DampingLaw.load(name)
-
-
-STEP = 0.05
-"""Least step of the energy that is marked, over the first energy [-]."""
-
-
-def drawn(case: mr.Case, responses: Sequence[mr.Response], title: str) -> Figure:
-    """Rotation and energy until the wall is at rest, |e| at the steps of the energy, and the wall."""
-    figure = plotting.comparison(responses, title)
-    above, below = figure.axes
-    theory = responses[0]
-    assert theory.rocking is not None
-    moving = np.flatnonzero(np.abs(theory.theta) > 1e-3 * theory.of_wall[0].wall.alpha)
-    below.set_xlim(0, min(theory.t[-1], 1.3 * theory.t[moving[-1]]))
-    for impact in theory.impacts:
-        if impact.energy_before > STEP * theory.energy[0]:
-            at = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
-            beside(below, at, f"$|e|$ = {abs(impact.restitution):.2f}", "0.2", (6, 0))
-    inset = above.inset_axes((0.72, 0.16, 0.28, 0.82))
-    section(inset, case)
-    inset.axis("off")
-    return figure
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -85,33 +59,15 @@ def main(argv: Sequence[str] | None = None) -> None:
     case = mr.Case(wall, theta0=args.release * wall.alpha, duration=duration, side_stop=args.sides == 1)
     out = cli.folder(args.out)
 
-    reference = mr.solve_analytical(case, e)
-    candidate = mr.simulate(case, contacts, args.timestep, accuracy=args.accuracy)
-    comparison = mr.compare(reference, candidate)
-    responses = [reference, candidate]  # the last is drawn on top
-    if args.check:
-        responses.append(mr.solve_compliant(case, contacts))
-
-    step = candidate.stats["timestep"]
-    cli.write_text(out / "scene.xml", mr.wall_mjcf(case, contacts, step))
-    cli.write_text(out / "comparison.csv", comparison.csv())
-    title = f"2h = {2 * wall.h:g} m, 2b = {2 * wall.b:g} m, {'one' if case.side_stop else 'two'}-sided"
-    plotting.save(drawn(case, responses, title), out / "comparison.png")
-
+    how = {"timestep": args.timestep, "accuracy": args.accuracy, "check": args.check}
+    tables = demo.compared(case, e, contacts, out, **how)
     side = f", side {contacts.side.xi:.2%} (e = {e.side:.3f})" if contacts.side else ""
     print(
         f"wall {2 * wall.b:g} x {2 * wall.h:g} x {wall.length:g} m, "
         f"alpha = {wall.alpha:.4f} rad, p = {wall.p:.3f} rad/s"
     )
     print(f"damping ratios by {contacts.law}: base {contacts.base.xi:.2%} (e = {e.base:.3f}){side}")
-    stats = candidate.stats
-    steps = f"{step * 1e3:.3g} ms" if args.timestep else f"{step * 1e3:.3g} to {stats['longest_timestep'] * 1e3:.3g} ms"
-    print(f"MuJoCo: {stats['steps']} steps of {steps} in {stats['wall_time']:.3f} s\n")
-    print(comparison.table())
-    if args.check:
-        print("\nThe same contact law solved by SciPy, against MuJoCo:\n")
-        print(mr.compare(responses[2], candidate).table())
-    print(f"\nwritten: {', '.join(str(out / name) for name in ('scene.xml', 'comparison.png', 'comparison.csv'))}")
+    print(tables)
 
 
 if __name__ == "__main__":

@@ -33,6 +33,8 @@ def main():
     rooms, files = Counter(), Counter()
     for path in sorted(package.rglob("*.py")):
         parts = path.relative_to(package).parts
+        if parts[0] == "examples":
+            continue
         room = "/".join(parts[:-1]) or "."
         rooms[room] += code_lines(path)
         files[room] += 1

@@ -11,7 +11,7 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
-    ("machine", "notice"),
+    ("command_line", "machine", "notice"),
     ("_version", "bars", "interrupts", "notebook", "patience"),
     ("stored",),
     ("compiled", "compiler", "files", "method", "quantities"),
@@ -27,6 +27,7 @@ FLOORS = (
     ("study",),
     ("plotting",),
     ("reporting",),
+    ("commands",),
     ("__main__",),
 )
 """From the ground up. Rooms of one floor do not import each other."""

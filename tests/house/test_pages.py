@@ -19,6 +19,7 @@ import mjrock as mr
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
+EXAMPLES = ROOT / "mjrock" / "examples"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
@@ -111,7 +112,7 @@ def test_the_readme_is_short_its_six_lines_run_and_its_doors_open(tmp_path, monk
     start = readme[: readme.index("## Install and try it")]
     assert all(word in start for word in ("dry", "cracked", "mortared"))
     doors = {
-        "Check a façade": "docs/examples/19_church_facade.py",
+        "Check a façade": "mjrock/examples/19_church_facade.py",
         "Model blocks": "docs/masonry.md",
         "Contacts for your MuJoCo model": "docs/contacts_in_your_model.md",
     }
@@ -154,7 +155,9 @@ def test_every_link_of_a_page_leads_somewhere():
     for page in (ROOT / "README.md", *sorted(DOCS.glob("*.md"))):
         text = page.read_text(encoding="utf-8")
         for link in LINK.findall(text):
-            source = re.sub(r"^auto_examples/(.*)\.rst$", r"examples/\1.py", link)  # a page that the site makes of it
+            source = re.sub(
+                r"^auto_examples/(.*)\.rst$", r"../mjrock/examples/\1.py", link
+            )  # a page that the site makes of it
             if not link.startswith("http") and not (page.parent / source).exists():
                 offenders.append(f"{page.name}: {link}")
         for script in re.findall(r"scripts/([\w/]+)\.py", text):
@@ -200,7 +203,7 @@ def test_a_picture_of_the_gallery_leads_to_the_page_that_explains_it(monkeypatch
 
 
 def test_the_examples_are_a_numbered_course_of_twenty():
-    scripts = sorted((DOCS / "examples").glob("*.py"))
+    scripts = sorted(EXAMPLES.glob("*.py"))
     texts = [script.read_text(encoding="utf-8").splitlines() for script in scripts]
     assert [int(script.name[:2]) for script in scripts] == list(range(1, 21))
     assert [int(lines[1].split(".")[0]) for lines in texts] == list(range(1, 21))
@@ -216,7 +219,7 @@ def test_every_public_name_is_in_the_reference():
 
 @pytest.mark.slow
 def test_the_church_example_goes_from_records_to_a_report(capsys):
-    names = runpy.run_path(str(DOCS / "examples" / "19_church_facade.py"))
+    names = runpy.run_path(str(EXAMPLES / "19_church_facade.py"))
     assert [len(components) for components in names["records"].values()] == 8 * [2]
     T, target = names["periods"], names["spectrum"](names["periods"])
     for components in names["scaled"].values():
@@ -262,7 +265,7 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     found = subprocess.run(command, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stderr[-4000:]
     pages = list((tmp_path / "html").rglob("*.html"))
-    examples = {page.stem for page in (DOCS / "examples").glob("*.py")}
+    examples = {page.stem for page in EXAMPLES.glob("*.py")}
     assert examples <= {page.stem for page in pages}
     assert (tmp_path / "html" / "arch_view.html").stat().st_size > 5e5
     results = (tmp_path / "html" / "results.html").read_text(encoding="utf-8")

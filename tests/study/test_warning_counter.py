@@ -7,7 +7,8 @@ import pytest
 from campaign_tasks import Square, Warn
 
 import mjrock as mr
-from mjrock.study.campaign.progress import WarningCounter, collect_warnings
+from mjrock.notice import collect_warnings
+from mjrock.study.campaign.progress import WarningCounter
 
 
 def test_warnings_that_differ_in_numbers_are_of_one_kind():

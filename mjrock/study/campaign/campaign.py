@@ -19,9 +19,10 @@ from typing import TypedDict, Unpack, cast
 
 from pebble import ProcessExpired
 
+from ...notice import collect_warnings
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
 from .pool import CHUNK_SECONDS, QUIT, Workers
-from .progress import CampaignProgress, collect_warnings
+from .progress import CampaignProgress
 from .store import Store
 from .task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from pebble import ProcessPool
 from tqdm import tqdm
 
-from .progress import collect_warnings
+from ...notice import collect_warnings
 from .task import Row, Task, carry_out
 
 CHUNK_SECONDS = 0.5

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import argparse
-import contextlib
 import re
 import time
-import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TextIO
 
 from ...bars import OF_ALL, PLAIN, shown_bar
+from ...command_line import Answer, parser
 from ...notice import notice
 from .store import Store
 from .task import Row
@@ -39,29 +36,6 @@ class WarningCounter:
             f"{what} once: {self.texts[kind]}" if count == 1 else f"{what} {count} times, first: {self.texts[kind]}"
             for kind, count in self.counts.most_common(most)
         ]
-
-
-@contextlib.contextmanager
-def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
-    """Pass the text of every warning that would be shown to `first`, and show those for which it returns True."""
-    before = warnings.showwarning
-
-    def shown(
-        message: Warning | str,
-        category: type[Warning],
-        filename: str,
-        lineno: int,
-        file: TextIO | None = None,
-        line: str | None = None,
-    ) -> None:
-        if first(f"{category.__name__}: {message}"):
-            before(message, category, filename, lineno, file, line)
-
-    warnings.showwarning = shown
-    try:
-        yield
-    finally:
-        warnings.showwarning = before
 
 
 ERRORS = 3
@@ -119,11 +93,11 @@ def status(path: str | Path) -> str:
     return "\n".join([*lines, *errors.lines("failed", ERRORS)])
 
 
-def answer(argv: Sequence[str]) -> str:
+def answer(argv: Sequence[str]) -> Answer:
     """The `status` of the store that is named."""
-    parser = argparse.ArgumentParser("python -m mjrock status", description="How far a campaign is, from its store.")
-    parser.add_argument("store", help="the SQLite file of a campaign")
-    return status(parser.parse_args(argv).store)
+    made = parser("status", "How far a campaign is, from its store.")
+    made.add_argument("store", help="the SQLite file of a campaign")
+    return Answer(status(made.parse_args(argv).store))
 
 
 LINE_EVERY = 30.0

@@ -1,0 +1,70 @@
+"""What commands share: how their arguments are read, what they answer, and which files they may write."""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import shutil
+from pathlib import Path
+from typing import NamedTuple
+
+WIDEST = 98
+"""Columns of a help text, at most."""
+
+
+class Answer(NamedTuple):
+    """What a command answers.
+
+    Args:
+        text: for the standard output.
+        holds: whether what it checked holds; True of a command that checks nothing.
+    """
+
+    text: str
+    holds: bool = True
+
+
+class Help(argparse.RawDescriptionHelpFormatter):
+    """Help of at most WIDEST columns, with the lines of a description as they are written."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=min(WIDEST, shutil.get_terminal_size().columns - 2))
+
+
+def parser(name: str, description: str, epilog: str = "") -> argparse.ArgumentParser:
+    """The parser of a command.
+
+    Args:
+        name: of the command.
+        description: what it does.
+        epilog: what stands below its arguments in the help.
+    """
+    return argparse.ArgumentParser(f"mjrock {name}", description=description, epilog=epilog, formatter_class=Help)
+
+
+def add_output(made: argparse.ArgumentParser, what: str, default: str = "") -> None:
+    """Add `--output` and `--force`.
+
+    Args:
+        made: the parser.
+        what: what the file or folder is, in words.
+        default: where it is without `--output`, in words.
+    """
+    said = f"{what}; without it {default}" if default else what
+    made.add_argument("-o", "--output", type=Path, metavar="PATH", help=said)
+    made.add_argument("-f", "--force", action="store_true", help="replace files that exist")
+
+
+def require_free(path: Path, force: bool) -> Path:
+    """Return a path to write to.
+
+    Args:
+        path: of a file.
+        force: whether a file that is there may be replaced.
+
+    Raises:
+        FileExistsError: with the path and the remedy, if something is there and may not be replaced.
+    """
+    if not force and path.exists():
+        raise FileExistsError(errno.EEXIST, "exists already, and --force replaces it", str(path))
+    return path

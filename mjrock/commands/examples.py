@@ -1,0 +1,119 @@
+"""`mjrock examples`: the examples of the documentation, which come with the package."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..command_line import Answer, add_output, parser, require_free
+from ..files import aligned, write_text
+
+FOLDER = Path(__file__).parents[1] / "examples"
+"""Where the scripts are; the documentation is built from them too."""
+CELL = "# %%\n"
+"""Line between two cells of a script."""
+
+
+class Example(NamedTuple):
+    """An example.
+
+    Args:
+        path: of its script.
+        title: what it is about.
+    """
+
+    path: Path
+    title: str
+
+    @property
+    def text(self) -> str:
+        """The script."""
+        return self.path.read_text(encoding="utf-8")
+
+
+def examples() -> list[Example]:
+    """All examples in their order."""
+    paths = sorted(FOLDER.glob("[0-9][0-9]_*.py"))
+    titles = [path.read_text(encoding="utf-8").splitlines()[1] for path in paths]
+    return [Example(path, title.partition(". ")[2]) for path, title in zip(paths, titles, strict=True)]
+
+
+def found(name: str) -> Example:
+    """The example of a number, or of a name with or without its number.
+
+    Raises:
+        ValueError: for any other, with those that there are.
+    """
+    known = examples()
+    for example in known:
+        number, _, rest = example.path.stem.partition("_")
+        if name in (number, str(int(number)), rest, example.path.stem, example.path.name):
+            return example
+    names = ", ".join(example.path.stem for example in known)
+    raise ValueError(f"there is no example {name!r}; give a number from 1 to {len(known)} or one of {names}")
+
+
+def cells(text: str) -> Iterator[str]:
+    """The cells of a script, each below as many empty lines as stand before it, for the numbers of its lines."""
+    before = 0
+    for cell in text.split(CELL):
+        yield "\n" * before + cell
+        before += cell.count("\n") + 1
+
+
+def run(example: Example, folder: Path, force: bool) -> list[Path]:
+    """Run an example, which prints, and save its pictures into a folder.
+
+    Args:
+        example: the example.
+        folder: that of the pictures, which is made for the first of them.
+        force: whether a picture that is there may be replaced.
+
+    Returns:
+        The pictures.
+
+    Raises:
+        FileExistsError: for a picture that may not be replaced.
+    """
+    from matplotlib.figure import Figure  # the list needs no pictures
+
+    from ..plotting.style import save
+
+    names: dict[str, Any] = {"__name__": "__main__", "__file__": str(example.path)}
+    pictures: list[Path] = []
+    require_free(folder / f"{example.path.stem}_1.png", force)
+    for cell in cells(example.text):
+        exec(compile(cell, example.path, "exec"), names)
+        sys.stdout.flush()
+        figure = names.pop("figure", None)
+        if isinstance(figure, Figure):
+            folder.mkdir(parents=True, exist_ok=True)
+            path = folder / f"{example.path.stem}_{len(pictures) + 1}.png"
+            pictures.append(save(figure, require_free(path, force)))
+    return pictures
+
+
+def answer(argv: Sequence[str]) -> Answer:
+    """List the examples, run one, or copy its script.
+
+    Raises:
+        ValueError: for an example that is not there.
+        OSError: if a file cannot be written, or is there and may not be replaced.
+    """
+    made = parser("examples", "List the examples, run one, which prints and draws pictures, or copy its script.")
+    made.add_argument("name", nargs="?", help="its number or name, such as 7 or push_over; none lists them")
+    made.add_argument("-c", "--copy", action="store_true", help="write the script, to be changed, and do not run it")
+    add_output(made, "folder of the pictures, or of the script", "the current one")
+    args = made.parse_args(argv)
+    if args.name is None:
+        listed = aligned([(one.path.stem, one.title) for one in examples()], "<")
+        return Answer("\n".join([*(line.rstrip() for line in listed), "", "mjrock examples NAME runs one."]))
+    example, folder = found(args.name), args.output or Path()
+    if args.copy:
+        folder.mkdir(parents=True, exist_ok=True)
+        written = write_text(require_free(folder / example.path.name, args.force), example.text)
+        return Answer(f"written: {written}")
+    pictures = run(example, folder, args.force)
+    return Answer(f"written: {', '.join(map(str, pictures))}")
