@@ -11,25 +11,24 @@ A name is imported when it is first used: `contact_for` alone imports MuJoCo and
 import contextlib
 import importlib
 import importlib.metadata
-import re
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ._version import __version__
+from .contacts.names import homes
 from .interrupts import interrupts_held_back
 
 if TYPE_CHECKING:
     from . import plotting as plotting
-    from .anymodel.contact import PairContact, PairContacts
-    from .anymodel.coulomb import CoulombFriction
-    from .anymodel.inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
-    from .anymodel.make import contact_for, contacts_for
-    from .anymodel.notes import ContactWarning
+    from .contacts.contact import PairContact, PairContacts
+    from .contacts.coulomb import CoulombFriction
+    from .contacts.inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
+    from .contacts.make import contact_for, contacts_for
+    from .contacts.notes import ContactWarning
+    from .contacts.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .distinct.explicit import solve_explicit
     from .engine.model import SimulationError
     from .engine.simulation import simulate
-    from .engine.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
     from .problem.damping.contacts import Contacts, Interface, reference_frequency
     from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, PowerLaw
@@ -136,13 +135,7 @@ __all__ = [
     "strengths_of_bar", "thresholds", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
-IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (\([^)]*|.+)", re.MULTILINE)
-"""What a type checker imports above: a module and its public names."""
-HOME = {
-    name: module
-    for module, names in IMPORTED.findall(Path(__file__).read_text("utf-8"))
-    for name in re.findall(r"\w+", names)
-}
+HOME = homes(__file__)
 """The module of each public name."""
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ._version import __version__
 from .command_line import Answer, parser
-from .files import aligned
+from .contacts.files import aligned
 from .notice import collect_warnings, notice
 
 BROKEN_PIPE, INTERRUPTED = 141, 130
@@ -36,7 +36,7 @@ COMMANDS = {
     "examples": Command(".commands.examples", "list the examples, run one, or copy its script"),
     "compile": Command(".study.compilation", "compile the loops of all solvers and store them, once"),
     "status": Command(".study.campaign.progress", "how far a campaign is, from its store"),
-    "inspect": Command(".anymodel.command", "contacts of a MuJoCo model in physical units"),
+    "inspect": Command(".commands.inspect_contacts", "contacts of a MuJoCo model in physical units"),
     "view": Command(".engine.replay", "a model and its motion in MuJoCo's viewer"),
 }
 """Every command, in the order of the help."""

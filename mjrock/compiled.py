@@ -20,6 +20,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from .contacts.solref import INLINED
 from .interrupts import interrupts_held_back
 from .notice import notice
 from .patience import NotStoredError, allowed, as_plain_python, news
@@ -28,7 +29,7 @@ WITHOUT = "numba is not installed; the loops run as plain Python, thirty times s
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_waiting: list[Callable[..., Any]] = []
+_waiting: list[Callable[..., Any]] = list(INLINED)
 """Functions that compiled loops call, until there is a loop: numba takes half a second to import."""
 
 

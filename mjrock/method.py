@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from .contacts.solref import STIFF_DASHPOT
+
 
 class Method(NamedTuple):
     """The constants of fitted steps, of friction, and of a base that holds.
@@ -102,7 +104,7 @@ class Method(NamedTuple):
     approach: float = 0.75
     near: float = 6.0
     abrupt: float = 0.1
-    overdamped: float = 0.2
+    overdamped: float = STIFF_DASHPOT
     resolved: float = 0.2
     borne: float = 2.0
     held_masses: float = 1e3

@@ -1,32 +1,50 @@
-"""The acceleration of gravity, types of arrays, and checks of arguments."""
+"""The acceleration of gravity, and types of arrays and checks of arguments: those of contacts, and further ones."""
 
 from __future__ import annotations
 
 import inspect
 import math
 import os
-import sys
-import warnings
-from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import fields
-from functools import cache, wraps
-from numbers import Real as RealNumber
+from collections.abc import Collection, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import (
-    Annotated,
-    Any,
-    NamedTuple,
-    ParamSpec,
-    TypeGuard,
-    TypeVar,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from typing import Annotated, Any, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from .contacts.checks import (
+    MOST_SAMPLES,
+    NAMED,
+    Array,
+    Flags,
+    Integers,
+    P,
+    Result,
+    Within,
+    brief,
+    declared,
+    is_iterable,
+    keep,
+    keep_declared,
+    named,
+    require_array,
+    require_flag,
+    require_kind,
+    require_plain,
+    require_real,
+    require_reals,
+    require_row,
+    require_size,
+    require_text,
+    require_whole,
+    require_within,
+    short_repr,
+    shown,
+    spelt,
+    warn_of,
+    within_ranges,
+)
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2], in every solver and in the generated model."""
@@ -34,91 +52,11 @@ GRAVITY = 9.81
 ON_ITS_FACE = math.pi / 2
 """Rotation up to which a body is followed [rad]. It has overturned and lies on its face."""
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 Real = TypeVar("Real", float, Array)
-P = ParamSpec("P")
-Result = TypeVar("Result")
-
-
-WARNED = "__mjrock_warned__"
-"""Name under which the module of a user keeps which of its lines were warned of what."""
-PASSED = ("mjrock", "functools", "contextlib")
-"""Packages whose lines a warning does not point to."""
-MOST_SAMPLES = 50_000_000
-"""Most samples or fixed steps of one answer: some gigabytes."""
 
 
 class Implausible(UserWarning):
     """A value that can be, and is most often one in another unit or of another wall."""
-
-
-def keep(instance: object, **checked: object) -> None:
-    """Set fields of a frozen dataclass to what their checks returned, while it is made.
-
-    A check takes any real number and returns a float. The number given is not kept: NumPy computes with its small
-    numbers in their own few bits, in which 200 * 2 is 144.
-    """
-    for name, value in checked.items():
-        object.__setattr__(instance, name, value)
-
-
-def spelt(value: object) -> str:
-    """A value as `repr` spells it, in text that UTF-8 can hold; its type where `repr` fails."""
-    try:
-        text = repr(value)
-    except Exception:
-        text = f"a {type(value).__name__}"
-    return text.encode("utf-8", "backslashreplace").decode()
-
-
-def shown(value: object) -> str:
-    """A value and its type on one line, short enough for a message; of None nothing but its name."""
-    if value is None:
-        return "None"
-    return f"{brief(value)} of type {type(value).__name__}"
-
-
-def brief(value: object) -> str:
-    """A value on one line, short enough for a message."""
-    text = " ".join(spelt(value).split())
-    return f"{text[:60]}{'...' if len(text) > 60 else ''}"
-
-
-def short_repr(instance: Any) -> str:
-    """A dataclass as it would be written, on a line: numbers with six digits, and nothing that has its default."""
-    shown = ((each, getattr(instance, each.name)) for each in fields(instance) if each.repr)
-    said = (f"{each.name}={_shortened(value)}" for each, value in shown if not _same(value, each.default))
-    return f"{type(instance).__name__}({', '.join(said)})"
-
-
-def _same(value: object, default: object) -> bool:
-    return value is default or (isinstance(value, str | int | float | tuple) and value == default)
-
-
-def _shortened(value: object) -> str:
-    """A value on a line: a long row by how many values it has."""
-    if isinstance(value, np.ndarray | tuple | list):
-        return f"<{len(value)} values>" if len(value) > NAMED else f"({', '.join(map(_shortened, value))})"
-    return f"{value:.6g}" if isinstance(value, float) else spelt(value)
-
-
-def warn_of(message: str, kind: type[Warning] = UserWarning, *, once: str = "") -> None:
-    """Warn of something at the line of the user that led to it: the nearest one outside the package.
-
-    With `once`, what the warning is about, a line warns of it once, whatever the numbers in the message: a search makes
-    a hundred motions at one line. The module of that line knows what it was warned of, as it does for `warnings`.
-    """
-    level, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in PASSED:
-        level, frame = level + 1, frame.f_back
-    warned = frame.f_globals.setdefault(WARNED, set())
-    if once and (key := (once, frame.f_code, frame.f_lineno)) in warned:
-        return
-    if once:
-        warned.add(key)
-    warnings.warn(message, kind, stacklevel=level)
 
 
 def ratio_said(ratio: float) -> str:
@@ -142,133 +80,17 @@ def percent_said(share: float) -> str:
     return ">99%" if 0.99 < share < 1 else f"{share:.0%}"
 
 
-def require_real(name: str, value: object) -> float:
-    """Return `value` as a float.
-
-    Raises:
-        TypeError: with the name and the value, unless it is a real number. True and False are not.
-        ValueError: if it is too large for a float.
-    """
-    if isinstance(value, bool | np.bool_) or not isinstance(value, RealNumber):
-        raise TypeError(f"{name} = {shown(value)} is not a real number")
-    try:
-        return float(value)
-    except OverflowError:
-        raise ValueError(f"{name} is a number too large for a float, beyond any valid range") from None
-
-
-def require_within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
-    """Return `value` as a float.
-
-    Raises:
-        TypeError: unless it is a real number.
-        ValueError: with the value and the range, unless the value lies within [low, high]. NaN never does.
-    """
-    number = require_real(name, value)
-    if not low <= number <= high:
-        unit = unit and f" {unit}"
-        raise ValueError(f"{name} = {number:g}{unit} is outside the valid range {low:g} to {high:g}{unit}")
-    return number
-
-
-class Within(NamedTuple):
-    """The valid range of a number, declared with its field: `height: Annotated[float, Within(0, 200, "m")]`.
-
-    Args:
-        low, high: the least and the largest valid value.
-        unit: of the number.
-        name: what messages call it; the name of the field where it is empty.
-        whole: whether it is a whole number.
-    """
-
-    low: float
-    high: float
-    unit: str = ""
-    name: str = ""
-    whole: bool = False
-
-    def checked(self, name: str, value: object) -> float:
-        """The value as a float or an integer; raises as `require_within` and `require_whole`."""
-        if self.whole:
-            return require_whole(name, value, int(self.low), int(self.high))
-        return require_within(name, value, self.low, self.high, self.unit)
-
-
 Stiffness = Annotated[float, Within(1e4, 1e14, "N/m3")]
 """Stiffness of an interface or a joint."""
+
 Density = Annotated[float, Within(100, 30_000, "kg/m3")]
 """Mass density of stone, brick or earth, and of what is heavier."""
-
-
-@cache
-def declared(kind: Callable[..., object]) -> dict[str, tuple[Within, bool]]:
-    """The range of each field of a class, or argument of a function, that declares one, and whether it may be None."""
-    hints = get_type_hints(kind, include_extras=True)
-    notes = {name: get_args(hint) for name, hint in hints.items() if get_origin(hint) is Annotated}
-    return {name: (note[1], type(None) in get_args(note[0])) for name, note in notes.items()}
-
-
-def keep_declared(instance: object, owner: str = "") -> None:
-    """Check and keep the fields of a frozen dataclass that declare a range, while it is made.
-
-    Args:
-        instance: the dataclass.
-        owner: the thing that messages name as the owner of the number, as in "length of the tie".
-
-    Raises:
-        TypeError, ValueError: with the name, the value and the range, as `require_within`.
-    """
-    kind: Callable[..., object] = type(instance)
-    for field, (within, optional) in declared(kind).items():
-        value = getattr(instance, field)
-        if value is not None or not optional:
-            name = within.name or (f"{field} of the {owner}" if owner else field)
-            keep(instance, **{field: within.checked(name, value)})
-
-
-def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
-    """A function whose arguments are checked and converted, before it runs, by the ranges that they declare as fields
-    do: `height: Annotated[float, Within(0, 200, "m")]`. Errors are those of `keep_declared`."""
-    parameters = inspect.signature(function)
-
-    @wraps(function)
-    def with_checked(*given: P.args, **options: P.kwargs) -> Result:
-        try:
-            bound = parameters.bind(*given, **options)
-        except TypeError:
-            return function(*given, **options)  # whose error names what is missing or too much
-        for name, (within, optional) in declared(function).items():
-            if name in bound.arguments and not (optional and bound.arguments[name] is None):
-                bound.arguments[name] = within.checked(within.name or name, bound.arguments[name])
-        return function(*bound.args, **bound.kwargs)
-
-    return with_checked
 
 
 def require_stiffness(name: str, value: object) -> float:
     """Return the stiffness of an interface as a float, see `Stiffness` and `require_within`."""
     within: Within = get_args(Stiffness)[1]
     return within.checked(name, value)
-
-
-def require_whole(name: str, value: object, low: int, high: int) -> int:
-    """Return `value` as an integer.
-
-    Raises:
-        TypeError: unless it is a real number.
-        ValueError: with the value and the range, unless it is a whole number within [low, high].
-    """
-    number = require_within(name, value, low, high)
-    if number != int(number):
-        raise ValueError(f"{name} = {number:g} is not a whole number; the valid range is {low} to {high}")
-    return int(number)
-
-
-def require_kind(name: str, value: object, *kinds: type) -> None:
-    """Raise a TypeError that names the value and what is needed, unless it is of one of these types."""
-    if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
-        needed = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
-        raise TypeError(f"{name} = {shown(value)} is not a {needed}")
 
 
 def require_one_of(name: str, value: object, known: Collection[str]) -> str:
@@ -291,40 +113,10 @@ def takes(value: object, count: int) -> bool:
     return True
 
 
-def is_iterable(values: object) -> TypeGuard[Iterable[object]]:
-    """Whether values can be gone through one by one. A text is one value, and so is an array without dimensions."""
-    if isinstance(values, str | bytes) or (isinstance(values, np.ndarray | np.generic) and values.ndim == 0):
-        return False
-    return isinstance(values, Iterable) or hasattr(type(values), "__getitem__")
-
-
 def require_sequence(name: str, value: object, takes: str) -> None:
     """Raise a TypeError that names the value and what it should be, unless it is a sequence and no text."""
     if not isinstance(value, Sequence) or isinstance(value, str):
         raise TypeError(f"{name} = {shown(value)} is not {takes}")
-
-
-def require_flag(name: str, value: object) -> bool:
-    """Return `value` as a bool, or raise a TypeError unless it is True or False."""
-    if not isinstance(value, bool | np.bool_):
-        raise TypeError(f"{name} = {shown(value)} is neither True nor False")
-    return bool(value)
-
-
-def require_text(name: str, value: object, longest: int = 1000) -> str:
-    """Return `value`, a text that a model, a page and a table can hold.
-
-    Raises:
-        TypeError: unless it is a text.
-        ValueError: if it has a NUL, half of a surrogate pair, or more characters than `longest`.
-    """
-    require_kind(name, value, str)
-    text = str(value)
-    if len(text) > longest:
-        raise ValueError(f"{name} = {shown(text)} has {len(text)} characters; the valid range is 0 to {longest}")
-    if "\0" in text or text.encode("utf-8", "ignore").decode() != text:
-        raise ValueError(f"{name} = {shown(text)} has a NUL or half of a surrogate pair, which no file can hold")
-    return text
 
 
 def require_path(name: str, path: object) -> Path:
@@ -346,65 +138,6 @@ def require_path(name: str, path: object) -> Path:
     return Path(text)
 
 
-def require_size(what: str, count: float, remedy: str) -> None:
-    """Raise a ValueError with the number and what to change, if there are more samples than MOST_SAMPLES."""
-    if not count <= MOST_SAMPLES:
-        raise ValueError(f"{what} would be {count:.3g}; at most {MOST_SAMPLES:.0e} fit into memory; {remedy}")
-
-
-def require_plain(name: str, values: object, takes: str, kinds: str) -> NDArray[Any]:
-    """`values` as an array of certain kinds.
-
-    Args:
-        name: what it is called.
-        values: the values.
-        takes: what the values have to be, in words.
-        kinds: characters of the kinds, those of `numpy.dtype.kind`.
-
-    Raises:
-        TypeError: with the name and what it takes, for values of another kind.
-        ValueError: if they are ragged, masked, or more than MOST_SAMPLES.
-    """
-    try:
-        given = np.asarray(values)
-    except ValueError:
-        raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
-    except MemoryError:
-        raise ValueError(f"{name} = {shown(values)} has more values than memory holds; it takes {takes}") from None
-    except Exception as error:  # of an object that cannot become an array
-        raise TypeError(f"{name} = {shown(values)} cannot be read ({error!r}); it takes {takes}") from None
-    if given.dtype.kind not in kinds or ("b" not in kinds and _holds_truth(values)):
-        held = "values of these kinds" if "b" in kinds else "real numbers"
-        raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")
-    if _is_masked(values):
-        raise ValueError(f"{name} has masked values; it takes {takes}")
-    require_size(f"the size of {name}", given.size, "give fewer values")
-    return given
-
-
-def require_reals(name: str, values: object, takes: str) -> Array:
-    """`values` as an array of floats, see `require_plain`. True and False are refused, also among numbers."""
-    return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
-
-
-def require_row(name: str, values: object, element: str) -> Array:
-    """Return a copy of `values` as a row of finite numbers, shape (n,).
-
-    Args:
-        name: what it is called.
-        values: the numbers.
-        element: what each of them is.
-
-    Raises:
-        TypeError: unless they are real numbers.
-        ValueError: if they are ragged, masked or not finite, not a row, or an empty one.
-    """
-    row = np.array(require_reals(name, values, f"a row of at least one {element}"))
-    if row.ndim != 1 or not row.size:
-        raise ValueError(f"{name} has the shape {row.shape}; a row of at least one {element} is needed")
-    return _finite(name, row)
-
-
 def require_increasing(name: str, values: ArrayLike, element: str, high: float, valid: str) -> Array:
     """Return a copy of `values` as a row of increasing numbers from 0 to `high`, see `require_row`.
 
@@ -417,52 +150,8 @@ def require_increasing(name: str, values: ArrayLike, element: str, high: float, 
     return row
 
 
-def _holds_truth(values: object) -> bool:
-    """Whether a list, or a list in it, has True or False among its values: NumPy makes numbers of them."""
-    if isinstance(values, list | tuple):
-        return any(map(_holds_truth, values))
-    return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
-
-
-def _is_masked(values: object) -> bool:
-    """Whether an array, or one of a list of arrays, has masked values."""
-    if "numpy.ma" not in sys.modules:  # nobody has made any
-        return False
-    rows = values if isinstance(values, list | tuple) else [values]
-    return any(isinstance(row, np.ma.MaskedArray) and np.ma.is_masked(row) for row in rows)
-
-
-def require_array(name: str, value: object, shape: tuple[int, ...]) -> Array:
-    """Return a copy of `value` as an array of finite numbers.
-
-    Raises:
-        TypeError: if it is not an array of real numbers.
-        ValueError: if it is ragged or masked, has another shape, or a value that is not finite.
-    """
-    array = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))
-    if array.shape != shape:
-        raise ValueError(f"{name} has the shape {array.shape}; {shape} is needed")
-    return _finite(name, array)
-
-
-def _finite(name: str, array: Array) -> Array:
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} holds a value that is not finite")
-    return array
-
-
-NAMED = 5
-"""Most things that a message names."""
-
-
 def frozen(values: ArrayLike) -> NDArray[Any]:
     """A copy, as an array, that cannot be written to."""
     array = np.array(values)
     array.setflags(write=False)
     return array
-
-
-def named(names: Sequence[str]) -> str:
-    """Names in a message, not too many."""
-    rest = len(names) - NAMED
-    return ", ".join(names[:NAMED]) + (f" and {rest} more" if rest > 0 else "")

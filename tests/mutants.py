@@ -32,7 +32,7 @@ ROOT = Path(__file__).resolve().parents[1]
 MARKS = b"\n@compiled\n", b"\n@inlined\n"
 """What stands before a compiled function."""
 OTHERS = (
-    "engine/solref.py",
+    "contacts/solref.py",
     "scene/masonry.py",
     "scene/rest.py",
     "result/rocking.py",
@@ -59,7 +59,7 @@ FINDING = tuple(
 """Modules that find where blocks meet."""
 OWN = {
     **{
-        f"anymodel/{name}.py": ("solref", "pair", "pairing", "inspection", "standing", "rest_of_the_model")
+        f"contacts/{name}.py": ("solref", "pair", "pairing", "inspection", "standing", "rest_of_the_model")
         for name in TOOLS
     },
     "geometry/frames.py": ("frames", "kinematics"),

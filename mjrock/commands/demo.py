@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..command_line import Answer, add_output, parser, require_free
+from ..contacts.files import write_text
 from ..engine.simulation import simulate
 from ..engine.text import wall_mjcf
-from ..files import write_text
 from ..plotting.histories import comparison
 from ..plotting.style import save
 from ..plotting.wall import section

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..command_line import Answer, add_output, parser, require_free
-from ..files import aligned, write_text
+from ..contacts.files import aligned, write_text
 
 FOLDER = Path(__file__).parents[1] / "examples"
 """Where the scripts are; the documentation is built from them too."""

@@ -74,7 +74,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
     Args:
         scene: the scene.
         timestep: MuJoCo's step, on which the contact rows depend [s].
-        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.solref.row`.
+        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.contacts.solref.row`.
         keyframe: of the release. None stands for the scene at rest.
     """
     middle, half = extent_of(scene)

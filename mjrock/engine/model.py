@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from ..contacts.solref import body_weight
 from ..quantities import Array, Flags
 from ..result.ledger import StepError
 from ..scene.course import Course
@@ -19,7 +20,6 @@ from ..scene.scene import Scene
 from .memory import EngineArrays
 from .mjcf import FixedRows, Keyframe, pair_rows, scene_mjcf
 from .record import Record
-from .solref import body_weight
 
 CHUNK = 1_000
 """Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""

@@ -26,6 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined
+from ..contacts.solref import longest_represented_step
 from ..geometry.kinematics import Ties
 from ..method import METHOD, Method
 from ..quantities import Array
@@ -33,7 +34,6 @@ from ..scene.course import Course
 from ..scene.dampers import damping_rate
 from ..scene.scene import Scene
 from .rows import Points, Step, inverse_weights, points_of
-from .solref import longest_represented_step
 from .touches import Openings
 
 LIGHTEST = {2: 6, 3: 7}
@@ -95,7 +95,7 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
     """The step that resolves the stiffest spring and the strongest dashpot to `accuracy` [s].
 
     A dashpot that would ask for less than an eighth of the spring's step acts at the end of the step instead, see
-    `mjrock.engine.solref.row`. It stops what it meets, and how it does so no longer matters.
+    `mjrock.contacts.solref.row`. It stops what it meets, and how it does so no longer matters.
     """
     spring = min(method.most, math.sqrt(method.short * accuracy)) / scene.highest_frequency
     strongest = float(np.max(scene.contacts.c * inverse_weights(scene)))

@@ -16,7 +16,8 @@ import mujoco
 import numpy as np
 
 from ..command_line import Answer, parser
-from ..files import require_file
+from ..contacts.files import require_file
+from ..contacts.geoms import load
 from ..quantities import Array, require_within
 
 FRAME = 1 / 60
@@ -233,16 +234,6 @@ def arguments() -> argparse.ArgumentParser:
     made.add_argument("answer", type=Path, nargs="?", help="its motion, a file of Response.csv; none simulates at once")
     made.add_argument("--speed", type=float, default=1.0, help="seconds of the motion in a second, 0.001 to 1000")
     return made
-
-
-def load(path: Path) -> mujoco.MjModel:
-    """The model of a file.
-
-    Raises:
-        ValueError, OSError: if it is not there, or no model.
-    """
-    read = mujoco.MjModel.from_binary_path if path.suffix == ".mjb" else mujoco.MjModel.from_xml_path
-    return read(str(require_file(path)))
 
 
 @contextlib.contextmanager

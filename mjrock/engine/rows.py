@@ -16,11 +16,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined
+from ..contacts.solref import body_weight, pair_values, row
 from ..geometry.kinematics import Places
 from ..method import METHOD, Method
 from ..quantities import Array, Flags, frozen
 from ..scene.scene import Scene
-from .solref import body_weight, pair_values, row
 
 
 class Points(NamedTuple):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..files import quoted
+from ..contacts.files import quoted
 from ..geometry.frames import PLANE
 from ..quantities import Array
 from ..scene.parts import GROUND

@@ -71,7 +71,7 @@ def simulate(
             [-], 1e-8 to 0.1. None stands for 1e-3, and for 1e-4 for a wall on moving ground, whose rocking multiplies
             what an impact errs by. A run in which energy appears from nowhere is discarded and repeated with a tenth of
             it, twice at most, or down to 1e-6 where none is given.
-        newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.solref`.
+        newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.contacts.solref`.
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
             steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; the last is the end of the run.

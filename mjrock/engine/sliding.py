@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined
+from ..contacts.solref import inertia_of
 from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
 from ..geometry.vectors import Vector, dot, minus, plus, put, scaled, tangent, vector
 from ..method import METHOD, Method
@@ -26,7 +27,6 @@ from ..quantities import Array, Flags
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
 from .rows import Points
 from .setting import Setting, push
-from .solref import inertia_of
 from .touches import ROUNDING
 
 SMOOTH, ROUGH = 1, 3

@@ -32,8 +32,8 @@ def mjcf_of(
         case: the wall or the masonry, and its release.
         contacts: the interfaces of a wall; None for masonry.
         timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
-        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.engine.solref`. Rows that MuJoCo
-            would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.engine.solref.row`.
+        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.contacts.solref`. Rows that MuJoCo
+            would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.contacts.solref.row`.
         collisions: whether the model is a plain one, of boxes and hulls whose contacts MuJoCo finds, as that of
             `simulate(..., collisions=True)`.
 

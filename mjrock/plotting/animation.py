@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from PIL import Image
 
 from ..bars import counted
-from ..files import replacing
+from ..contacts.files import replacing
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown

@@ -15,7 +15,7 @@ from string import Template
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..files import write_text
+from ..contacts.files import write_text
 from ..geometry.parts import creases_of
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint

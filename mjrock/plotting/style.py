@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 
-from ..files import replacing
+from ..contacts.files import replacing
 from ..quantities import require_kind, require_path, warn_of
 from ..result.response import Response
 

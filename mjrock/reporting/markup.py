@@ -13,7 +13,7 @@ from pathlib import Path
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
-from ..files import replacing
+from ..contacts.files import replacing
 from .texts import MINUS, Words
 
 TOKEN = re.compile(r"\d+(?:[.,]\d+)?|[^\W\d_]+|\S")

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from matplotlib.figure import Figure
 
 from .._version import __version__
-from ..files import csv_text, write_text
+from ..contacts.files import csv_text, write_text
 from ..plotting.histories import required_labels
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..files import csv_text
+from ..contacts.files import csv_text
 from ..notebook import Drawn
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_kind

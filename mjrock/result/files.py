@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..files import quoted, replacing, write_text
+from ..contacts.files import quoted, replacing, write_text
 from ..geometry.poses import rotations
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.masonry.case import MasonryCase

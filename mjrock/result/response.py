@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ..files import csv_text, write_text
+from ..contacts.files import csv_text, write_text
 from ..geometry.poses import angle_of, tilt_of
 from ..notebook import Drawn
 from ..problem.masonry.case import AnyCase, MasonryCase

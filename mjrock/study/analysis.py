@@ -12,9 +12,9 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
+from ..contacts.files import write_arrays
 from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
-from ..files import write_arrays
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution
 from ..problem.masonry.case import AnyCase, MasonryCase

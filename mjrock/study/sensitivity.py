@@ -13,7 +13,7 @@ from typing import Unpack
 
 import numpy as np
 
-from ..files import aligned, csv_text
+from ..contacts.files import aligned, csv_text
 from ..notebook import Drawn
 from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
 from .campaign.campaign import CampaignOptions, completed

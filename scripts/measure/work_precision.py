@@ -28,9 +28,9 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.contacts.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.model import Engine
 from mjrock.engine.rows import inverse_weights
-from mjrock.engine.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.stepping import fixed_steps
 from mjrock.result.ledger import StepError
 from mjrock.result.response import Response

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from mjrock.anymodel import command
+from mjrock.commands import inspect_contacts as command
 from scripts.models.make_models import MODELS
 from scripts.shared import cli
 

@@ -32,14 +32,14 @@ def parser(description: str | None, out: str) -> argparse.ArgumentParser:
 
 def write_text(path: Path, text: str) -> Path:
     """Write a file that is whole or absent."""
-    from mjrock.files import write_text as write
+    from mjrock.contacts.files import write_text as write
 
     return write(path, text)
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Rows as CSV."""
-    from mjrock.files import csv_text as text
+    from mjrock.contacts.files import csv_text as text
 
     return text(header, rows)
 
@@ -53,7 +53,7 @@ def folder(path: Path) -> Path:
 
 def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """Rows as aligned text for a terminal."""
-    from mjrock.files import aligned
+    from mjrock.contacts.files import aligned
 
     head, *body = aligned([[str(cell) for cell in row] for row in (header, *rows)])
     return "\n".join([head, "-" * len(head), *body])

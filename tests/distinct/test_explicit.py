@@ -272,7 +272,7 @@ def test_a_small_arch_holds_still_by_the_friction_of_its_joints():
 
 def test_a_ledger_beyond_memory_is_refused(monkeypatch):
     """Friction, ground and two groups of dashpots at each of 101 samples."""
-    monkeypatch.setattr("mjrock.quantities.MOST_SAMPLES", 400)
+    monkeypatch.setattr("mjrock.contacts.checks.MOST_SAMPLES", 400)
     assert len(solve(CUBE, 0.1).t) == 101
     with pytest.raises(ValueError, match="the ledger of this answer would be 404; at most"):
         solve(CUBE, 0.1, ledger=True)

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.contacts.solref import IMPEDANCE_RANGE, pair_values, row
 from mjrock.engine.rows import ContactRows, Step, points_of, set_rows
-from mjrock.engine.solref import IMPEDANCE_RANGE, pair_values, row
 from mjrock.method import METHOD
 
 K, C, H, W = 1.5e8, 5.3e5, 1e-3, 2 / (3 * 5040)

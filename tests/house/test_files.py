@@ -17,7 +17,7 @@ from everyday import among
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.files import write_arrays, write_text
+from mjrock.contacts.files import write_arrays, write_text
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="pipes, links and modes are those of POSIX")
 WALL = mr.Block.from_size(0.6, 4.2)

@@ -2,19 +2,22 @@
 
 import ast
 import re
+import sys
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 import mjrock
+from mjrock import contacts
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
+    ("contacts",),
     ("command_line", "machine", "notice"),
     ("_version", "bars", "interrupts", "notebook", "patience"),
     ("stored",),
-    ("compiled", "compiler", "files", "method", "quantities"),
+    ("compiled", "compiler", "method", "quantities"),
     ("geometry", "linear"),
     ("problem.ground",),
     ("problem.wall",),
@@ -23,7 +26,6 @@ FLOORS = (
     ("scene",),
     ("result",),
     ("theory", "reference", "distinct", "engine"),
-    ("anymodel",),
     ("study",),
     ("plotting",),
     ("reporting",),
@@ -81,6 +83,24 @@ def test_imports_run_down():
         if name.split(".")[0] in WITHOUT_MUJOCO:
             offenders += [f"{name} imports {module}" for module in others if module.split(".")[0] == "mujoco"]
     assert offenders == []
+
+
+def test_contacts_stand_alone():
+    """They are also a package of their own, which brings MuJoCo and NumPy alone; the public names that they share with
+    the whole are the same objects, and none is hidden by a folder."""
+    paths = [path for path in MODULES if path.relative_to(ROOT).parts[0] == "contacts"]
+    assert len(paths) > 12
+    for path in [*paths, ROOT / "contacts" / "__init__.py"]:
+        own, others = imports(path)
+        assert [name for name in own if room(name) != "contacts"] == [], path
+        known = {"mujoco", "numpy", *sys.stdlib_module_names}
+        assert [name for name in others if name.split(".")[0] not in known] == [], path
+    assert set(contacts.HOME) == set(contacts.__all__)
+    shared = set(contacts.__all__) & set(mjrock.__all__)
+    assert len(shared) > 10
+    assert [name for name in shared if getattr(contacts, name) is not getattr(mjrock, name)] == []
+    assert {path.stem for path in paths} & set(contacts.__all__) == set()
+    assert {path.name for path in ROOT.iterdir()} & set(mjrock.__all__) == set()
 
 
 def test_folders_of_masonry_stand_on_each_other():
@@ -190,9 +210,9 @@ def test_a_constant_has_a_name_of_its_own():
             for one in (x for target in targets(node) for x in ast.walk(target)):
                 if isinstance(one, ast.Name) and one.id.isupper():
                     named.setdefault(one.id, []).append(str(path.relative_to(ROOT)))
-    core = ("geometry", "scene", "result", "distinct", "problem", "reference", "anymodel", "study/campaign")
+    core = ("geometry", "scene", "result", "distinct", "problem", "reference", "contacts", "study/campaign")
     core += ("study/matching", "study/intensity")
-    apart = "problem/masonry/limit"
+    apart = "problem/masonry/limit", "contacts/checks"
     shared = {
         name: where
         for name, where in named.items()

@@ -12,7 +12,7 @@ from offenders import not_refused
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.files import csv_text
+from mjrock.contacts.files import csv_text
 from mjrock.study.campaign.store import ROW_COLUMNS
 
 WALL = mr.Block(0.3, 2.1)

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 import mjrock as mr
-from mjrock.files import csv_text
+from mjrock.contacts.files import csv_text
 
 WALL = mr.Block.from_size(thickness=0.6, height=4.2)
 E = mr.Restitution.from_geometry(WALL)

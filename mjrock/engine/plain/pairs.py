@@ -13,13 +13,13 @@ from itertools import combinations, product
 
 import numpy as np
 
+from ...contacts.solref import body_weight, pair_values, row
 from ...method import METHOD
 from ...problem.masonry.laws.dry import Meets
 from ...problem.wall.standing import in_space
 from ...quantities import Array, Integers
 from ...scene.parts import GROUND
 from ...scene.scene import Scene
-from ..solref import body_weight, pair_values, row
 from .pieces import Piece
 
 NEWMARK = 0.25

@@ -17,7 +17,7 @@ from typing import Annotated, Protocol, Self
 
 import numpy as np
 
-from ...files import require_file, write_text
+from ...contacts.files import require_file, write_text
 from ...quantities import (
     Array,
     Stiffness,

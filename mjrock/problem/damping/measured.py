@@ -18,8 +18,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...contacts.rebound import MOST_PULL, falling_damping, falling_rebound, rebound_damping
 from ...quantities import GRAVITY, Array, Within, is_iterable, require_row, short_repr, shown, within_ranges
-from .rebound import MOST_PULL, falling_damping, falling_rebound, rebound_damping
 
 Mass = Annotated[float | None, Within(1e-12, 1e12, "kg")]
 Modulus = Annotated[float, Within(1, 1e15, "Pa")]

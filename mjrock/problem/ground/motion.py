@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from ...files import write_text
+from ...contacts.files import write_text
 from ...quantities import (
     GRAVITY,
     MOST_SAMPLES,

@@ -25,7 +25,7 @@ import numpy as np
 import scipy.io
 from numpy.typing import ArrayLike
 
-from ...files import require_file
+from ...contacts.files import require_file
 from ...quantities import GRAVITY, Array, require_one_of, require_path, require_reals, require_whole, require_within
 
 FINEST, COARSEST = 1e-5, 1.0

@@ -15,7 +15,7 @@ from typing import Annotated, Self, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...files import write_text
+from ...contacts.files import write_text
 from ...geometry.frames import PLANE, SPACE, Freedom
 from ...notebook import Drawn
 from ...quantities import (

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...files import require_file, written
+from ...contacts.files import require_file, written
 from ...quantities import require_path, spelt
 from .task import Row, checksum, table_text, table_value
 

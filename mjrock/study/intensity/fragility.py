@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import chdtri, log_ndtr, ndtr, ndtri, stdtrit
 
-from ...files import csv_text, write_text
+from ...contacts.files import csv_text, write_text
 from ...notebook import Drawn
 from ...quantities import (
     Array,

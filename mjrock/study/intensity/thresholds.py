@@ -12,7 +12,7 @@ from typing import NamedTuple, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...files import aligned
+from ...contacts.files import aligned
 from ...notebook import Drawn, html_of
 from ...quantities import Array, require_increasing, require_within
 from ..analysis import Analysis

@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
-from ...files import require_file
+from ...contacts.files import require_file
 from ...quantities import (
     Within,
     keep_declared,

@@ -18,7 +18,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from ...files import aligned
+from ...contacts.files import aligned
 from ...notebook import html_of
 from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST_PERIOD

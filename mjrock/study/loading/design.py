@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...files import aligned
+from ...contacts.files import aligned
 from ...notebook import Drawn
 from ...quantities import is_iterable, ratio_said, require_one_of, shown
 from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands

@@ -19,8 +19,8 @@ import mujoco
 from tqdm import tqdm
 
 import mjrock as mr
-from mjrock.anymodel.command import GAINS_NOTE, IMMOBILE, LONG
-from mjrock.anymodel.inspect import InspectedContact
+from mjrock.contacts.command import GAINS_NOTE, IMMOBILE, LONG
+from mjrock.contacts.inspect import InspectedContact
 from scripts.peers.robots.carried import MODELS, absent, path_of
 from scripts.shared import cli
 

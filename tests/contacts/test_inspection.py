@@ -6,7 +6,7 @@ import pytest
 from pairs import FLAT_BOX, ON_A_PLANE, made_for
 
 import mjrock as mr
-from mjrock.anymodel.effective_mass import _slipping
+from mjrock.contacts.effective_mass import _slipping
 from scripts.models import inspect_contacts as script
 
 MODEL = """<mujoco><option timestep="{h}" cone="{cone}" impratio="{impratio}" gravity="0 0 0"><flag {flags}/></option>

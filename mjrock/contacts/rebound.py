@@ -36,7 +36,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ...quantities import require_real, require_within
+from .checks import require_real, require_within
 
 
 def rebound_restitution(xi: float) -> float:

@@ -10,8 +10,8 @@ import pytest
 from pairs import BALL, BOX, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 
 import mjrock as mr
-from mjrock.anymodel.contact import weight_spoilers
-from mjrock.anymodel.meeting import Pose
+from mjrock.contacts.contact import weight_spoilers
+from mjrock.contacts.meeting import Pose
 from scripts.checks import asked_and_found as study
 
 LEG = study.leg(others=study.BENT).text()

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..geometry.vectors import tangents
-from ..quantities import Array
+from .checks import Array
 from .contact import PairContact, PairContacts
+from .effective_mass import with_tangents
 from .geoms import GeomPair
 from .meeting import TOUCHING_AT_REST, Landing, Pose, posed_alike
 from .notes import LINE_SEARCHES, MOST_TURNS, SolverNeed
@@ -213,7 +213,7 @@ def _points(pose: Pose, contact: PairContact, landing: Landing) -> Iterator[Pres
     depth = max(contact.depth, MOVING / contact.frequency)
     for ends in zip(landing.first, landing.second, strict=True):
         row = mujoco.MjContact()
-        row.frame = np.ravel(np.array((-landing.away, *tangents(tuple((-landing.away).tolist())))))
+        row.frame = with_tangents(-landing.away).ravel()
         row.solref, row.solimp, row.solreffriction = contact.solref, contact.solimp, contact.solreffriction
         row.friction, row.dim = np.maximum(contact.friction, mujoco.mjMINMU), contact.condim  # as MuJoCo does
         row.geom, row.geom1, row.geom2 = contact.ids, *contact.ids

@@ -13,7 +13,7 @@ import warnings
 import mujoco
 import numpy as np
 
-from ..quantities import Array, Integers, named, require_kind, require_within
+from .checks import Array, Integers, named, require_kind, require_within
 from .geoms import geom_label
 from .notes import ContactWarning
 

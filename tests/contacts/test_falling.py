@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjrock.problem.damping.rebound import (
+from mjrock.contacts.rebound import (
     deepest,
     falling_damping,
     falling_rebound,

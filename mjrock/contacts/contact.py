@@ -10,10 +10,8 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..engine.solref import inertia_of
-from ..files import quoted
-from ..problem.damping.rebound import MOST_PULL, deepest, rebound_at, rebound_restitution
-from ..quantities import named, require_flag, require_text, short_repr, warn_of
+from .checks import named, require_flag, require_text, short_repr, warn_of
+from .files import quoted
 from .geoms import NO_LOAD, GeomPair, compiled_model, every_pair, geom_label, kept_apart
 from .notes import (
     ENOUGH,
@@ -30,7 +28,9 @@ from .notes import (
     stiffest,
     uneven,
 )
+from .rebound import MOST_PULL, deepest, rebound_at, rebound_restitution
 from .row_of_model import HOLD, Mixed, ModelRow
+from .solref import inertia_of
 
 Attribute = str | float | tuple[float, ...]
 """Of an element of MJCF."""

@@ -20,13 +20,18 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from ..geometry.vectors import tangents
-from ..quantities import Array, Flags, Integers
+from .checks import Array, Flags, Integers
 from .geoms import GeomPair
 
 JOINT, TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
 Owner = tuple[mujoco.mjtObj, int]
 """Owner of a spring, damper or dry friction: a joint, a tendon or an actuator, and its number."""
+
+
+def with_tangents(normal: Array) -> Array:
+    """A unit vector and two others that are square to it and to each other, shape (3, 3)."""
+    first = np.linalg.qr(normal[:, None], mode="complete")[0][:, 1]
+    return np.array((normal, first, np.cross(normal, first)))
 
 
 class ModelSprings:
@@ -218,7 +223,7 @@ def effective_mass(
         rows = np.zeros((3, model.nv))
         mujoco.mj_jac(model, data, rows, None, point, body)
         jacobian += sign * rows
-    rows = np.array((away, *tangents(tuple(away.tolist())))) @ jacobian
+    rows = with_tangents(away) @ jacobian
     if not np.any(np.abs(rows[0]) > 1e-9):
         return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     free = held.free(rows)

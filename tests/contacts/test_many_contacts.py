@@ -6,7 +6,7 @@ import pytest
 from pairs import FLOOR, scene
 
 import mjrock as mr
-from mjrock.anymodel import geoms
+from mjrock.contacts import geoms
 
 FEET = "".join(
     f'<body name="leg{i}" pos="{i} 0 .1"><freejoint/><geom name="foot{i}" size=".1" mass="{i + 1}"/></body>'
@@ -34,7 +34,7 @@ def test_a_specification_is_compiled_once(monkeypatch):
     times = []
     for module in ("make", "contact"):
         monkeypatch.setattr(
-            f"mjrock.anymodel.{module}.compiled_model",
+            f"mjrock.contacts.{module}.compiled_model",
             lambda model: times.append(1) or geoms.compiled_model(model),
         )
     contacts = mr.contacts_for(spec, asked)

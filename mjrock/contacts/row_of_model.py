@@ -21,9 +21,9 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..engine.solref import IMPEDANCE_RANGE
-from ..quantities import Array, is_iterable, require_within, shown
+from .checks import Array, is_iterable, require_within, shown
 from .geoms import GeomPair
+from .solref import IMPEDANCE_RANGE
 
 HOLD = 1e7
 """Rate with which friction holds [1/s]: a load F creeps at F / (HOLD m), a body on a slope at less than 1e-6 m/s."""

@@ -17,18 +17,29 @@ acceleration) is stable at every step and adds no numerical damping. beta = 0 is
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import overload
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
-from ..compiled import inlined
-from ..quantities import Array, is_iterable, require_reals, require_row, require_within, short_repr, shown
+from .checks import Array, is_iterable, require_reals, require_row, require_within, short_repr, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
 WITHIN = (IMPEDANCE_RANGE[0] * (1 + 1e-9), IMPEDANCE_RANGE[1] * (1 - 1e-9))
 """The same range less a margin for rounding."""
+STIFF_DASHPOT = 0.2
+"""c h W above which a dashpot acts on the velocity at the end of the step [-], see `row`."""
+INLINED: list[Callable[..., Any]] = []
+"""Functions of numbers alone, which loops that are compiled may call."""
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def inlined(function: Function) -> Function:
+    """Add a function to `INLINED`."""
+    INLINED.append(function)
+    return function
 
 
 Given = Array | float

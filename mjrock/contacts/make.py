@@ -12,10 +12,7 @@ from typing import Annotated
 
 import mujoco
 
-from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_values, row
-from ..method import METHOD
-from ..problem.damping.rebound import MOST_PULL, falling_damping, rebound_damping
-from ..quantities import Array, Within, keep_declared, named, require_within, shown, spelt
+from .checks import Array, Within, keep_declared, named, require_within, shown, spelt
 from .contact import PairContact, PairContacts, blow_spoilers, merged, soft_spoilers, spoilers, weight_spoilers
 from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
 from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms
@@ -34,7 +31,9 @@ from .notes import (
     turned,
     unknown,
 )
+from .rebound import MOST_PULL, falling_damping, rebound_damping
 from .row_of_model import Grip, Mixed, ModelRow, unused
+from .solref import STIFF_DASHPOT, WITHIN, inertia_of, longest_represented_step, pair_values, row
 from .solver_trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
@@ -433,7 +432,7 @@ def _row(
         )
     sound = h * math.sqrt(k / mass) <= UNSOUND
     beta, ringing = (newmark_beta, 0.0) if sound else (max(newmark_beta, 0.5), 1.0)
-    dashpot, inertia = row(k, c, h, inverse_weight, beta, ringing, METHOD.overdamped)
+    dashpot, inertia = row(k, c, h, inverse_weight, beta, ringing, STIFF_DASHPOT)
     if dashpot < c:
         raise ValueError(
             f"damping c = {c:g} N s/m at timestep = {h:g} s is beyond what MuJoCo represents, {dashpot:.3g} N s/m; "

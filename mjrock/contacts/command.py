@@ -12,11 +12,9 @@ from pathlib import Path
 
 import mujoco
 
-from ..command_line import Answer, parser
-from ..engine.replay import load
-from ..files import aligned, csv_text, write_text
-from ..quantities import named, require_within
-from .geoms import BODY, GeomPair, geom_label, names_of_objects
+from .checks import named, require_within
+from .files import aligned, csv_text, write_text
+from .geoms import BODY, GeomPair, geom_label, load, names_of_objects
 from .inspect import InspectedContact, inspect_contacts, inspect_flexes
 from .notes import VARIES, model_spoilers
 
@@ -133,9 +131,8 @@ PAGE = 40
 """Rows that fill a page."""
 
 
-def arguments() -> argparse.ArgumentParser:
-    """The arguments of the command line."""
-    made = parser("inspect", (__doc__ or "").splitlines()[0])
+def add_arguments(made: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command to a parser."""
     made.add_argument("model", type=Path, help="MJCF or URDF file, or a compiled .mjb")
     made.add_argument("--geom", action="append", default=[], help="contacts of a geom, such as 'foot*'")
     made.add_argument("--body", action="append", default=[], help="contacts of a body")
@@ -147,16 +144,14 @@ def arguments() -> argparse.ArgumentParser:
     made.add_argument("--speed", type=float, default=1.0, help="speed of approach of the last e [m/s]")
     made.add_argument("--all", action="store_true", help=f"every row, not the worst {PAGE}")
     made.add_argument("--csv", type=Path, help="a file for every row that is chosen, with its notes")
-    return made
 
 
-def answer(argv: Sequence[str]) -> Answer:
+def answer(args: argparse.Namespace) -> str:
     """The table of the model that is named; the rows are also written where --csv says.
 
     Raises:
         ValueError, TypeError, OSError: for what the user can mend.
     """
-    args = arguments().parse_args(argv)
     if not args.model.is_file():
         raise FileNotFoundError(f"model {args.model} is not a file")
     keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
@@ -177,5 +172,5 @@ def answer(argv: Sequence[str]) -> Answer:
         write_text(args.csv, csv_text(header, rows))
     flexes = flex_report(model)
     if not chosen and (args.geom or args.body or args.pair):
-        return Answer("No contact of this model is of these geoms, bodies or pairs." + flexes)
-    return Answer(table_and_notes(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes)
+        return "No contact of this model is of these geoms, bodies or pairs." + flexes
+    return table_and_notes(chosen, speed=args.speed, most=None if args.all else PAGE) + flexes

@@ -9,7 +9,7 @@ import pytest
 from pairs import BALL, BOX, FLOOR, ON_A_PLANE, SCENES, TWO_BALLS, made_for, rebound, scene
 
 import mjrock as mr
-from mjrock.problem.damping.rebound import rebound_restitution
+from mjrock.contacts.rebound import rebound_restitution
 
 
 @pytest.mark.parametrize("friction", [None, 0.0])

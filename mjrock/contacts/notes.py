@@ -15,11 +15,11 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..problem.damping.rebound import rebound_at, rebound_restitution
-from ..quantities import Array, named
+from .checks import Array, named
 from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, effective_mass
 from .geoms import FACING, GeomPair
 from .meeting import TOUCHING_AT_REST, PairMeeting, Pose, keyframe_names, meeting_of_geoms
+from .rebound import rebound_at, rebound_restitution
 
 SCATTER_WARNED_OF = 0.02
 """Scatter of the restitution from step to step that is worth a warning [-]."""

@@ -10,9 +10,9 @@ import pytest
 from pairs import BALL, FLOOR, scene
 
 import mjrock as mr
-from mjrock.anymodel.geoms import GeomPair
-from mjrock.anymodel.meeting import Pose
-from mjrock.anymodel.solver_trial import SolverTrial
+from mjrock.contacts.geoms import GeomPair
+from mjrock.contacts.meeting import Pose
+from mjrock.contacts.solver_trial import SolverTrial
 
 LEG = """<body pos="0 {y} -.15"><joint axis="0 1 0" armature=".01"/>
 <geom type="capsule" fromto="0 0 0 0 0 -.3" size=".04" mass="3"/>
@@ -108,7 +108,7 @@ def test_nothing_else_is_pressed():
 def test_a_trial_prints_nothing_and_leaves_no_log(tmp_path, monkeypatch, capfd):
     """Steps by `mj_step` reset a state that blows up, print, and write MUJOCO_LOG.TXT."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("mjrock.anymodel.solver_trial.MOVING", 1e12)
+    monkeypatch.setattr("mjrock.contacts.solver_trial.MOVING", 1e12)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         mr.contacts_for(biped(0.3), FEET)

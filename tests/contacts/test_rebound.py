@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjrock.problem.damping.rebound import rebound_damping, rebound_restitution
+from mjrock.contacts.rebound import rebound_damping, rebound_restitution
 
 
 def integrated(xi, gravity=0.0):

@@ -11,7 +11,7 @@ import pytest
 from pairs import BALL, FLOOR, scene
 
 import mjrock as mr
-from mjrock.anymodel.notes import JUDGED, SolverNeed, few_iterations, model_spoilers
+from mjrock.contacts.notes import JUDGED, SolverNeed, few_iterations, model_spoilers
 
 BOXES = "".join(
     f'<body pos="0 0 {0.05 + 0.1 * i}"><freejoint/>'

@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
-from ..problem.damping.rebound import rebound_at, rebound_restitution
-from ..quantities import Array, require_flag, require_whole, require_within, short_repr
+from .checks import Array, require_flag, require_whole, require_within, short_repr
 from .geoms import NO_LOAD, GeomPair, compiled_model, every_pair, geom_label
 from .meeting import Keyframe, PairMeeting, Pose, meeting_of_geoms
 from .notes import (
@@ -31,6 +30,7 @@ from .notes import (
     uneven,
     unknown,
 )
+from .rebound import rebound_at, rebound_restitution
 from .row_of_model import Mixed, ModelRow
 
 

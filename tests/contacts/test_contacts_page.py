@@ -9,7 +9,7 @@ import pytest
 from pairs import FLOOR, ON_A_PLANE, rebound, scene
 
 import mjrock as mr
-from mjrock.problem.damping.rebound import falling_rebound, rebound_damping, rebound_restitution
+from mjrock.contacts.rebound import falling_rebound, rebound_damping, rebound_restitution
 
 PAGE = (Path(__file__).parents[2] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..quantities import Array, Integers, is_iterable, require_array, require_whole, shown
+from .checks import Array, Integers, is_iterable, require_array, require_whole, shown
 from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass, moved_or_sprung
 from .geoms import BOUNDLESS, FARTHEST_GEOM, NO_LOAD, GeomPair, makes
 

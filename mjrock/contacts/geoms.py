@@ -9,11 +9,13 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from ..quantities import Array, Flags, require_kind, require_text, shown
+from .checks import Array, Flags, require_kind, require_text, shown
+from .files import require_file
 
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST_GEOM = 1e10
@@ -33,6 +35,16 @@ BOUNDLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
 """Geoms that fill all that is below them, and stay where they are."""
 NOT_CONVEX = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 """Geoms that are not convex."""
+
+
+def load(path: Path) -> mujoco.MjModel:
+    """The model of a file.
+
+    Raises:
+        ValueError, OSError: if it is not there, or no model.
+    """
+    read = mujoco.MjModel.from_binary_path if path.suffix == ".mjb" else mujoco.MjModel.from_xml_path
+    return read(str(require_file(path)))
 
 
 def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
