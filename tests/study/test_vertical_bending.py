@@ -79,7 +79,7 @@ def test_the_curve_ends_where_the_three_hinges_lie_above_each_other():
 def test_the_steps_of_the_check():
     bending = mr.VerticalBending(WALL, LOAD)
     found = mr.mechanism_check(bending, lambda T, xi: 0.02, confidence_factor=1.2)
-    assert found.participation == 1.0
+    assert found.participation == pytest.approx(1.0, rel=1e-15)  # a quotient of sums, which kernels order differently
     assert found.a_0 == pytest.approx(bending.multiplier * mr.GRAVITY / 1.2)
     assert found.d_0 == pytest.approx(0.175, rel=1e-6)
     slv = found.states["SLV"]
