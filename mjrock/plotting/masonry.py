@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patches import FancyArrowPatch, Polygon
 from numpy.typing import ArrayLike
 
 from ..geometry.frames import PLANE, SPACE
 from ..geometry.poses import at_rest
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects import place_in_world
+from ..problem.masonry.fill import Axle
 from ..problem.masonry.limit.collapse import Collapse, JointForces
 from ..problem.masonry.limit.pose import pose_of_all
 from ..problem.masonry.masonry import Masonry
+from ..problem.wall.effect import Effect
 from ..quantities import Array, require_flag, require_kind, require_within
 from ..result.bodies import Moving
 from ..result.motion import sample_at
@@ -24,6 +28,7 @@ from .bodies import FORCE, Bodies, outlines, required_limits, still, together
 from .forces import forces_on, require_shown
 from .picture import anything, picture
 from .solids import Solids, fill, solids
+from .style import BEHIND, Look
 from .wall import surroundings
 
 MORTAR = "#12406b"
@@ -182,6 +187,7 @@ THICK = 3.0
 def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool = True) -> Axes:
     """Masonry that has moved a little in its mechanism of collapse, and where joints press as it begins to move.
 
+    In the plane loads are drawn where they act at rest: the fill, and those that grow as heavy arrows with their size.
     Each force is a line through the point of its joint where it acts, along the force and as long as half the joint.
     Its width grows with the force. Lines that follow one another are the path of the thrust. They move with the block
     below their joint, so that they pass through the hinges. They are drawn in the plane alone.
@@ -209,6 +215,8 @@ def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool 
         pose = np.column_stack([pose[:, :3], np.ones(len(pose)), half])
         pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
     blocks(ax, masonry, pose)
+    if not masonry.in_space:
+        laden(ax, masonry, collapse.effects, collapse.loads)
     if forces and not masonry.in_space:
         case = MasonryCase(masonry, 1.0)
         _pressed(ax, Moving(case, np.zeros(1), pose[None]), masonry, collapse.forces)
@@ -227,3 +235,75 @@ def _pressed(ax: Axes, moving: Moving, masonry: Masonry, forces: JointForces) ->
         way = pressing[i] @ axes[i] / size[i]
         ends = middles[i] + along[i] * axes[i, 1] + 0.25 * widths[i] * np.outer([-1, 1], way)
         ax.plot(*ends.T, color=FORCE, linewidth=max(0.4, THICK * size[i] / size.max()), solid_capstyle="round")
+
+
+EARTH, LADEN, LOAD = "#e3d5b8", "#c9a86a", "0.15"
+"""Colours of a fill, of the part of it through which a load goes down, and of loads."""
+ARROW, SMALLEST, NAMED, NAME_ROOM = 0.16, 0.6, 6, 0.08
+"""Length of the arrow of the largest load over the extent of the masonry [-], that of a small one over it [-], the most
+constant loads whose size is written, and the room for it over the extent [-]."""
+
+
+def laden(
+    ax: Axes,
+    masonry: Masonry,
+    effects: Sequence[Effect],
+    loads: Mapping[str, tuple[float, ...]] | Sequence[Effect] = (),
+) -> None:
+    """Draw the fill and the loads on masonry in the plane at rest, those that grow with heavy arrows."""
+    growing = () if isinstance(loads, Mapping) else tuple(loads)
+    for effect in (*effects, *growing):
+        if len(corners := effect.outline):
+            colour, over = (LADEN, 0.3) if effect in growing else (EARTH, 0.2)
+            ax.add_patch(Polygon(corners, facecolor=colour, edgecolor=colour, linewidth=0.6, zorder=over))
+    still = [arrow for effect in effects if (arrow := _pushing(masonry, effect)) is not None]
+    heavy = [arrow for effect in growing if (arrow := _pushing(masonry, effect)) is not None]
+    heavy += [_about(masonry, name, load) for name, load in loads.items()] if isinstance(loads, Mapping) else []
+    size = float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]), axis=0).max())
+    seen = [effect.outline for effect in (*effects, *growing) if len(effect.outline)]
+    for arrows, width, named in ((still, 1.0, len(still) <= NAMED), (heavy, 2.0, True)):
+        largest = max((float(np.hypot(*force)) for _, force in arrows), default=0.0)
+        for at, force in arrows:
+            length = max(float(np.hypot(*force)) / largest, SMALLEST) * ARROW * size
+            seen.append(_arrow(ax, at, force, length, width, named))
+    if seen:
+        (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+        least, most = (end(np.concatenate(seen), axis=0) for end in (np.min, np.max))
+        room = NAME_ROOM * size
+        ax.set_xlim(min(left, least[0] - room), max(right, most[0] + room))
+        ax.set_ylim(min(low, least[1] - room), max(high, most[1] + room))
+
+
+def _pushing(masonry: Masonry, effect: Effect) -> tuple[Array, Array] | None:
+    """Where an effect pushes [m] and its force [N], that of an axle on the ground; None where an arrow says nothing."""
+    told = effect.told
+    if isinstance(told, Axle):
+        return np.array([told.at, told.top]), np.array([0.0, -told.force])
+    if len(effect.outline) or effect.force_vector is None:
+        return None
+    return np.array(place_in_world(masonry, effect)), np.array(effect.force_vector)[[0, 2]]
+
+
+def _about(masonry: Masonry, name: str, load: Sequence[float]) -> tuple[Array, Array]:
+    """Where the line of a force passes the centroid of its block [m], from its moment about that, and the force [N]."""
+    force, moment = np.array(load[:2]), load[2] if len(load) == 3 else 0.0
+    aside = np.array([-force[1], force[0]]) * moment / max(float(force @ force), 1e-300)
+    return masonry.centroids[masonry.names.index(name)] + aside, force
+
+
+def _arrow(ax: Axes, at: Array, force: Array, length: float, width: float, named: bool) -> Array:
+    """An arrow of a length [m]: onto its point where it presses downwards, otherwise from its point along the force.
+    Its ends [m], shape (2, 2)."""
+    along = force / max(float(np.hypot(*force)), 1e-300) * length
+    tail, tip = (at - along, at) if force[1] < 0 else (at, at + along)
+    look: Look = {"arrowstyle": "-|>", "mutation_scale": 6 + 4 * width, "color": LOAD, "linewidth": width, "zorder": 8}
+    ax.add_patch(FancyArrowPatch(tuple(tail), tuple(tip), shrinkA=0, shrinkB=0, **look))
+    if named:
+        down = force[1] < 0
+        beside: Look = {"ha": "left" if along[0] > 0 else "right", "va": "center"}
+        beside |= {"ha": "center", "va": "bottom"} if down else {}
+        said, end = f"{np.hypot(*force) / 1e3:.3g} kN", tail if down else tip
+        shift = (0, 2) if down else (3 * np.sign(along[0]), 0)
+        beside |= {"textcoords": "offset points", "fontsize": 8, "color": LOAD, "zorder": 8, "bbox": BEHIND}
+        ax.annotate(said, tuple(end), shift, **beside)
+    return np.array([tail, tip])

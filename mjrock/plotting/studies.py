@@ -40,6 +40,8 @@ from .style import (
 
 LETTERS_OF_AXIS = 60
 """Letters below an axis from which on its labels are turned."""
+MOST_LABELS = 9
+"""Most labels of values in a row on an axis; of more every second, third and so on has one."""
 NEAREST = 0.12
 """Least distance of two values on an axis, over their range, that leaves room for their labels [-]."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
@@ -359,7 +361,7 @@ def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = Non
 
 @picture()
 def design(ax: Axes, found: Design) -> Axes:
-    """Capacity over demand of every condition for each value that was tried, the first that holds as a band.
+    """Capacity over demand of every condition for each value that was tried, with the value that the sentence names.
 
     Conditions hold on the line of 1 and above it. A value that cannot be built has no points.
 
@@ -369,7 +371,8 @@ def design(ax: Axes, found: Design) -> Axes:
     """
     require_kind("found", found, Design)
     values = [trial.value for trial in found.trials]
-    numbers = all(isinstance(value, int | float) for value in values) and _apart_enough(values)
+    every = -(-len(values) // MOST_LABELS)
+    numbers = all(isinstance(value, int | float) for value in values) and _apart_enough(values[::every])
     places = values if numbers else list(range(len(values)))
     lines = dict[str, list[tuple[float, float]]]()
     for place, trial in zip(places, found.trials, strict=True):
@@ -379,11 +382,13 @@ def design(ax: Axes, found: Design) -> Axes:
         marker = "osD^vP*X"[number % 8]
         ax.plot(*np.transpose(points), marker=marker, markersize=5, linewidth=1.3, label=said)
     ax.axhline(1.0, color="0.15", linewidth=1.0, linestyle="--")
-    if found.chosen is not None:
-        at = places[found.trials.index(found.chosen)]
+    if found.marked is not None:
+        at = places[found.trials.index(found.marked)]
         ax.axvline(at, color=BLUE, alpha=0.18, linewidth=12, zorder=0)
-    ax.set_xticks(places, [trial.label for trial in found.trials])
-    if max(len(trial.label) for trial in found.trials) * len(values) > LETTERS_OF_AXIS:
+    every = every if numbers else 1
+    labels = [trial.label for trial in found.trials][::every]
+    ax.set_xticks(places[::every], labels)
+    if max(map(len, labels)) * len(labels) > LETTERS_OF_AXIS:
         ax.tick_params(axis="x", labelrotation=45)
         for label in ax.get_xticklabels():
             label.set(ha="right", rotation_mode="anchor")

@@ -242,7 +242,7 @@ def of_limit_curve(curve: LimitCurve, words: Words) -> list[Input]:
     masonry = curve.start.masonry
     found = [] if masonry is None else of_masonry(masonry, words)
     moving = Input("moving", words("in_moving"), words.named(curve.start.moving), True)
-    return [*found, moving, *of_effects(curve.effects, words)]
+    return [*found, *_growing(curve.start, words), moving, *of_effects(curve.effects, words)]
 
 
 def of_collapse(found: Collapse, words: Words) -> list[Input]:

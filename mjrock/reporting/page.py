@@ -248,7 +248,7 @@ def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanis
     methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
     methods += [words("borne")] * borne
     said = [*methods, *([outcomes(runs, words)] if runs else [])]
-    figure, caption = whole.at_rest(words)
+    figure, caption = whole.at_rest(words, [one.result for each in verdicts.ranked(mechanisms) for one in each.loads])
     drawn = picture(figure, caption, words)
     return [element("h2", words("answer")), *found[:-1], drawn, *found[-1:], *(element("p", one) for one in said)]
 

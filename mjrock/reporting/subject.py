@@ -19,7 +19,7 @@ import scipy
 from matplotlib.figure import Figure
 
 from .._version import __version__
-from ..plotting.masonry import blocks
+from ..plotting.masonry import blocks, laden
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
@@ -79,8 +79,8 @@ class Reported(Protocol):
     def by_hand(self, words: Words) -> list[tuple[str, ...]]:
         """Steps of a check by hand, where there is one."""
 
-    def at_rest(self, words: Words) -> tuple[Figure, str]:
-        """It as it stands, and the caption."""
+    def at_rest(self, words: Words, borne: Sequence[Borne]) -> tuple[Figure, str]:
+        """It as it stands, with what it bears, and the caption."""
 
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure | None:
         """It as responses end."""
@@ -158,7 +158,7 @@ class ReportedWall(Reported):
         ]
         return [*rows, (words("hand_alpha"), words.number(holding / turning, FOUND))]
 
-    def at_rest(self, words: Words) -> tuple[Figure, str]:
+    def at_rest(self, words: Words, borne: Sequence[Borne]) -> tuple[Figure, str]:
         """Section and elevation."""
         drawn = wall_drawn(self.case, words)
         return drawn.figure, words("drawing_wall" if drawn.one_scale else "drawing_wall_scales")
@@ -208,9 +208,13 @@ class ReportedMasonry(Reported):
         """None."""
         return []
 
-    def at_rest(self, words: Words) -> tuple[Figure, str]:
-        """The blocks."""
-        return self._drawn([(self.case.masonry, "")]), words("drawing_masonry")
+    def at_rest(self, words: Words, borne: Sequence[Borne]) -> tuple[Figure, str]:
+        """The blocks with their loads, and the loads that grow of what bears least."""
+        figure, masonry = self._drawn([(self.case.masonry, "")]), self.case.masonry
+        if not masonry.in_space:
+            growing = [one.loads for one in borne if isinstance(one, Collapse) and one.masonry == masonry]
+            laden(figure.axes[0], masonry, self.case.effects, *growing[:1])
+        return figure, words("drawing_masonry")
 
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
         """The blocks as the runs with the largest motion end."""

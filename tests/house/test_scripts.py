@@ -91,7 +91,7 @@ WRITES = {
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
     "vaults": {"vaults.png", "vaults.txt"},
-    "mechanisms": {"mechanisms.png", "mechanisms.txt"},
+    "mechanisms": {"mechanisms.png", "mechanisms.txt", "axle.png"},
     "your_geometry": {"your_geometry.png", "your_geometry.txt"},
     "throughput": {"throughput.txt"},
     "first_minute": {"first_minute.csv", "first_minute.txt"},

@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from masonry_blocks import box
 from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, Polygon
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.geometry.convex import area
 from mjrock.plotting.solids import Rendered
 
 BLOCK = mr.Masonry.stack([mr.Block.from_size(0.4, 1.6)], k_n=1e9, friction=0.9)
@@ -76,3 +79,34 @@ def test_a_pose_of_all_blocks_is_drawn_and_of_moved_supports_is_not(pose, said):
     assert shapes[0] == shapes[1]
     with pytest.raises(ValueError, match=said):
         plotting.blocks(drawn[0], masonry, pose)
+
+
+def test_fill_and_axle_are_drawn_where_they_are_at_rest():
+    """The fill is as large as the earth above the blocks, and the arrow of the axle ends on the ground."""
+    flat = [box(-1, 2, -1, 0, fixed=True, name="ground"), box(0, 3, 0, 0.5, name="slab")]
+    masonry, fill = mr.Masonry(flat, friction=0.7), mr.Fill(1.0, 1800.0)
+    axle = fill.under(masonry, 30e3, at=2.5, width=0.2)
+    ax = plotting.mechanism(mr.collapse_multiplier(masonry, None, loads=axle, effects=fill.on(masonry)))
+    shapes = [patch.get_xy() for patch in ax.patches if isinstance(patch, Polygon)][1:]  # the first is the ground
+    areas = [area(corners[:-1]) for corners in shapes]
+    assert areas == pytest.approx([3 * 0.5, 0.5 * (0.2 + 0.7) * 0.5])  # 0.2 m on the ground, 0.7 m on the slab
+    (arrow,) = (patch for patch in ax.patches if isinstance(patch, FancyArrowPatch))
+    tail, tip = arrow._posA_posB  # matplotlib has no other way to read the ends
+    assert tip == pytest.approx((2.5, 1.0))
+    assert tail[0] == 2.5
+    assert tail[1] > 1.0
+    assert [text.get_text() for text in ax.texts] == ["30 kN"]
+    assert ax.get_ylim()[1] > tail[1]
+
+
+def test_forces_on_a_block_are_drawn_on_their_line_of_action():
+    """2 kN to the left whose moment about the centroid at 1 m is that of a force at 1.5 m, as `Thrust` has it."""
+    flat = [box(-5, 5, -1, 0, fixed=True, name="ground"), box(0, 0.6, 0, 2.0, name="wall")]
+    masonry, ends = mr.Masonry(flat, friction=5.0), []
+    for loads in ({"wall": (-2e3, 0.0, -1e3)}, mr.Thrust(1.5, -2e3, block="wall")):
+        ax = plotting.mechanism(mr.collapse_multiplier(masonry, None, loads=loads))
+        (arrow,) = (patch for patch in ax.patches if isinstance(patch, FancyArrowPatch))
+        ends.append(np.array(arrow._posA_posB))
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-12)
+    assert ends[0][0] == pytest.approx((0.3, 1.5))
+    assert ends[0][1, 0] < 0.3

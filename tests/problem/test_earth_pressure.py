@@ -138,7 +138,7 @@ def test_what_a_case_has_no_place_for():
         ({"effects": mr.Load(1e3, 1.0)}, "effects is for masonry"),
         ({"loads": (mr.Thrust(3.0, 1e3),)}, r"loads\[0\], height = 3 m is outside"),
         ({"loads": (mr.Tie(1.0, 1e6),)}, r"loads\[0\] = .* is not a Thrust or Load"),
-        ({"loads": {"wall": (1, 2)}}, "loads = .* is not a sequence of Thrust and Load"),
+        ({"loads": {"wall": (1, 2)}}, "loads = .* is not Thrust, Load or a sequence of them"),
     ):
         with pytest.raises((TypeError, ValueError), match=complaint):
             mr.collapse_multiplier(case, **given)

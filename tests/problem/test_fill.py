@@ -29,14 +29,21 @@ def test_a_load_spreads_two_to_one():
     """On three level blocks of 1 m, 0.6 m below the ground, a load 0.2 m wide is 0.2 + 2 x 0.5 x 0.6 m wide."""
     blocks = [box(i, i + 1, 0, 0.4, name=f"b{i}") for i in range(3)]
     masonry = mr.Masonry([box(-1, 4, -1, 0, fixed=True, name="ground"), *blocks], friction=0.7)
-    loads = mr.Fill(top=1.0).under(masonry, force=8e3, at=1.0, width=0.2)
-    assert loads["b0"] == pytest.approx([0, -4e3, 4e3 * (0.8 - 0.5)])
-    assert loads["b1"] == pytest.approx([0, -4e3, 4e3 * (1.2 - 1.5)])
-    assert set(loads) == {"b0", "b1"}
-    point = mr.Fill(top=1.0, spread=0.0).under(masonry, force=8e3, at=1.3)
-    assert point == {"b1": pytest.approx([0, -8e3, 8e3 * (1.3 - 1.5)])}
-    at_the_end = mr.Fill(top=1.0).under(masonry, force=8e3, at=0.0, width=0.2)
-    assert sum(load[1] for load in at_the_end.values()) == pytest.approx(-8e3)
+    fill = mr.Fill(top=1.0)
+    loads = fill.under(masonry, force=8e3, at=1.0, width=0.2)
+    assert [(load.block, load.force, *load.at) for load in loads] == [
+        ("b0", pytest.approx(4e3), pytest.approx(0.8), 0.4),
+        ("b1", pytest.approx(4e3), pytest.approx(1.2), 0.4),
+    ]
+    np.testing.assert_allclose(loads[0].outline, [(0.6, 0.4), (1.0, 0.4), (1.0, 1.0), (0.9, 1.0)])
+    (point,) = mr.Fill(top=1.0, spread=0.0).under(masonry, force=8e3, at=1.3)
+    assert (point.block, point.force, point.at) == ("b1", 8e3, (1.3, 0.4))
+    at_the_end = fill.under(masonry, force=8e3, at=0.0, width=0.2)
+    assert sum(load.force for load in at_the_end) == pytest.approx(8e3)
+    train = fill.under(masonry, [8e3, 6e3, 9e3], at=[1.0, 2.5, 4.0], width=0.2)  # the third has left the blocks
+    assert train[: len(loads)] == loads
+    assert sum(load.force for load in train) == pytest.approx(14e3)
+    assert fill.under(masonry, 8e3, at=[1.0, 2.5]) == fill.under(masonry, [8e3, 8e3], at=[1.0, 2.5])
 
 
 @pytest.mark.parametrize("way", [1, -1])
@@ -80,6 +87,9 @@ def test_prestwood():
     [
         (lambda: mr.Fill(5.0).on(ARCH), "top of the fill = 5 m is not above 5.24621 m, the highest face"),
         (lambda: mr.Fill(5.8).under(ARCH, 1e3, at=6.0), "at = 6 m is outside the valid range -4.27043 to 4.27043 m"),
+        (lambda: mr.Fill(5.8).under(ARCH, 1e3, at=[6.0, -9.0]), "at = 6 m is outside the valid range -4.27043 to"),
+        (lambda: mr.Fill(5.8).under(ARCH, [1e3, 0.0], at=[0.0, 1.0]), r"force\[1\] = 0 N is outside the valid range"),
+        (lambda: mr.Fill(5.8).under(ARCH, [1e3, 2e3], at=1.0), "force has 2 axles and at has 1"),
         (lambda: mr.Fill(5.8, spread=3.0), "spread of a load = 3 is outside the valid range 0 to 2"),
         (lambda: mr.Fill(5.8).on(3), "masonry = 3 of type int is not a Masonry"),
         (lambda: mr.Fill(5.8).on(mr.Masonry.box((1, 1, 1))), "masonry is in space"),

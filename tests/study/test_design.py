@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from masonry_blocks import box
 
 import mjrock as mr
 from mjrock import plotting
@@ -108,6 +109,47 @@ def test_the_picture_has_a_line_for_each_condition_and_a_label_for_each_value():
     assert [label.get_text() for label in ax.get_xticklabels()] == ["None", "30000", "90000"]
     linear = next(line for line in ax.get_lines() if line.get_label() == "linear kinematic, SLV")
     assert linear.get_ydata() == pytest.approx([trial.conditions[0].verdict.ratio for trial in found.trials])
+
+
+def corbel(spread=0.0):
+    """A slab of 3 m that lies on 2 m of ground, with earth on it."""
+    flat = [box(-1, 2, -1, 0, fixed=True, name="ground"), box(0, 3, 0, 0.5, name="slab")]
+    masonry = mr.Masonry(flat, friction=0.7)
+    return masonry, mr.Fill(1.0, 1800.0, spread=spread)
+
+
+def test_an_axle_that_is_tried_at_each_place_has_its_least_factor_where_it_tips_the_slab():
+    """The slab and its fill weigh on 0.5 m about the edge at 2 m, and the axle on x - 2 m."""
+    masonry, fill = corbel()
+    weight = (3 * 0.5 * 2000 + 3 * 0.5 * 1800) * G
+
+    def at(x):
+        return mr.collapse_multiplier(masonry, None, loads=fill.under(masonry, 30e3, at=x), effects=fill.on(masonry))
+
+    places = [1.0, 2.3, 2.9, 2.6]
+    found = mr.design(at, places)
+    hand = [math.inf, *(weight * 0.5 / (30e3 * (x - 2)) for x in places[1:])]
+    assert [trial.ratio for trial in found.trials] == pytest.approx(hand, rel=1e-9)
+    assert found.least.value == 2.9
+    assert found.least.built.moving == ("slab",)
+    assert found.table().splitlines()[-1] == "4 of 4 values hold; the least ratio is 1.03, of 2.9"
+    assert mr.design(at, places, 1.1).sentence == "3 of 4 values hold; the least ratio is 0.94, of 2.9"
+    ax = plotting.design(found)
+    assert ax.get_title() == found.sentence
+
+
+def test_the_first_thickness_that_stands_the_wind():
+    """W t / 2 over q h^2 / 2 is at least 1.5 from t = sqrt(1.5 q h / (rho g)) on, for a wall 1 m long."""
+    needed = math.sqrt(1.5 * 0.8e3 * 3.0 / (2000 * G))
+
+    def build(t):
+        case = mr.Case(mr.Block.from_size(t, 3.0), 0.0, 1.0)
+        return mr.collapse_multiplier(case, None, loads=mr.Thrust(1.5, 0.8e3 * 3.0))
+
+    values = [0.9 * needed, 1.01 * needed, 1.2 * needed]
+    assert mr.design(build, values, 1.5).value == values[1]
+    with pytest.raises(TypeError, match=r"result = <Case .* is not a Collapse"):
+        mr.design(tied, [1e4], 1.5)
 
 
 @pytest.mark.parametrize(

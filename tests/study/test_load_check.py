@@ -7,6 +7,8 @@ from functools import cache
 import pytest
 
 import mjrock as mr
+from mjrock.reporting.subject import reported
+from mjrock.reporting.texts import Words
 
 COLUMN = mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 3)
 WALL = mr.Case(mr.Block.from_size(0.6, 3.0), 0.0, 1.0)
@@ -97,3 +99,20 @@ def test_a_wall_under_wind_has_its_factor_and_the_wind_in_the_report(tmp_path):
     page = mr.report(case, (), tmp_path / "a.html", checks={"wind": found}).read_text(encoding="utf-8")
     assert "thrust 1, growing" in page
     assert "3.3333" in page
+
+
+def test_a_report_of_an_axle_has_the_fill_and_the_axle_once_each_and_on_its_first_page(tmp_path):
+    """Of a slab on half of its ground; the numbers are those that were given."""
+    slab = mr.Polygon([(0, 0), (3, 0), (3, 0.5), (0, 0.5)], 2000.0, name="slab")
+    masonry, fill = mr.Masonry([GROUND, slab], friction=0.7), mr.Fill(1.25, 1777.0, passive=2.5)
+    axle = fill.under(masonry, 31e3, at=2.625, width=0.3)
+    found = mr.collapse_multiplier(masonry, None, loads=axle, effects=fill.on(masonry))
+    case = mr.MasonryCase(masonry, 1.0, effects=fill.on(masonry))
+    page = mr.report(case, (), tmp_path / "a.html", checks={"axle": found}).read_text(encoding="utf-8")
+    text = html.unescape(re.sub(r"<[^>]+>", " ", re.sub(r"base64,[^\"]*", "", page))).replace("\u00a0", " ")
+    assert text.count("axle, growing") == 1
+    for number in ("1.25 m", "1777 kg/m³", "31 kN", "x = 2.625 m", "0.3 m wide", "coefficient 2.5"):
+        assert number in text
+    drawn = reported(case).at_rest(Words("en"), [found])[0].axes[0]
+    assert [note.get_text() for note in drawn.texts] == ["31 kN"]
+    assert len(mr.report(case, (), tmp_path / "b.html", checks={"axle": found}, language="it").read_bytes()) > 1000

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Annotated, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, Within, keep_declared, require_kind, require_within, short_repr
-from ..wall.effect import Effect
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Within,
+    keep_declared,
+    require_kind,
+    require_reals,
+    require_row,
+    require_within,
+    short_repr,
+)
+from ..wall.effect import Effect, Told
 from ..wall.effects import Load
 from ..wall.tie import Tie
 from .blocks.polygon import Polygon
@@ -28,6 +39,10 @@ class Bearing(NamedTuple):
     name: str
     ends: Array
     length: float
+
+    def at(self, x: float) -> tuple[float, float]:
+        """Its point at an x [m]."""
+        return x, float(np.interp(x, *self.ends.T))
 
 
 @dataclass(frozen=True)
@@ -57,6 +72,8 @@ class Fill:
         4.7
     """
 
+    label: ClassVar[str] = "fill"
+    arguments: ClassVar[str] = "top, density,\nspread, passive"
     top: Annotated[float, Within(-1e4, 1e4, "m", "top of the fill")]
     density: Annotated[float, Within(500, 2600, "kg/m3", "density of the fill")] = 1800.0
     spread: Annotated[float, Within(0, 2, "", "spread of a load")] = field(default=0.5, kw_only=True)
@@ -67,9 +84,14 @@ class Fill:
     def __post_init__(self) -> None:
         keep_declared(self)
 
+    @property
+    def said(self) -> str:
+        """For sketches, and for reports that have no words for it."""
+        return f"up to z = {self.top:g} m, {self.density:g} kg/m3"
+
     def on(self, masonry: Masonry) -> tuple[Effect, ...]:
         """The weight on each face as a `Load`, and its passive pressure as a `Tie` of that strength, for limit
-        analysis.
+        analysis. Pictures and reports show the fill.
 
         Raises:
             TypeError, ValueError: for what is not masonry in the plane, or has a face above the ground.
@@ -81,43 +103,73 @@ class Fill:
             column = self.density * GRAVITY * face.length * 0.5 * depth.sum()
             share = (depth[0] + 2 * depth[1]) / (3 * depth.sum())  # of the centroid of a trapezium
             point = tuple(face.ends[0] + share * (face.ends[1] - face.ends[0]))
-            effects.append(Load(column * wide, block=face.name, at=point))  # type: ignore[arg-type]
+            drawn = *map(tuple, face.ends.tolist()), (right, self.top), (x, self.top)
+            shown = {"stands_for": None if effects else self, "drawn": drawn}
+            effects.append(EarthLoad(column * wide, block=face.name, at=point, **shown))  # type: ignore[arg-type]
             borne = self.passive * column * abs(high - z)
             if borne > 0:
                 way = 1.0 if high < z else -1.0  # out of the masonry, sideways
                 middle = face.ends.mean(axis=0)
                 anchor = middle[0] - way * ANCHORED, middle[1]
-                held = Tie(stiffness=AS_RIGID, strength=borne, at=tuple(middle), anchor=anchor, block=face.name)  # type: ignore[arg-type]
-                effects.append(held)
+                pull = {"strength": borne, "at": tuple(middle), "anchor": anchor, "block": face.name}
+                effects.append(EarthTie(stiffness=AS_RIGID, **pull))
         return tuple(effects)
 
-    def under(self, masonry: Masonry, force: float, at: float, width: float = 0.0) -> dict[str, Array]:
-        """A load on the ground as it presses on the masonry, as `loads` of `collapse_multiplier`.
+    def under(
+        self, masonry: Masonry, force: float | ArrayLike, at: float | ArrayLike, width: float = 0.0
+    ) -> tuple[Load, ...]:
+        """Loads on the ground as they press on the masonry, for `loads` or `effects`.
 
         Args:
             masonry: the masonry.
-            force: downwards [N], above 0 to 1e9.
-            at: x of its middle [m], above the faces.
-            width: of the load on the ground, 0 to 100 [m].
+            force: downwards [N], above 0 to 1e9, or that of each axle, shape (n,).
+            at: x of its middle [m], above the faces, or of each axle, shape (n,). Of several those that are not above
+                the faces are left out.
+            width: of each load on the ground, 0 to 100 [m].
 
         Raises:
-            TypeError, ValueError: as `on`, and for a value outside its range.
+            TypeError, ValueError: as `on`, for a value outside its range, or axles of which none is above the faces.
+
+        Examples:
+            >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.5, span_angle=1.9)
+            >>> train = mr.Fill(top=5.8).under(arch, force=[60e3, 60e3], at=[-2.0, -0.2])
+            >>> round(sum(load.force for load in train))
+            120000
         """
         faces = self._faces(masonry)
-        force = require_within("force", force, 1e-3, 1e9, "N")
+        places = require_row("at", np.atleast_1d(require_reals("at", at, "places")), "place of an axle [m]")
+        forces = require_row("force", np.atleast_1d(require_reals("force", force, "forces")), "force of an axle [N]")
+        forces = np.repeat(forces, len(places)) if len(forces) == 1 else forces
+        if len(forces) != len(places):
+            raise ValueError(f"force has {len(forces)} axles and at has {len(places)}; give one force for each place")
+        low, high = float(faces[0].ends[0, 0]), float(faces[-1].ends[1, 0])
+        above = [place for place in places.tolist() if low <= place <= high]
+        if not above:
+            require_within("at", float(places[np.abs(places - 0.5 * (low + high)).argmin()]), low, high, "m")
         half = 0.5 * require_within("width", width, 0.0, 100.0, "m")
-        ends = np.concatenate([face.ends for face in faces])
-        at = require_within("at", at, float(ends[0, 0]), float(ends[-1, 0]), "m")
+        loads = list[Load]()
+        for i, (each, place) in enumerate(zip(forces.tolist(), places.tolist(), strict=True)):
+            name = "force" if len(forces) == 1 else f"force[{i}]"
+            axle = Axle(require_within(name, each, 1e-3, 1e9, "N"), place, 2 * half, self.top)
+            loads += self._under(faces, axle) if place in above else []
+        return tuple(loads)
+
+    def _under(self, faces: list[Bearing], axle: Axle) -> list[Load]:
+        """One axle as it presses on the faces."""
+        ends, at, half = np.concatenate([face.ends for face in faces]), axle.at, 0.5 * axle.width
         low, high = (self._reached(ends, at, side, half) for side in (-1, 1))
-        loads = dict[str, Array]()
+        loads = list[Load]()
         for face in faces:
             left, right = max(low, face.ends[0, 0]), min(high, face.ends[1, 0])
             holds = face.ends[0, 0] <= at <= face.ends[1, 0]
             share = (right - left) / (high - low) if high > low else float(holds and not loads)
             if share > 0:
-                middle = 0.5 * (left + right) if high > low else at
-                arm = middle - masonry.blocks[masonry.names.index(face.name)].centroid[0]
-                loads[face.name] = loads.get(face.name, np.zeros(3)) + force * share * np.array([0.0, -1.0, arm])
+                down = [left, right] if high > low else [at, at]
+                up = np.interp(down, [low, high], [at - half, at + half]) if high > low else [at, at]
+                drawn = *map(face.at, down), (float(up[1]), self.top), (float(up[0]), self.top)
+                shown = {"stands_for": None if loads else axle, "drawn": drawn}
+                point = face.at(0.5 * (down[0] + down[1]))
+                loads.append(EarthLoad(axle.force * share, block=face.name, at=point, **shown))  # type: ignore[arg-type]
         return loads
 
     def _reached(self, ends: Array, at: float, side: int, half: float) -> float:
@@ -149,3 +201,59 @@ class Fill:
         if not self.top > highest:
             raise ValueError(f"top of the fill = {self.top:g} m is not above {highest:g} m, the highest face")
         return sorted(found, key=lambda face: float(face.ends[0, 0]))
+
+
+@dataclass(frozen=True)
+class Axle:
+    """A load on the ground over masonry, see `Fill.under`.
+
+    Args:
+        force: downwards [N].
+        at: x of its middle [m].
+        width: on the ground [m].
+        top: level of the ground [m].
+    """
+
+    label: ClassVar[str] = "axle"
+    arguments: ClassVar[str] = "force, at, width"
+    force: Annotated[float, Within(1e-3, 1e9, "N")]
+    at: Annotated[float, Within(-1e4, 1e4, "m")]
+    width: Annotated[float, Within(0, 100, "m")]
+    top: Annotated[float, Within(-1e4, 1e4, "m")]
+
+    @property
+    def said(self) -> str:
+        """For sketches, and for reports that have no words for it."""
+        return f"{self.force / 1e3:g} kN at x = {self.at:g} m"
+
+
+@dataclass(frozen=True, repr=False)
+class EarthLoad(Load):
+    """The weight of a fill on a face, or the part of an axle that it bears.
+
+    Args:
+        stands_for: the fill or the axle that sketch and report show, None where another load shows it.
+        drawn: corners of the earth through which it goes down to the face [m].
+    """
+
+    stands_for: Fill | Axle | None = field(kw_only=True, repr=False)
+    drawn: tuple[tuple[float, float], ...] = field(kw_only=True, repr=False)
+
+    @property
+    def told(self) -> Told | None:
+        """The fill or the axle, once."""
+        return self.stands_for
+
+    @property
+    def outline(self) -> Array:
+        """The earth above the face."""
+        return np.array(self.drawn)
+
+
+class EarthTie(Tie):
+    """What a fill bears where a face moves into it. Sketch and report show the fill."""
+
+    @property
+    def told(self) -> None:
+        """Nothing: the fill is shown once."""
+        return

@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from ...notebook import Drawn
-from ...quantities import Within, keep, keep_declared, require_sequence, short_repr
+from ...quantities import Within, keep, keep_declared, require_kind, require_sequence, short_repr
 from ..ground.motion import GroundMotion
 from .effect import (
     HIGHEST_WALL,
@@ -269,6 +269,15 @@ class SideStop:
 
     def __post_init__(self) -> None:
         keep_declared(self, "side stop")
+
+
+def required_loads(loads: Any, takes: str) -> tuple[Thrust | Load, ...]:
+    """Loads that grow, or a single one, as a tuple; a TypeError says what they should be."""
+    given = (loads,) if isinstance(loads, Thrust | Load) else () if loads is None else loads
+    require_sequence("loads", given, takes)
+    for i, load in enumerate(given):
+        require_kind(f"loads[{i}]", load, Thrust, Load)
+    return tuple(given)
 
 
 EFFECT_KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, AddedMass)

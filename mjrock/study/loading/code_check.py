@@ -495,6 +495,8 @@ class _PartCurve(NamedTuple):
     def of(cls, name: str, curve: LimitCurve) -> _PartCurve:
         """That of a limit curve; a ValueError with its name says if it ends before."""
         masonry, borne = curve.start.masonry, curve.multiplier
+        if curve.start.loads:
+            raise ValueError(f"{name} = {curve!r} has loads; the check is of a horizontal force: give them as effects")
         if masonry is None or not curve.start.moving or not borne[0] > 0 >= borne[-1]:
             raise ValueError(
                 f"{name} = {curve!r} ends where {borne[-1]:.4g} of the weight is borne: {curve.ended}; the check takes "

@@ -12,12 +12,15 @@ from ...contacts.files import aligned
 from ...notebook import Drawn
 from ...quantities import is_iterable, ratio_said, require_one_of, shown
 from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands
+from .load_check import Borne, LoadCheck, load_check
 
 METHODS = "linear", "nonlinear", "dynamic"
 """The methods of a code whose conditions may count alone."""
-Check = MechanismCheck | DynamicCheck
-Built = Checked | Check
-"""What is built with a value: a mechanism, or a check of one."""
+ROUNDED = 1e-9
+"""Ratios that are alike, over their size [-]."""
+Check = MechanismCheck | DynamicCheck | LoadCheck
+Built = Checked | Borne | Check
+"""What is built with a value: a mechanism, what is borne, or a check of one."""
 
 
 class Condition(NamedTuple):
@@ -29,7 +32,8 @@ class Condition(NamedTuple):
     @property
     def said(self) -> str:
         """Which it is, in words."""
-        return ": ".join(filter(None, (self.mechanism, f"{self.verdict.what}, {self.verdict.limit_state}")))
+        what = ", ".join(filter(None, (self.verdict.what, self.verdict.limit_state)))
+        return ": ".join(filter(None, (self.mechanism, what)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,6 +46,7 @@ class Trial:
         checks: the checks of what is built with it, by the name of the mechanism; none where it cannot be built.
         refused: why it cannot be built or checked, in words.
         method: the one whose conditions count, as of `design`; None counts all.
+        built: what was built with it, None where it cannot be.
     """
 
     value: Any
@@ -49,6 +54,7 @@ class Trial:
     checks: Mapping[str, Check]
     refused: str = ""
     method: str | None = None
+    built: Any = None
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
@@ -93,9 +99,26 @@ class Design(Drawn):
         return next((trial for trial in self.trials if trial.holds), None)
 
     @property
+    def marked(self) -> Trial | None:
+        """The value that the sentence names: the chosen one, or the least where the first value holds already."""
+        return self.least if self._first_holds else self.chosen
+
+    @property
+    def _first_holds(self) -> bool:
+        """Whether the first of several values holds already."""
+        return len(self.trials) > 1 and self.trials[0].holds
+
+    @property
     def value(self) -> Any:
         """The first value for which every condition holds; None where none does."""
         return None if self.chosen is None else self.chosen.value
+
+    @property
+    def least(self) -> Trial:
+        """The first value with the least ratio but for rounding, such as the worst place of an axle."""
+        built = [trial for trial in self.trials if trial.governs is not None]
+        low = min(trial.ratio for trial in built)
+        return next(trial for trial in built if trial.ratio <= low * (1 + ROUNDED))
 
     @property
     def governs(self) -> Condition | None:
@@ -118,6 +141,9 @@ class Design(Drawn):
     def sentence(self) -> str:
         """The result in one sentence."""
         method = self.trials[0].method
+        if self._first_holds:
+            held = f"{sum(trial.holds for trial in self.trials)} of {len(self.trials)} values hold"
+            return f"{held}; the least ratio is {ratio_said(self.least.ratio)}, of {self.least.label}"
         if self.chosen is not None:
             every = f"every {method} condition" if method else "every condition"
             return f"{self.chosen.label} is the first of {len(self.trials)} values for which {every} holds"
@@ -131,7 +157,7 @@ class Design(Drawn):
 def design(
     build: Callable[[Any], Built | Mapping[str, Built]],
     values: Sequence[Any],
-    demand: Demand | Mapping[str, Demand] | None = None,
+    demand: Demand | Mapping[str, Demand] | float | None = None,
     *,
     method: str | None = None,
     **options: Any,
@@ -139,14 +165,16 @@ def design(
     """The first of some values for which every condition of the check holds, with the checks of all.
 
     Values are tried in their order, from the least effort to the largest. All are checked, so that the table shows what
-    each would bring.
+    each would bring. `least` has the worst of them, as of an axle that is tried at each place of a bridge.
 
     Args:
         build: `build(value)` makes the mechanism of a value, what `mechanism_check` takes: a `Case`, a bending, the
-            `limit_curve` of masonry. It may make a check instead, such as one with a demand of its own or by dynamic
-            runs, or a mapping of names to several, all of which have to hold.
-        values: the values to try: bars, plates, spacings, thicknesses, or pairs and mappings of them.
-        demand: as of `mechanism_check`; None where `build` makes checks.
+            `limit_curve` of masonry; or what bears a load, as `load_check` takes it, such as a `collapse_multiplier`.
+            It may make a check instead, such as one with a demand of its own or by dynamic runs, or a mapping of names
+            to several, all of which have to hold.
+        values: the values to try: bars, plates, spacings, thicknesses, places, or pairs and mappings of them.
+        demand: as of `mechanism_check`, or a number as of `load_check`; None where `build` makes checks, or loads that
+            grow have a factor of 1 to bear.
         method: "linear", "nonlinear" or "dynamic" where the conditions of this method alone count: a code may have
             several for one limit state, of which the designer takes one. None counts all.
         options: further arguments of `mechanism_check`, such as `confidence_factor` and `code`.
@@ -164,6 +192,10 @@ def design(
         >>> walls = [0.4, 0.6, 0.8, 1.0]
         >>> mr.design(lambda t: mr.Case(mr.Block.from_size(t, 4.0), 0.0, 1.0), walls, slv).value
         0.6
+        >>> wind = mr.Thrust(height=2.0, force=3.2e3)
+        >>> safety = lambda t: mr.collapse_multiplier(mr.Case(mr.Block.from_size(t, 4.0), 0.0, 1.0), None, loads=wind)
+        >>> mr.design(safety, walls, 1.5)
+        <Design: 0.6 is the first of 4 values for which every condition holds>
     """
     if not callable(build):
         raise TypeError(f"build = {shown(build)} is not a function of a value")
@@ -172,7 +204,7 @@ def design(
     given = list(values)
     if not given:
         raise ValueError("values is empty; at least one is needed")
-    if demand is not None:
+    if demand is not None and not isinstance(demand, int | float):
         required_demands(demand, options.get("code"))
     if method is not None:
         require_one_of("method", method, METHODS)
@@ -194,13 +226,15 @@ def _tried(build: Callable[[Any], Any], value: Any, demand: Any, options: Mappin
         return Trial(value, label_of(value), {}, str(error))
     if not checks:
         raise TypeError(f"build({label_of(value)}) is an empty mapping; it has one check at least")
-    return Trial(value, label_of(value), checks)
+    return Trial(value, label_of(value), checks, built=built)
 
 
 def _checked(built: Any, demand: Any, options: Mapping[str, Any]) -> Check:
-    """The check of what was built, or that which was built."""
-    if isinstance(built, MechanismCheck | DynamicCheck):
+    """The check of what was built, or that which was built. A limit curve has a mechanism and what it bears."""
+    if isinstance(built, MechanismCheck | DynamicCheck | LoadCheck):
         return built
+    if isinstance(demand, int | float) or (demand is None and isinstance(built, Borne)):
+        return load_check(built, demand, **options)
     if demand is None:
         raise TypeError("demand is None, and build makes no check; give a demand")
     return mechanism_check(built, demand, **options)

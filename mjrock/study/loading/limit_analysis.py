@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, cast
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,7 +24,7 @@ from ...problem.masonry.lines import free_numbers, mean_slip_rates
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.case import Case
 from ...problem.wall.effect import Effect
-from ...problem.wall.effects import Load, Thrust, link_effects
+from ...problem.wall.effects import Load, Thrust, link_effects, required_loads
 from ...problem.wall.restoring_moment import moment_at_strength, of_force
 from ...quantities import (
     Array,
@@ -36,7 +37,6 @@ from ...quantities import (
     require_kind,
     require_real,
     require_reals,
-    require_sequence,
     require_whole,
     require_within,
     shown,
@@ -58,6 +58,8 @@ BEHIND = 0.1
 TANGENT, FARTHER = 1e-4, 10
 """Displacement at which the fall of a curve is looked at first, over the size of the masonry, and how many times the
 steps that are expected a curve may take until nothing is borne any more [-]."""
+Loads = Mapping[str, ArrayLike] | Sequence[Thrust | Load] | Thrust | Load
+"""Loads that grow, see `collapse_multiplier`."""
 HALVINGS = 40
 """How often a step is halved at most in the search for where a line closes."""
 
@@ -68,7 +70,7 @@ def collapse_multiplier(
     *,
     angle: float | None = None,
     associated: bool = True,
-    loads: Mapping[str, ArrayLike] | Sequence[Effect] | None = None,
+    loads: Loads | None = None,
     effects: Sequence[Effect] | Effect = (),
     pose: ArrayLike | None = None,
 ) -> Collapse:
@@ -106,10 +108,11 @@ def collapse_multiplier(
         angle: of the force in plan, from x towards y [rad], -2 pi to 2 pi, in space; it takes the place of `direction`.
         associated: whether sliding opens joints. False for friction without dilatancy, which takes some seconds for a
             hundred blocks in the plane, and half a minute for thirty in space.
-        loads: further forces that grow with the multiplier, by the name of their block: at its centroid along x and z
-            [N], or with the moment about it, positive where it turns the top to the right [N m], shape (2,) or (3,); in
-            space forces along x, y and z, or with three moments, shape (3,) or (6,). Of a `Case` they are `Thrust` and
-            `Load`, such as wind, water and the `EarthPressure` on it.
+        loads: further forces that grow with the multiplier, `Thrust` and `Load`, such as wind, water, earth and the
+            axle on a `Fill`, which name their block as `effects` do. Of masonry they may also be forces by the name of
+            their block: at its centroid along x and z [N], or with the moment about it, positive where it turns the top
+            to the right [N m], shape (2,) or (3,); in space forces along x, y and z, or with three moments, shape (3,)
+            or (6,).
         effects: what is constant beside the weight, `Load` and `Thrust`, `AddedMass`, whose inertia grows with that of
             the blocks, and `Tie`, which pulls with up to its strength, and is not slack at rest. In a pose it pulls
             where it is longer than at rest and has not been drawn out beyond its `ultimate` elongation. Each names its
@@ -144,16 +147,17 @@ def collapse_multiplier(
     dilates = require_flag("associated", associated)
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
-    given = _required(masonry, effects)
+    given, growing = _required(masonry, effects), _growing(masonry, loads)
     laws = [link.law for link in link_effects(given).values()]
     if pose is not None:
         masonry.require_dry("collapse_multiplier in a pose")
         if not dilates:
             raise ValueError("associated = False goes with masonry at rest; a pose takes associated friction")
-        masonry, given = posed(masonry, pose, given)
+        still, (masonry, given) = masonry, posed(masonry, pose, given)
+        growing = posed(still, pose, growing)[1] if isinstance(growing, tuple) else growing
     none = direction is None and angle is None
     push = np.zeros(3 if masonry.in_space else 2) if none else horizontal(masonry, direction, angle)
-    grown = _loads(masonry, {} if loads is None else loads) + pushed(masonry, push) + dragged(masonry, given, push)
+    grown = _forces(masonry, growing) + pushed(masonry, push) + dragged(masonry, given, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
     links = tuple(link_effects(given).values())
@@ -167,8 +171,6 @@ def collapse_multiplier(
         under = "the weight and the effects" if given else "the weight"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under {under}")
     found = limit_of(masonry, push, grown, constant, associated=dilates, ties=ties)
-    rows = cast(Mapping[str, ArrayLike], loads or {}).items()
-    growing = {name: tuple(np.asarray(load, dtype=float).tolist()) for name, load in rows}
     found = replace(found, wedged=wedged(masonry, given), loads=growing, effects=given)
     if found.wedged:
         warn_of(
@@ -197,10 +199,7 @@ def overturned(case: Case, direction: object, loads: Any) -> Collapse:
     way = 0.0 if direction is None else require_real("direction", direction)
     if way not in (-1.0, 0.0, 1.0) or way == direction == 0:
         raise ValueError(f"direction = {way:g} is not a direction; the valid ones are 1, -1 and None")
-    require_sequence("loads", given := () if loads is None else loads, "a sequence of Thrust and Load")
-    for i, load in enumerate(given):
-        require_kind(f"loads[{i}]", load, Thrust, Load)
-    grown: tuple[Thrust | Load, ...] = tuple(given)
+    grown = required_loads(loads, "Thrust, Load or a sequence of them")
     wall, top = case.wall, 2 * case.wall.h * (1 + 1e-12)
     forces = [(0.0, wall.centroid_height, way * wall.weight, 0.0)]
     for i, load in enumerate(grown):
@@ -257,18 +256,33 @@ def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tup
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)
 
 
-def _loads(masonry: Masonry, loads: Any) -> Array:
-    """Loads by the name of their block as forces and moments of free blocks, shape (free, 3), in space (free, 6)."""
-    require_kind("loads", loads, Mapping)
+def _growing(masonry: Masonry, loads: Any) -> Mapping[str, tuple[float, ...]] | tuple[Effect, ...]:
+    """Loads that grow, checked: effects with the numbers of their blocks, or forces by the name of a free block."""
+    if not isinstance(loads, Mapping):
+        effects = required_loads(loads, "Thrust, Load, a sequence of them, or a mapping of blocks to forces [N]")
+        try:
+            return MasonryCase(masonry, 1.0, effects=effects, settled=False).effects
+        except (TypeError, ValueError) as error:
+            raise type(error)(str(error).replace("effects[", "loads[", 1)) from None
     forces, full = (3, 6) if masonry.in_space else (2, 3)
-    total = np.zeros((len(masonry.free), full))
-    rows = {masonry.names[i]: row for row, i in enumerate(masonry.free)}
+    free, rows = [masonry.names[i] for i in masonry.free], dict[str, tuple[float, ...]]()
     for name, load in loads.items():
-        if name not in rows:
-            raise ValueError(f"loads: {name!r} is not the name of a free block; those are {named(tuple(rows))}")
-        given = require_reals(f"loads of {name}", load, f"an array of the shape ({forces},) or ({full},)")
-        count = forces if given.shape == (forces,) else full
-        total[rows[name], :count] += require_array(f"loads of {name}", given, (count,))
+        if name not in free:
+            raise ValueError(f"loads: {name!r} is not the name of a free block; those are {named(free)}")
+        takes = f"an array of the shape ({forces},) or ({full},); a Thrust or Load has a block of its own"
+        given = require_reals(f"loads of {name}", load, takes)
+        shape = given.shape if given.shape == (forces,) else (full,)
+        rows[name] = tuple(require_array(f"loads of {name}", given, shape).tolist())
+    return rows
+
+
+def _forces(masonry: Masonry, growing: Mapping[str, tuple[float, ...]] | tuple[Effect, ...]) -> Array:
+    """Loads that grow as forces and moments of the free blocks, shape (free, 3), in space (free, 6)."""
+    if isinstance(growing, tuple):
+        return applied(masonry, growing)
+    total = np.zeros((len(masonry.free), masonry.freedom.nv))
+    for name, load in growing.items():
+        total[masonry.free.index(masonry.names.index(name)), : len(load)] = load
     return total
 
 
@@ -302,8 +316,9 @@ class LimitCurve:
     """What rigid masonry bears as its mechanism goes on.
 
     Args:
-        displacement: of the centroid of all free blocks along the direction [m], shape (n,).
-        multiplier: of the horizontal force over the weight [-], shape (n,), below zero where the masonry is held back.
+        displacement: of the centroid of all free blocks along the direction [m], shape (n,), or see `limit_curve`.
+        multiplier: of the forces that grow, of a horizontal one over the weight [-], shape (n,), below zero where the
+            masonry is held back.
         pose: of the free blocks, as in a `Response`, shape (n, free, 3), in space (n, free, 7).
         ended: why it stopped, in words.
         start: the mechanism with which it begins.
@@ -318,9 +333,10 @@ class LimitCurve:
     effects: tuple[Effect, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
+        of = "times the forces that grow" if self.start.loads else "of the weight"
         return (
             f"<LimitCurve: {len(self.multiplier)} poses to {self.displacement[-1]:.3g} m, from "
-            f"{self.multiplier[0]:.4g} to {self.multiplier[-1]:.4g} of the weight, {self.ended}>"
+            f"{self.multiplier[0]:.4g} to {self.multiplier[-1]:.4g} {of}, {self.ended}>"
         )
 
     @property
@@ -335,6 +351,7 @@ def limit_curve(
     *,
     to: float | None = None,
     angle: float | None = None,
+    loads: Loads | None = None,
     effects: Sequence[Effect] | Effect = (),
     poses: int = 100,
 ) -> LimitCurve:
@@ -349,9 +366,11 @@ def limit_curve(
 
     Args:
         masonry: the masonry, with dry joints.
-        direction, angle, effects: as of `collapse_multiplier`.
-        to: displacement of the centroid of all free blocks along the direction at which to stop [m], 1e-6 to 100; None
-            goes on until nothing is borne any more.
+        direction, angle, loads, effects: as of `collapse_multiplier`. `Thrust` and `Load` keep their direction and act
+            at their point of the block. The displacement is that of the centroid of all free blocks along the
+            direction. Of loads alone it is the work that they do on displacements of the centroids and rotations, as
+            forces and moments at rest, over the sum of the forces.
+        to: displacement at which to stop [m], 1e-6 to 100; None goes on until nothing is borne any more.
         poses: how many steps go to it, 2 to 10000, or about as many to where nothing is borne any more.
 
     Returns:
@@ -369,10 +388,11 @@ def limit_curve(
     masonry.require_dry("limit_curve")
     poses = require_whole("poses", poses, 2, 10_000)
     given = _required(masonry, effects)
-    start = found = collapse_multiplier(masonry, direction, angle=angle, effects=given)
-    path = Path.of(masonry, horizontal(masonry, direction, angle))
+    push = partial(collapse_multiplier, masonry, direction, angle=angle, loads=loads, effects=given)
+    start = found = push()
+    path = Path.of(masonry, start)
     if to is None:
-        step = path.reach(start, given) / poses
+        step = path.reach(start, push) / poses
         to, most = math.inf, FARTHER * poses
     else:
         to, most = require_within("to", to, 1e-6, 100.0, "m"), poses
@@ -394,7 +414,7 @@ def limit_curve(
             ended = "lines close again and again"
             break
         try:
-            found = collapse_multiplier(masonry, direction, angle=angle, effects=given, pose=pose)
+            found = push(pose=pose)
         except UnbalancedError:
             ended = "another joint begins to open"
             break
@@ -429,45 +449,47 @@ class Path(NamedTuple):
 
     Args:
         masonry: the masonry.
-        way: unit vector of the force, shape (d,).
-        mass: of the free blocks, over that of all [-], shape (free,).
+        share: of the forces that grow on the free blocks, over the sum of their sizes, shape (free, nv).
         pair: numbers of the bodies of each line, -1 for a fixed one, shape (m, 2).
         size: extent of the free blocks [m].
     """
 
     masonry: Masonry
-    way: Array
-    mass: Array
+    share: Array
     pair: Integers
     size: float
 
     @classmethod
-    def of(cls, masonry: Masonry, way: Array) -> Path:
-        """That of masonry pushed along a unit vector."""
-        mass = np.array([masonry.blocks[i].mass for i in masonry.free])
+    def of(cls, masonry: Masonry, start: Collapse) -> Path:
+        """That of masonry pushed along a direction, or by the loads alone with which it begins to move."""
+        share = pushed(masonry, start.direction) if start.direction.any() else _forces(masonry, start.loads)
+        total = float(np.linalg.norm(share[:, : len(start.direction)], axis=1).sum())
+        if total == 0:
+            raise ValueError("loads are moments alone, along which nothing is displaced; give forces")
         corners = np.concatenate([masonry.blocks[i].corners for i in masonry.free])
         pair = free_numbers(masonry.blocks)[np.column_stack([masonry.lines.body, masonry.lines.face])]
-        return cls(masonry, way, mass / mass.sum(), pair, float(np.ptp(corners, axis=0).max()))
+        return cls(masonry, share / total, pair, float(np.ptp(corners, axis=0).max()))
 
     @property
     def rest(self) -> Array:
         """The pose at rest, shape (free, nq)."""
         freedom = SPACE if self.masonry.in_space else PLANE
-        return at_rest(len(self.mass), freedom).reshape(len(self.mass), -1)
+        return at_rest(len(self.share), freedom).reshape(len(self.share), -1)
 
     def gone(self, pose: Array) -> float:
-        """How far the centroid has gone along the way [m]."""
-        return float(self.mass @ pose[:, : len(self.way)] @ self.way)
+        """How far the forces that grow have gone along themselves [m]."""
+        turned = 2 * pose[:, 4:] if self.masonry.in_space else pose[:, 2:]
+        d = 3 if self.masonry.in_space else 2
+        return float((self.share * np.concatenate([pose[:, :d], turned], axis=1)).sum())
 
-    def reach(self, found: Collapse, effects: tuple[Effect, ...]) -> float:
-        """About how far the centroid goes until nothing is borne any more [m]: along the tangent of the curve at rest,
-        or the size of the masonry where it does not fall."""
+    def reach(self, found: Collapse, push: Callable[..., Collapse]) -> float:
+        """About how far it goes until nothing is borne any more [m]: along the tangent of the curve at rest, or the
+        size of the masonry where it does not fall."""
         if not found.moving:
             return self.size
         pose = self.further(self.rest, found, self.staying(self.rest, found), TANGENT * self.size)
-        direction = self.way[:2] if self.masonry.in_space else self.way[0]
         try:
-            after = collapse_multiplier(self.masonry, direction, effects=effects, pose=pose).multiplier
+            after = push(pose=pose).multiplier
         except ValueError:
             return self.size
         fall = (found.multiplier - after) / self.gone(pose)
@@ -477,7 +499,7 @@ class Path(NamedTuple):
         """Rates at which lines move apart in directions of their faces at rest, for unit velocities, (m, unknowns)."""
         lines, at = self.masonry.lines, moves.at(self.masonry.lines.body, self.masonry.lines.at)
         arms = at - moves.place[lines.body], at - moves.place[lines.face]
-        return rates_of(self.pair, arms, moves.turned(lines.face, directions), len(self.mass))
+        return rates_of(self.pair, arms, moves.turned(lines.face, directions), len(self.share))
 
     def staying(self, pose: Array, found: Collapse) -> Stay:
         """Which lines stay in a mechanism."""
@@ -500,8 +522,7 @@ class Path(NamedTuple):
 
     def further(self, pose: Array, found: Collapse, stay: Stay, step: float) -> Array:
         """The pose a step further [m], or up to where a line closes."""
-        shift = found.motion[:, : len(self.way)]
-        speed = float(self.mass @ shift @ self.way)
+        speed = float((self.share * found.motion).sum())
         low, high = 0.0, step / max(speed, ROUNDED)
         after = self.projected(pose, found.motion * high, stay)
         if not self.closes(pose, after, stay):

@@ -97,7 +97,8 @@ def load_check(result: Borne, demand: float | None = None) -> LoadCheck:
     """
     require_kind("result", result, *WHAT)
     if demand is None:
-        if not isinstance(result, Collapse) or result.direction.any():
+        start = result.start if isinstance(result, LimitCurve) else result
+        if not isinstance(start, Collapse) or start.direction.any():
             raise ValueError(
                 f"demand is missing: {result!r} is of a horizontal force or of an actuator; give the acceleration over "
                 "g [-] or the force [N] that is to be borne"
