@@ -6,11 +6,12 @@ TEST := .venv/.test
 DOCS := .venv/.docs
 OLDEST := .venv-oldest
 INSTALLED := out/installed
+CONTACTS := out/contacts
 
-.PHONY: demo docs test test-slow test-processors test-oldest test-installed mutants lint calibrate models figures robots clean stale
+.PHONY: demo docs test test-slow test-processors test-oldest test-installed test-contacts mutants lint calibrate models figures robots clean stale
 
 # Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
-test test-slow test-processors test-oldest test-installed mutants: export OPENBLAS_NUM_THREADS = 1
+test test-slow test-processors test-oldest test-installed test-contacts mutants: export OPENBLAS_NUM_THREADS = 1
 # Bytecode is stored: the processes that tests start then need not compile the package again, nor pytest rewrite its tests.
 test test-slow test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
@@ -50,6 +51,22 @@ test-installed:
 	cd $(INSTALLED) && venv/bin/python -m pip install --quiet --no-index --no-build-isolation --no-deps --force-reinstall \
 		files/mjrock-*.tar.gz
 	cd $(INSTALLED) && venv/bin/python -m pytest -n auto --ignore tests/house
+
+# The distribution mjcontacts: its wheel in fresh environments with the oldest and the newest MuJoCo, and its tests there.
+test-contacts:
+	rm -rf $(CONTACTS)
+	$(PYTHON) -m venv $(CONTACTS)/build
+	$(CONTACTS)/build/bin/python -m pip install --quiet --disable-pip-version-check 'hatchling>=1.27'
+	cd packaging/mjcontacts && ../../$(CONTACTS)/build/bin/python -m hatchling build -t wheel -d ../../$(CONTACTS)/files
+	mkdir $(CONTACTS)/tests
+	cp tests/contacts/*.py tests/pairs.py tests/everyday.py $(CONTACTS)/tests
+	sed -i.before -e 's/^import mjrock as mr$$/import mjcontacts as mr/' -e 's/mjrock\.contacts/mjcontacts/g' $(CONTACTS)/tests/*.py
+	cp packaging/mjcontacts/pyproject.toml $(CONTACTS)
+	for needs in 'mujoco==3.3.2 numpy==1.26.4' 'mujoco numpy'; do \
+		$(PYTHON) -m venv --clear $(CONTACTS)/venv && \
+		$(CONTACTS)/venv/bin/python -m pip install --quiet --disable-pip-version-check $$needs pytest $(CONTACTS)/files/*.whl && \
+		(cd $(CONTACTS) && venv/bin/python -m pytest tests) || exit 1; \
+	done
 
 lint: $(TEST)
 	$(BIN)/ruff check .

@@ -2,8 +2,18 @@
 
 import mujoco
 import numpy as np
+import pytest
 
 import mjrock as mr
+
+VERSION = tuple(int(part) for part in mujoco.__version__.split(".")[:2])
+"""Of MuJoCo."""
+
+
+def since(major, minor):
+    """The mark of a test for which older versions of MuJoCo lack something."""
+    return pytest.mark.skipif((major, minor) > VERSION, reason=f"MuJoCo {major}.{minor} or newer")
+
 
 FLOOR = '<geom name="floor" type="plane" size="5 5 .1"/>'
 BALL = '<body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1" mass="2"/></body>'

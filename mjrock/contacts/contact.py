@@ -29,7 +29,7 @@ from .notes import (
     uneven,
 )
 from .rebound import MOST_PULL, deepest, rebound_at, rebound_restitution
-from .row_of_model import HOLD, Mixed, ModelRow
+from .row_of_model import HOLD, WRITTEN, Mixed, ModelRow
 from .solref import inertia_of
 
 Attribute = str | float | tuple[float, ...]
@@ -227,8 +227,9 @@ class PairContact:
             ValueError: if one of the geoms has no name.
         """
         self._require_names()
-        names = "condim", "solref", "solimp", "margin", "gap", "adhesion", "solreffriction", "friction"
-        numbers = {name: getattr(self.of_pair, name) for name in names[: 8 if self.condim > 1 else 6]}
+        names = ["condim", "solref", "solimp", "margin", "gap", "adhesion"]
+        names += ["solreffriction", "friction"] if self.condim > 1 else []
+        numbers = {name: getattr(self.of_pair, name) for name in names if name in WRITTEN}
         return {"geom1": self.geom1, "geom2": self.geom2, **numbers}
 
     @property
@@ -250,7 +251,8 @@ class PairContact:
             return
         geoms = list(pair.geoms)
         model.geom_margin[geoms], model.geom_gap[geoms] = 0.0, 0.5 * self.gap
-        model.geom_adhesion[geoms] = 0.5 * self.adhesion
+        if "adhesion" in WRITTEN:
+            model.geom_adhesion[geoms] = 0.5 * self.adhesion
         model.geom_solref[geoms], model.geom_solimp[geoms] = self.solref, self.solimp
         model.geom_condim[geoms], model.geom_friction[geoms] = self.condim, self.friction[1:4]
         model.geom_priority[geoms] = model.geom_priority[geoms].max()

@@ -16,6 +16,7 @@ import numpy as np
 from .checks import Array, Integers, named, require_kind, require_within
 from .geoms import geom_label
 from .notes import ContactWarning
+from .versions import field
 
 FRICTION_ITERATIONS = 10
 """Most iterations for the friction in a step."""
@@ -197,7 +198,7 @@ class CoulombFriction:
 
     def _surface(self, data: mujoco.MjData) -> dict[int, Array]:
         """Velocity of the slip of each contact that its bodies do not have [m/s], that of its surfaces."""
-        if not self.model.geom_surfacevel.any():
+        if not field(self.model, "geom_surfacevel", self.model.ngeom).any():
             return {}
         number, owners, rows = self._pressing(data, -np.inf)
         moving = data.efc_vel[rows[:, None] + np.array((1, 2))] - self._tangents(data, number, owners) @ data.qvel

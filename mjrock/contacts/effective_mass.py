@@ -14,6 +14,7 @@ resists with up to the sum of |u| times that of each joint."""
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -22,6 +23,7 @@ import numpy as np
 
 from .checks import Array, Flags, Integers
 from .geoms import GeomPair
+from .versions import NO_DAMPERS, NO_SPRINGS, actuators, dense, field, stretches_of_tendons
 
 JOINT, TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
 Owner = tuple[mujoco.mjtObj, int]
@@ -51,11 +53,12 @@ class ModelSprings:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         servo_k, servo_c = _actuators(model, data)
+        count = actuators(model)
         tendons, spared = (_coefficients(model, f"tendon_{name}", model.ntendon) for name in ("stiffness", "damping"))
         stretch = np.vstack(
             [
-                _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv),
-                _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv),
+                stretches_of_tendons(model, data),
+                dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv),
             ]
         )
         low, high = model.tendon_lengthspring.reshape(-1, 2).T
@@ -63,13 +66,13 @@ class ModelSprings:
         drawn = length - np.clip(length, low, high)  # a range of lengths in which it is slack
         k = np.concatenate([_tangent(tendons, drawn), servo_k])
         geared = np.maximum(np.abs(model.actuator_gear[:, :1]), mujoco.mjMINVAL) ** np.arange(spared.shape[1])
-        own = _coefficients(model, "actuator_damping", model.nactuator) / geared  # of the speed before the gear
+        own = _coefficients(model, "actuator_damping", count) / geared  # of the speed before the gear
         own[:, 0] += servo_c
         c = np.vstack([spared, own])
         rubs = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
-        dry = np.concatenate([rubs * np.reshape(model.tendon_frictionloss, -1), np.zeros(model.nactuator)])
+        dry = np.concatenate([rubs * np.reshape(model.tendon_frictionloss, -1), np.zeros(count)])
         acts = (k != 0) | (c != 0).any(axis=1) | (dry > 0)
-        others = [(TENDON, i) for i in range(model.ntendon)] + [(ACTUATOR, i) for i in range(model.nactuator)]
+        others = [(TENDON, i) for i in range(model.ntendon)] + [(ACTUATOR, i) for i in range(count)]
         self.owners: list[Owner] = [(JOINT, i) for i in range(model.njnt)] + [others[i] for i in np.flatnonzero(acts)]
         self.joint_of = np.array(model.dof_jntid, dtype=np.int64)
         self.joint_k = _tangent(_coefficients(model, "jnt_stiffness", model.njnt), _strain(model, data))
@@ -98,9 +101,9 @@ class ModelSprings:
 
 def moved_or_sprung(model: mujoco.MjModel, data: mujoco.MjData) -> Flags:
     """Which degrees of freedom an actuator moves, or a spring of a joint or a tendon, shape (nv,)."""
-    strings = _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv)
+    strings = stretches_of_tendons(model, data)
     sprung = _coefficients(model, "tendon_stiffness", model.ntendon).any(axis=1)
-    drives = _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv)
+    drives = dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv)
     act = model.actuator_trntype != int(mujoco.mjtTrn.mjTRN_BODY)  # adhesion of a body
     act &= not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
     joints = (_coefficients(model, "jnt_stiffness", model.njnt)[model.dof_jntid] != 0).any(axis=1)
@@ -110,10 +113,14 @@ def moved_or_sprung(model: mujoco.MjModel, data: mujoco.MjData) -> Flags:
 def _coefficients(model: mujoco.MjModel, name: str, count: int) -> Array:
     """The linear coefficient of springs or dampers and those of higher order, shape (count, 3); zeros where a flag
     of the model disables them."""
-    flag = mujoco.mjtDisableBit.mjDSBL_DAMPER if "damping" in name else mujoco.mjtDisableBit.mjDSBL_SPRING
-    sizes = {"": 1, "poly": mujoco.mjNPOLY}
-    values = np.hstack([np.reshape(getattr(model, name + part), (count, size)) for part, size in sizes.items()])
-    return np.array(values * (not model.opt.disableflags & int(flag)))
+    values = np.hstack([field(model, name, count).reshape(count, 1), *_higher(model, name, count)])
+    return np.array(values * (not model.opt.disableflags & (NO_DAMPERS if "damping" in name else NO_SPRINGS)))
+
+
+def _higher(model: mujoco.MjModel, name: str, count: int) -> Iterator[Array]:
+    """The coefficients of higher order, shape (count, 2), where MuJoCo has them."""
+    if hasattr(mujoco, "mjNPOLY"):
+        yield np.reshape(getattr(model, f"{name}poly"), (count, mujoco.mjNPOLY))
 
 
 def _secant(coefficients: Array, size: Array) -> Array:
@@ -149,14 +156,6 @@ def _actuators(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, Array
 
 ACTUATOR_CHANGE = 1e-6
 """Change of the length and of the speed of an actuator at which its force is read [m or rad, and per second]."""
-
-
-def _dense(values: Array, count: Integers, start: Integers, columns: Integers, width: int) -> Array:
-    """A sparse matrix with all of its zeros."""
-    dense = np.zeros((len(count), width))
-    if dense.size:
-        mujoco.mju_sparse2dense(dense, np.ravel(values), count, start, np.ravel(columns))
-    return dense
 
 
 RIGID_CONSTRAINT = 5.0

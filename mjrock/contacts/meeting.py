@@ -16,6 +16,7 @@ import numpy as np
 from .checks import Array, Integers, is_iterable, require_array, require_whole, shown
 from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass, moved_or_sprung
 from .geoms import BOUNDLESS, FARTHEST_GEOM, NO_LOAD, GeomPair, makes
+from .versions import enable_bits, make_mass_matrix
 
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
@@ -47,7 +48,7 @@ class Trial:
         option, disabled = self.model.opt, mujoco.mjtDisableBit
         option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
         option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
-        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
+        option.enableflags &= ~enable_bits("SPECULATIVE")
         self.data = posed_alike(self.model, data)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
@@ -183,7 +184,7 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
         mujoco.mj_flex(model, data)
         mujoco.mj_tendon(model, data)
         mujoco.mj_transmission(model, data)
-        mujoco.mj_makeM(model, data)
+        make_mass_matrix(model, data)
         mujoco.mj_factorM(model, data)
         mujoco.mj_makeConstraint(model, data)
         mujoco.mj_fwdVelocity(model, data)
@@ -198,8 +199,8 @@ def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset
     stands, and what actuators give at the controls of the pose presses. No other joint is held: pads, trailers and
     rockers on joints that turn freely find their balance.
     """
-    held, option = copy.copy(model), mujoco.mjtEnableBit
-    held.opt.enableflags = int(held.opt.enableflags & ~int(option.mjENBL_SPECULATIVE) | int(option.mjENBL_OVERRIDE))
+    held = copy.copy(model)
+    held.opt.enableflags = held.opt.enableflags & ~enable_bits("SPECULATIVE") | enable_bits("OVERRIDE")
     held.opt.o_solref[:], held.opt.o_solimp[:3], held.opt.o_margin = 0, (0.9999, 0.9999, 0.001), TOUCHING_AT_REST
     held.opt.solver, held.opt.cone = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtCone.mjCONE_ELLIPTIC
     held.opt.iterations, held.opt.ls_iterations, held.opt.tolerance = 100, 50, 0.0
@@ -234,7 +235,7 @@ class Pose:
     """
 
     def __init__(self, model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> None:
-        sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # MuJoCo makes no constraints of bodies that begin asleep
+        sleep = enable_bits("SLEEP")  # MuJoCo makes no constraints of bodies that begin asleep
         if model.opt.enableflags & sleep:
             model = copy.copy(model)
             model.opt.enableflags &= ~sleep

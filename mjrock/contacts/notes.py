@@ -20,6 +20,7 @@ from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, effective_ma
 from .geoms import FACING, GeomPair
 from .meeting import TOUCHING_AT_REST, PairMeeting, Pose, keyframe_names, meeting_of_geoms
 from .rebound import rebound_at, rebound_restitution
+from .versions import BOXES_HALF_AS_DEEP, DISABLE, ENABLE, disable_bits, give_several_points, has_several_points
 
 SCATTER_WARNED_OF = 0.02
 """Scatter of the restitution from step to step that is worth a warning [-]."""
@@ -38,33 +39,32 @@ IMMOVABLE = 10.0
 TURN = 0.01
 """Turn about the normal with which the points of two faces are counted again [degrees]."""
 CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
-ENABLE, DISABLE = mujoco.mjtEnableBit, mujoco.mjtDisableBit
-JUDGED: dict[mujoco.mjtEnableBit | mujoco.mjtDisableBit, str] = {
-    ENABLE.mjENBL_OVERRIDE: "the override flag is set, so that o_solref and o_solimp take the place of the solref and "
+JUDGED = {
+    "ENBL_OVERRIDE": "the override flag is set, so that o_solref and o_solimp take the place of the solref and "
     "solimp of every contact",
-    ENABLE.mjENBL_DIAGEXACT: "the diagexact flag is set, with which the stiffness of a contact changes with the pose",
-    ENABLE.mjENBL_SLEEP: "the sleep flag is set, with which the contacts of bodies at rest vanish",
-    ENABLE.mjENBL_SPECULATIVE: "the speculative flag is set, with which a contact stops a fast body before it touches, "
+    "ENBL_DIAGEXACT": "the diagexact flag is set, with which the stiffness of a contact changes with the pose",
+    "ENBL_SLEEP": "the sleep flag is set, with which the contacts of bodies at rest vanish",
+    "ENBL_SPECULATIVE": "the speculative flag is set, with which a contact stops a fast body before it touches, "
     "and takes its rebound",
-    DISABLE.mjDSBL_CONTACT: "contacts are disabled",
-    DISABLE.mjDSBL_CONSTRAINT: "constraints are disabled, and contacts with them",
+    "DSBL_CONTACT": "contacts are disabled",
+    "DSBL_CONSTRAINT": "constraints are disabled, and contacts with them",
     **dict.fromkeys(
         (
             # what is reported, and how inverse dynamics read it
-            *(ENABLE.mjENBL_ENERGY, ENABLE.mjENBL_FWDINV, ENABLE.mjENBL_INVDISCRETE, DISABLE.mjDSBL_SENSOR),
+            *("ENBL_ENERGY", "ENBL_FWDINV", "ENBL_INVDISCRETE", "DSBL_SENSOR"),
             # contacts of flexes under `discrete`, which is warned of
-            ENABLE.mjENBL_IPC,
+            "ENBL_IPC",
             # what holds the bodies besides: the pose is computed with these flags
-            *(DISABLE.mjDSBL_EQUALITY, DISABLE.mjDSBL_FRICTIONLOSS, DISABLE.mjDSBL_LIMIT, DISABLE.mjDSBL_SPRING),
-            *(DISABLE.mjDSBL_DAMPER, DISABLE.mjDSBL_GRAVITY, DISABLE.mjDSBL_ACTUATION, DISABLE.mjDSBL_CLAMPCTRL),
+            *("DSBL_EQUALITY", "DSBL_FRICTIONLOSS", "DSBL_LIMIT", "DSBL_SPRING", "DSBL_DAMPER", "DSBL_PASSIVE"),
+            *("DSBL_GRAVITY", "DSBL_ACTUATION", "DSBL_CLAMPCTRL"),
             # time constants of MuJoCo's other format
-            DISABLE.mjDSBL_REFSAFE,
+            "DSBL_REFSAFE",
             # which geoms meet, and in how many points: the trial landing is made with these flags
-            *(DISABLE.mjDSBL_FILTERPARENT, DISABLE.mjDSBL_MIDPHASE, DISABLE.mjDSBL_NATIVECCD, DISABLE.mjDSBL_MULTICCD),
+            *("DSBL_FILTERPARENT", "DSBL_MIDPHASE", "DSBL_NATIVECCD", "DSBL_MULTICCD", "ENBL_MULTICCD"),
             # how the solver begins, and whether it is split: the trial of the solver is made with these flags
-            *(DISABLE.mjDSBL_WARMSTART, DISABLE.mjDSBL_ISLAND),
+            *("DSBL_WARMSTART", "DSBL_ISLAND", "ENBL_ISLAND"),
             # damping of joints in the step, and a state that is no longer finite
-            *(DISABLE.mjDSBL_EULERDAMP, DISABLE.mjDSBL_AUTORESET),
+            *("DSBL_EULERDAMP", "DSBL_AUTORESET"),
         ),
         "",
     ),
@@ -90,15 +90,20 @@ class ContactWarning(UserWarning):
 def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
     """Effects of the options of a model on every contact, one sentence each."""
     option = model.opt
-    if option.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE:
+    if option.integrator == getattr(mujoco.mjtIntegrator, "mjINT_DISCRETE", None):
         yield (
             "the integrator `discrete` takes energy from every contact, as much as a damping ratio of omega h / 2; "
-            "take Euler, implicitfast or RK4" + ("" if option.disableflags & int(DISABLE.mjDSBL_REFSAFE) else SAFE)
+            "take Euler, implicitfast or RK4" + ("" if option.disableflags & disable_bits("REFSAFE") else SAFE)
         )
     for bits, kind in ((int(option.enableflags), ENABLE), (int(option.disableflags), DISABLE)):
-        known = {int(flag): text for flag, text in JUDGED.items() if isinstance(flag, kind)}
+        known = {
+            int(flag): JUDGED.get(name.removeprefix("mj")) for name, flag in kind.__members__.items() if "_" in name
+        }
         for bit in (1 << i for i in range(bits.bit_length()) if bits >> i & 1):
-            if text := known.get(bit, f"{kind.__name__} {bit} is set, and its effect on contacts is not known here"):
+            text = known.get(bit)
+            if text is None:
+                yield f"{kind.__name__} {bit} is set, and its effect on contacts is not known here"
+            elif text:
                 yield text
 
 
@@ -236,12 +241,17 @@ def shape_spoilers(pair: GeomPair, pose: Pose) -> Iterator[str]:
                 "MuJoCo throws a cylinder that stands on a plane and turns about its axis: by rounding it finds "
                 "contact points up to the radius deep; take a box in place of the plane"
             )
-    flag = int(DISABLE.mjDSBL_MULTICCD)
-    if len(here.first) == 1 and pair.makes_several_points and model.opt.disableflags & flag:
+    if BOXES_HALF_AS_DEEP and kinds == [mujoco.mjtGeom.mjGEOM_BOX] * 2:
+        yield (
+            "MuJoCo before 3.4 finds two boxes half as deep as they are, so that their contact is half as stiff; "
+            "take a newer MuJoCo"
+        )
+    if len(here.first) == 1 and pair.makes_several_points and not has_several_points(model.opt):
         option = pose.ground.model.opt
-        option.disableflags &= ~flag
+        flags = option.disableflags, option.enableflags
+        give_several_points(option)
         found = len(pose.ground.points(pair, here.away, here.distance))
-        option.disableflags |= flag
+        option.disableflags, option.enableflags = flags
         if found > 1:
             yield (
                 f"the two faces meet in one point, where the multiccd flag gives them {found}: a face on one point has "

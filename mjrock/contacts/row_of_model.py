@@ -24,6 +24,7 @@ import numpy as np
 from .checks import Array, is_iterable, require_within, shown
 from .geoms import GeomPair
 from .solref import IMPEDANCE_RANGE
+from .versions import GAP_IS_BEYOND, MARGINS_ADD_UP, field
 
 HOLD = 1e7
 """Rate with which friction holds [1/s]: a load F creeps at F / (HOLD m), a body on a slope at less than 1e-6 m/s."""
@@ -67,9 +68,8 @@ class Mixed:
                 tuple(model.pair_solreffriction[i].tolist()),
                 tuple(model.pair_friction[i].tolist()),
                 int(model.pair_dim[i]),
-                float(model.pair_margin[i]),
-                float(model.pair_gap[i]),
-                float(model.pair_adhesion[i]),
+                *_reach(model.pair_margin[i], model.pair_gap[i]),
+                float(field(model, "pair_adhesion", model.npair)[i]),
             )
         return cls.of_sides(model, [("geom", geom) for geom in pair.geoms])
 
@@ -90,29 +90,30 @@ class Mixed:
             weight = np.where(tiny.all(), 0.5, np.where(tiny.any(), ~tiny, solmix / max(solmix.sum(), mujoco.mjMINVAL)))
         solref, averaged = own("solref")[deciding], weight @ own("solref")
         sliding, torsional, rolling = own("friction")[deciding].max(axis=0).tolist()
-        pulls = [
-            model.geom_adhesion[number] for kind, number in np.array(sides, dtype=object)[deciding] if kind == "geom"
-        ]
+        pulls = field(model, "geom_adhesion", model.ngeom)
+        pulling = [pulls[number] for kind, number in np.array(sides, dtype=object)[deciding] if kind == "geom"]
+        together = np.sum if MARGINS_ADD_UP else np.max
         return cls(
             tuple((averaged if (solref[:, 0] > 0).all() else solref.min(axis=0)).tolist()),
             tuple((weight @ own("solimp")).tolist()),
             (0.0, 0.0),
             (sliding, sliding, torsional, rolling, rolling),
             int(own("condim")[deciding].max()),
-            float(own("margin").sum()),
-            float(own("gap").sum()),
-            float(sum(pulls)),
+            *_reach(together(own("margin")), together(own("gap"))),
+            float(sum(pulling)),
         )
 
     def write(self, model: mujoco.MjModel, pair: int) -> None:
         """Write the numbers into an explicit pair of a compiled model, by its number."""
         for name, value in vars(self).items():
-            getattr(model, "pair_dim" if name == "condim" else f"pair_{name}")[pair] = value
+            if name in WRITTEN:
+                getattr(model, "pair_dim" if name == "condim" else f"pair_{name}")[pair] = value
 
     def write_spec(self, pair: mujoco.MjsPair) -> None:
         """Write the numbers into an explicit pair of a specification."""
         for name, value in vars(self).items():
-            setattr(pair, name, value)
+            if name in WRITTEN:
+                setattr(pair, name, value)
 
     @property
     def sliding(self) -> float:
@@ -127,6 +128,15 @@ class Mixed:
         """
         mu = max(self.friction[0], mujoco.mjMINMU)
         return (self.condim - 1) * impratio / (mu**2 * (1 + mu**2))
+
+
+WRITTEN = tuple(name for name in Mixed.__annotations__ if hasattr(mujoco.MjsPair, name))
+"""Attributes of an explicit pair that MuJoCo has."""
+
+
+def _reach(margin: float, gap: float) -> tuple[float, float]:
+    """The distance from which a contact acts, and that from there on up to which it pulls [m]."""
+    return (float(margin), float(gap)) if GAP_IS_BEYOND else (float(margin - gap), 0.0)
 
 
 class Grip(NamedTuple):

@@ -5,7 +5,7 @@ import copy
 import mujoco
 import numpy as np
 import pytest
-from pairs import FLOOR, scene
+from pairs import FLOOR, scene, since
 
 import mjrock as mr
 
@@ -150,7 +150,8 @@ def test_what_cannot_be_is_refused():
 
 def pushed(kinetic, *, speed=0.0, push=0.0, belt=0.0, condim=3, duration=0.3):
     """Speed of a box of 2 kg on a floor or a belt after a while."""
-    floor = f'<geom name="floor" type="box" size="9 9 .1" pos="0 0 -.1" surfacevel="{belt} 0 0 0 0 0"/>'
+    moves = f'surfacevel="{belt} 0 0 0 0 0"' if belt else ""
+    floor = f'<geom name="floor" type="box" size="9 9 .1" pos="0 0 -.1" {moves}/>'
     box = BOX.replace("mass=", f'condim="{condim}" mass=')
     spec = mujoco.MjSpec.from_string(scene(floor, box, timestep=1e-3, gravity=G))
     mr.contact_for(spec, "box", "floor", k=K / 4, xi=0.5, friction=MU).apply(spec)
@@ -164,12 +165,14 @@ def pushed(kinetic, *, speed=0.0, push=0.0, belt=0.0, condim=3, duration=0.3):
     return float(data.qvel[0])
 
 
+@since(3, 11)
 def test_a_belt_carries_along():
     """A crate that is put on it gains mu g t, until it has the speed of the belt."""
     assert pushed(1.0, belt=2.0) == pytest.approx(MU * G * 0.3, rel=1e-3)
     assert pushed(1.0, belt=0.5) == pytest.approx(0.5, rel=1e-3)
 
 
+@since(3, 4)
 def test_static_friction_is_above_kinetic_friction():
     """7 N do not move what mu m g = 7.85 N hold. Once it slides, half of that slows it by less than they push."""
     assert abs(pushed(0.5, push=7.0)) < 1e-5

@@ -3,11 +3,10 @@
 import mujoco
 import numpy as np
 import pytest
-from pairs import FLAT_BOX, ON_A_PLANE, made_for
+from pairs import FLAT_BOX, ON_A_PLANE, made_for, since
 
 import mjrock as mr
 from mjrock.contacts.effective_mass import _slipping
-from scripts.models import inspect_contacts as script
 
 MODEL = """<mujoco><option timestep="{h}" cone="{cone}" impratio="{impratio}" gravity="0 0 0"><flag {flags}/></option>
 <worldbody><geom name="floor" type="plane" size="5 5 .1" {floor}/>
@@ -223,11 +222,13 @@ def test_a_contact_without_an_approach_has_no_restitution():
 @pytest.mark.parametrize(
     ("changed", "complaint"),
     [
-        ({"ball": 'margin=".01"', "floor": 'margin=".02"'}, "begins at a distance of 0.03 m"),
-        ({"ball": 'adhesion="3"'}, "pulls with up to 3 N"),
+        pytest.param(
+            *({"ball": 'margin=".01"', "floor": 'margin=".02"'}, "begins at a distance of 0.03 m"), marks=since(3, 9)
+        ),
+        pytest.param(*({"ball": 'adhesion="3"'}, "pulls with up to 3 N"), marks=since(3, 11)),
         ({}, "impratio = 1 is small"),
         ({"cone": "pyramidal"}, "the cone is pyramidal"),
-        ({"flags": 'diagexact="enable"'}, "diagexact"),
+        pytest.param(*({"flags": 'diagexact="enable"'}, "diagexact"), marks=since(3, 9)),
     ],
 )
 def test_its_notes(changed, complaint):
@@ -240,24 +241,6 @@ def test_the_override_takes_the_place_of_every_contact():
     model.opt.o_solref[:2], model.opt.o_solimp[:3] = (-1e4, -10), (0.5, 0.5, 0.001)
     (found,) = mr.inspect_contacts(model)
     assert (found.k, found.c) == (pytest.approx(1e4 / 0.25 * 0.25 / 0.5 * 2 / 0.5 * 0.5), pytest.approx(10 / 0.5 * 2))
-
-
-def test_the_script_prints_the_table(tmp_path, capsys):
-    path = tmp_path / "model.xml"
-    path.write_text(MODEL.format(h=1e-5, cone="pyramidal", impratio=1, flags="", floor="", ball="", pair=""))
-    script.main([str(path), "--out", str(tmp_path / "out")])
-    printed = capsys.readouterr().out
-    assert printed == (tmp_path / "out" / "inspect_contacts.txt").read_text()
-    assert "floor  ball  geoms  4.488e+04  4.488e+04       1895          2" in printed
-    assert "2: the cone is pyramidal" in printed
-    path.write_text(path.read_text().replace('size=".1" mass', 'type="box" size=".1 .1 .1" mass'))
-    script.main([str(path), "--contacts", "1", "--out", str(tmp_path / "out")])
-    assert "xi and e are those of a single one" in capsys.readouterr().out
-    path.write_text("<mujoco/>")
-    script.main([str(path), "--out", str(tmp_path / "out")])
-    assert "no contact" in capsys.readouterr().out
-    with pytest.raises(FileNotFoundError, match="is not a file"):
-        script.main([str(tmp_path / "none.xml")])
 
 
 @pytest.mark.parametrize("height", [0.3, 0.7])

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import mujoco
 import pytest
-from pairs import FLOOR, scene
+from pairs import FLOOR, scene, since
 
 import mjrock as mr
 
@@ -129,6 +129,7 @@ def test_a_foot_lands_on_whatever_lies_below(ground, kind, points, x):
         assert {contact.contacts for contact in contacts} == {points}
 
 
+@since(3, 4)
 def test_a_foot_across_a_seam_of_tiles_is_twice_as_stiff():
     """It has the points of both tiles, as docs/contacts_in_your_model.md says."""
     depths = []
@@ -167,6 +168,7 @@ def faces(low, high, joint="<freejoint/>", size=0.1):
     <geom name="high" {upper} mass="10"/></body></worldbody></mujoco>""")
 
 
+@since(4, 0)
 def test_a_turn_that_gives_faces_more_points_is_told_with_both_stiffnesses():
     """The static depth m g / (k points) of the turned box says that the second number is right."""
     spec = faces("box", "box")
@@ -189,6 +191,7 @@ def depth(model, degrees):
     return 0.1 - data.qpos[2]
 
 
+@since(3, 8)
 @pytest.mark.parametrize(
     "spec",
     [
@@ -203,6 +206,7 @@ def test_faces_that_keep_their_points_are_not_told_of(spec):
     mr.contact_for(spec, "high", "low", k=2.5e4, xi=1.0, friction=0.6)
 
 
+@since(4, 0)
 def test_meshes_are_a_tenth_softer_when_they_are_turned():
     """Four of the eight corners of the common face are kept, and they are not those of a square."""
     mr.contact_for(spec := faces("mesh", "mesh"), "high", "low", k=2.5e4, xi=1.0, friction=0.6).apply(spec)
@@ -232,6 +236,7 @@ def test_a_ring_of_signed_distances_is_right_on_a_plane_and_uneven_on_a_box():
         assert data.qvel[2] == pytest.approx(e, abs=0.02)
 
 
+@since(4, 0)
 @pytest.mark.parametrize("high", ["box", "mesh"])
 @pytest.mark.parametrize(("degrees", "of_the_face_above"), [(1, True), (5, True), (5.5, False), (8, False)])
 def test_the_normal_of_a_mesh_is_that_of_the_second_face_within_five_degrees(high, degrees, of_the_face_above):

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
-from pairs import FLOOR, scene
+from pairs import FLOOR, scene, since
 
 import mjrock as mr
 from mjrock.contacts import geoms
@@ -57,6 +57,7 @@ def _with_impratio(model, contacts, value):
     return contacts.caveats(model)[0]
 
 
+@since(3, 13)
 def test_a_sentence_is_said_once():
     spec = mujoco.MjSpec.from_string(ROBOT)
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE

@@ -7,7 +7,7 @@ import warnings
 import mujoco
 import numpy as np
 import pytest
-from pairs import BALL, FLOOR, scene
+from pairs import BALL, FLOOR, scene, since
 
 import mjrock as mr
 from mjrock.contacts.geoms import GeomPair
@@ -40,6 +40,7 @@ def dropped(solver, gap):
     return mujoco.MjSpec.from_string(scene(FLOOR, *boxes, timestep=5e-4, gravity=9.81, options=f'solver="{solver}"'))
 
 
+@since(4, 0)
 @pytest.mark.parametrize("timestep", [2e-3, 1e-4])
 def test_few_iterations_are_named_at_any_height(timestep):
     """50 steps of free fall are 49 mm at 2 ms and .12 mm at .1 ms; the feet are found from much higher."""

@@ -8,10 +8,11 @@ import sys
 import mujoco
 import numpy as np
 import pytest
-from pairs import FLOOR, scene
+from pairs import BALL, FLOOR, scene
 
 import mjrock as mr
 from mjrock.__main__ import main
+from scripts.models import inspect_contacts as script
 
 FEET = "".join(
     f'<body name="leg{i}" pos="{i} 0 1"><freejoint/><geom size=".1" mass="{i + 1}"/></body>' for i in range(9)
@@ -131,3 +132,21 @@ def test_nobody_reads_on(model):
     with os.fdopen(write, "wb") as pipe:
         done = subprocess.run(command, stdout=pipe, stderr=subprocess.PIPE, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
+
+
+def test_the_script_prints_the_table(tmp_path, capsys):
+    path = tmp_path / "model.xml"
+    path.write_text(scene(FLOOR, BALL, timestep=1e-5, options='cone="pyramidal" impratio="1"'))
+    script.main([str(path), "--out", str(tmp_path / "out")])
+    printed = capsys.readouterr().out
+    assert printed == (tmp_path / "out" / "inspect_contacts.txt").read_text()
+    assert "floor  ball  geoms  4.488e+04  4.488e+04       1895          2" in printed
+    assert "2: the cone is pyramidal" in printed
+    path.write_text(path.read_text().replace('size=".1" mass', 'type="box" size=".1 .1 .1" mass'))
+    script.main([str(path), "--contacts", "1", "--out", str(tmp_path / "out")])
+    assert "xi and e are those of a single one" in capsys.readouterr().out
+    path.write_text("<mujoco/>")
+    script.main([str(path), "--out", str(tmp_path / "out")])
+    assert "no contact" in capsys.readouterr().out
+    with pytest.raises(FileNotFoundError, match="is not a file"):
+        script.main([str(tmp_path / "none.xml")])
