@@ -17,12 +17,12 @@ import numpy as np
 
 from .checks import Array, Integers
 
-VERSION = tuple(int(part) for part in mujoco.__version__.split(".")[:2])
+MAJOR_MINOR = tuple(int(part) for part in mujoco.__version__.split(".")[:2])
 """The version: major and minor."""
 DISABLE, ENABLE = mujoco.mjtDisableBit, mujoco.mjtEnableBit
-BOXES_HALF_AS_DEEP = VERSION < (3, 4)
-MARGINS_ADD_UP = VERSION >= (3, 5)
-GAP_IS_BEYOND = VERSION >= (3, 9)
+BOXES_HALF_AS_DEEP = MAJOR_MINOR < (3, 4)
+MARGINS_ADD_UP = MAJOR_MINOR >= (3, 5)
+GAP_IS_BEYOND = MAJOR_MINOR >= (3, 9)
 make_mass_matrix: Callable[[mujoco.MjModel, mujoco.MjData], None] = getattr(mujoco, "mj_makeM", mujoco.mj_crb)
 
 
