@@ -20,6 +20,9 @@ from .interrupts import interrupts_held_back
 
 if TYPE_CHECKING:
     from . import plotting as plotting
+    from .assessment.assessment import Assessment, from_toml
+    from .assessment.schema import toml_schema
+    from .assessment.tables import AssessmentError
     from .contacts.contact import PairContact, PairContacts
     from .contacts.coulomb import CoulombFriction
     from .contacts.inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
@@ -113,26 +116,27 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
-    "Analysis", "Block", "Bond", "Capacity", "Case", "Code", "CodeSpectrum", "Collapse", "Comparison", "Compound",
-    "ContactParameters", "ContactWarning", "Contacts", "Corner", "CoulombFriction", "Damper", "DampingLaw", "Design",
-    "Dry", "DynamicCheck", "EarthPressure", "Fill", "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper",
-    "Gable", "Grid", "GroundMotion", "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface",
-    "Island", "Joint", "Ledger", "LimitCurve", "Load", "LoadCheck", "ManyContactParameters", "Masonry",
-    "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar",
-    "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon",
-    "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response", "ResponseSpectrum", "Restitution", "RigidImpact",
-    "RockingSpectrum", "ScatteredRestitution", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint",
-    "StiffnessRange", "Store", "Thresholds", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__", "as_theory",
+    "Analysis", "Assessment", "AssessmentError", "Block", "Bond", "Capacity", "Case", "Code", "CodeSpectrum",
+    "Collapse", "Comparison", "Compound", "ContactParameters", "ContactWarning", "Contacts", "Corner",
+    "CoulombFriction", "Damper", "DampingLaw", "Design", "Dry", "DynamicCheck", "EarthPressure", "Fill",
+    "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion",
+    "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface", "Island", "Joint", "Ledger",
+    "LimitCurve", "Load", "LoadCheck", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
+    "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome",
+    "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw",
+    "Push", "RecordSet", "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum",
+    "ScatteredRestitution", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange",
+    "Store", "Thresholds", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__", "as_theory",
     "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "components_in",
     "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "design",
-    "dynamic_check", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
+    "dynamic_check", "fit_capacities", "fit_fragility", "from_toml", "hertz_stiffness", "ida", "inspect_contacts",
     "inspect_flexes", "joint_stiffness", "layered_stiffness", "limit_curve", "load_check", "lost", "masonry_mjcf",
     "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
     "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
     "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
     "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
     "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_anchor",
-    "strengths_of_bar", "thresholds", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "strengths_of_bar", "thresholds", "toml_schema", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 HOME = homes(__file__)

@@ -22,6 +22,7 @@ from .contacts.checks import (
     P,
     Result,
     Within,
+    alternatives,
     brief,
     declared,
     is_iterable,

@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 import inspect
+import math
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields
 from functools import cache, wraps
 from numbers import Real as RealNumber
-from typing import Annotated, Any, NamedTuple, ParamSpec, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
+from types import UnionType
+from typing import (
+    Annotated,
+    Any,
+    NamedTuple,
+    ParamSpec,
+    TypeGuard,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,6 +147,7 @@ class Within(NamedTuple):
         unit: of the number.
         name: what messages call it; the name of the field where it is empty.
         whole: whether it is a whole number.
+        infinite: whether it may be infinite too.
     """
 
     low: float
@@ -141,38 +155,94 @@ class Within(NamedTuple):
     unit: str = ""
     name: str = ""
     whole: bool = False
+    infinite: bool = False
 
     def checked(self, name: str, value: object) -> float:
         """The value as a float or an integer; raises as `require_within` and `require_whole`."""
+        if self.infinite and value == math.inf:
+            return math.inf
         if self.whole:
             return require_whole(name, value, int(self.low), int(self.high))
         return require_within(name, value, self.low, self.high, self.unit)
 
 
+def alternatives(hint: object) -> tuple[object, ...]:
+    """The types that a value of a hint may be of, one by one."""
+    origin, of = get_origin(hint), get_args(hint)
+    if origin is Annotated:
+        return alternatives(of[0])
+    if isinstance(hint, TypeVar):
+        return alternatives(hint.__bound__) if hint.__bound__ else hint.__constraints__
+    if origin in (Union, UnionType):
+        return tuple(one for each in of for one in alternatives(each))
+    return (hint,)
+
+
+class Declared(NamedTuple):
+    """What is declared of a field or an argument.
+
+    Args:
+        within: the range of its number, or of each of several.
+        optional: whether it may be None.
+        several: whether it may be a row of numbers.
+        computed: whether it may be a function that gives the number.
+    """
+
+    within: Within
+    optional: bool
+    several: bool = False
+    computed: bool = False
+
+    @classmethod
+    def of(cls, hint: object) -> Declared | None:
+        """What an annotation declares; None without a range."""
+        within = next((one for one in getattr(hint, "__metadata__", ()) if isinstance(one, Within)), None)
+        if within is None:
+            return None
+        kinds = alternatives(hint)
+        computed = [kind for kind in kinds if get_origin(kind) is Callable]
+        plain = [kind for kind in kinds if kind in (float, int, type(None))]
+        return cls(within, type(None) in kinds, len(plain) + len(computed) < len(kinds), bool(computed))
+
+    def checked(self, name: str, value: Any) -> Any:
+        """The value, a number as a float or an integer.
+
+        Raises:
+            TypeError, ValueError: with the name, for a number outside the range, or what is none.
+        """
+        if (value is None and self.optional) or (self.computed and callable(value)):
+            return value
+        if self.several and not isinstance(value, RealNumber):
+            for each in require_reals(name, value, "a number or a row of them").ravel().tolist():
+                self.within.checked(name, each)
+            return value
+        return self.within.checked(name, value)
+
+
 @cache
-def declared(kind: Callable[..., object]) -> dict[str, tuple[Within, bool]]:
-    """The range of each field of a class, or argument of a function, that declares one, and whether it may be None."""
+def declared(kind: Callable[..., object]) -> dict[str, Declared]:
+    """What each field of a class, or argument of a function, declares that has a range."""
     hints = get_type_hints(kind, include_extras=True)
-    notes = {name: get_args(hint) for name, hint in hints.items() if get_origin(hint) is Annotated}
-    return {name: (note[1], type(None) in get_args(note[0])) for name, note in notes.items()}
+    found = {name: Declared.of(hint) for name, hint in hints.items()}
+    return {name: one for name, one in found.items() if one is not None}
 
 
-def keep_declared(instance: object, owner: str = "") -> None:
+def keep_declared(instance: object, owner: str = "", but: Collection[str] = ()) -> None:
     """Check and keep the fields of a frozen dataclass that declare a range, while it is made.
 
     Args:
         instance: the dataclass.
         owner: the thing that messages name as the owner of the number, as in "length of the tie".
+        but: fields that are left as they are.
 
     Raises:
         TypeError, ValueError: with the name, the value and the range, as `require_within`.
     """
     kind: Callable[..., object] = type(instance)
-    for field, (within, optional) in declared(kind).items():
-        value = getattr(instance, field)
-        if value is not None or not optional:
-            name = within.name or (f"{field} of the {owner}" if owner else field)
-            keep(instance, **{field: within.checked(name, value)})
+    for field, one in declared(kind).items():
+        if field not in but:
+            name = one.within.name or (f"{field} of the {owner}" if owner else field)
+            keep(instance, **{field: one.checked(name, getattr(instance, field))})
 
 
 def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
@@ -186,9 +256,9 @@ def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
             bound = parameters.bind(*given, **options)
         except TypeError:
             return function(*given, **options)  # whose error names what is missing or too much
-        for name, (within, optional) in declared(function).items():
-            if name in bound.arguments and not (optional and bound.arguments[name] is None):
-                bound.arguments[name] = within.checked(within.name or name, bound.arguments[name])
+        for name, one in declared(function).items():
+            if name in bound.arguments:
+                bound.arguments[name] = one.checked(one.within.name or name, bound.arguments[name])
         return function(*bound.args, **bound.kwargs)
 
     return with_checked

@@ -322,7 +322,7 @@ def described(effect: Told, words: Words) -> str:
     if not words.or_else(f"effect_{effect.label}", ""):
         return effect.said.replace("\n", " ")
     kind: Any = type(effect)  # mypy takes a class for a thing without a hash
-    units = {name: "" if within.whole else within.unit for name, (within, _) in declared(kind).items()}
+    units = {name: "" if one.within.whole else one.within.unit for name, one in declared(kind).items()}
     units["strength"] = "N"
     said = []
     for field in dataclasses.fields(kind):

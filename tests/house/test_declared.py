@@ -34,7 +34,8 @@ def of_argument(kind, name):
 
 def faults(kind):
     """The declared numbers of a class or function whose docstring lacks or contradicts their range or unit."""
-    for name, (within, _) in declared(kind).items():
+    for name, one in declared(kind).items():
+        within = one.within
         text = of_argument(kind, name)
         ranges = [(float(low), float(high)) for low, high in re.findall(rf"({NUMBER}) to ({NUMBER})", text)]
         if re.search(r"(as|those) of `", text):

@@ -565,7 +565,7 @@ def test_ten_thousand_calls(call):
 
 
 def test_every_public_entry_is_tried():
-    """What is not called here is made by a solver, or tested with the campaigns, the records and the reports."""
+    """What is not called here is made by a solver, or tested with the campaigns, records, reports and files."""
     elsewhere = {
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
@@ -577,6 +577,7 @@ def test_every_public_entry_is_tried():
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "LimitCurve", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",
         "records_in", "RecordSet", "components_in", "LoadCheck",
+        "Assessment", "AssessmentError", "from_toml", "toml_schema",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

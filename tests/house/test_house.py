@@ -29,6 +29,7 @@ FLOORS = (
     ("study",),
     ("plotting",),
     ("reporting",),
+    ("assessment",),
     ("commands",),
     ("__main__",),
 )

@@ -213,7 +213,8 @@ def test_the_examples_are_a_numbered_course_of_twenty():
 
 def test_every_public_name_is_in_the_reference():
     reference = "\n".join(page.read_text(encoding="utf-8") for page in sorted((DOCS / "api").glob("*.md")))
-    listed = re.findall(r"^\.\. auto(?:class|function|data):: mjrock\.(?:[a-z]+\.)*(\w+)$", reference, re.MULTILINE)
+    entry = r"^\.\. auto(?:class|function|data|exception):: mjrock\.(?:[a-z]+\.)*(\w+)$"
+    listed = re.findall(entry, reference, re.MULTILINE)
     assert {name for name in mr.__all__ if not name.startswith("_")} <= set(listed)
 
 

@@ -35,7 +35,15 @@ from ...quantities import (
     within_ranges,
 )
 from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
-from .oscillator import building_modes, oscillator_steps, total_acceleration
+from .oscillator import (
+    BuildingDamping,
+    ModePeriod,
+    ModeShape,
+    Participation,
+    building_modes,
+    oscillator_steps,
+    total_acceleration,
+)
 from .records import COARSEST, FINEST, Parse, Trace, Wanted, checked_record, read, table_traces, text_lines
 
 SUSPICIOUS = 3 * GRAVITY
@@ -293,7 +301,12 @@ class GroundMotion:
         return GroundMotion(accel, self.dt, ", ".join([self.name, *done]), self.header)
 
     def through_building(
-        self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
+        self,
+        period: ModePeriod,
+        damping: BuildingDamping = 0.05,
+        *,
+        participation: Participation = 1.0,
+        height: ModeShape = 1.0,
     ) -> GroundMotion:
         """The motion of a floor of a building that vibrates in one or some modes.
 

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple, get_args
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, require_reals, require_row, require_within
+from ...quantities import Array, Within, require_reals, require_row, require_within, within_ranges
 
 FINENESS = 20
 """Steps to a period at least, between which the peak of a sine is missed by at most 1.2 %."""
 SHORTEST_PERIOD, LONGEST_PERIOD = 0.01, 100.0
 """Bounds of a period [s]."""
+ModePeriod = Annotated[ArrayLike, Within(SHORTEST_PERIOD, LONGEST_PERIOD, "s")]
+Participation = Annotated[ArrayLike, Within(-3, 3)]
+ModeShape = Annotated[ArrayLike, Within(-1, 1)]
+BuildingDamping = Annotated[float, Within(0.005, 0.3)]
+"""Periods, participation and shape of the modes of a building, and its damping, see `building_modes`."""
 
 
 def oscillator_steps(dt: float, period: float) -> int:
@@ -81,7 +86,10 @@ class Modes(NamedTuple):
         return f"T_k = {period} s, xi = {self.damping:.10g}, gamma_k = {gamma}, psi_k = {psi}"
 
 
-def building_modes(period: ArrayLike, damping: float, participation: ArrayLike, height: ArrayLike) -> Modes:
+@within_ranges
+def building_modes(
+    period: ModePeriod, damping: BuildingDamping, participation: Participation, height: ArrayLike
+) -> Modes:
     """The modes of a building.
 
     Args:
@@ -93,10 +101,12 @@ def building_modes(period: ArrayLike, damping: float, participation: ArrayLike, 
     Raises:
         TypeError, ValueError: for a value outside its range, or shapes that differ.
     """
-    periods = one_or_row("period", period, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
-    gammas = one_or_row("participation", participation, -3.0, 3.0)
+    periods, gammas = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (period, participation))
+    for name, row in (("period", periods), ("participation", gammas)):
+        require_row(name, row, "value")
+    least: Within = get_args(ModeShape)[1]
     try:
-        shapes = one_or_row("height", height, -1.0, 1.0)
+        shapes = one_or_row("height", height, least.low, least.high)
     except ValueError as error:
         meant = "it is a share, the shape of a mode at the floor over that at the top; z / H for a straight first mode"
         raise ValueError(f"{error}; {meant}") from None
@@ -105,4 +115,4 @@ def building_modes(period: ArrayLike, damping: float, participation: ArrayLike, 
             f"period has {len(periods)} values, participation {len(gammas)} and height {len(shapes)}; "
             "each mode needs one of each"
         )
-    return Modes(periods, require_within("damping", damping, 0.005, 0.3), gammas, shapes)
+    return Modes(periods, damping, gammas, shapes)

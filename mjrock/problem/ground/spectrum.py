@@ -33,6 +33,10 @@ from .motion import GroundMotion
 from .oscillator import (
     LONGEST_PERIOD,
     SHORTEST_PERIOD,
+    BuildingDamping,
+    ModePeriod,
+    ModeShape,
+    Participation,
     building_modes,
     one_or_row,
     oscillator_steps,
@@ -138,7 +142,12 @@ class CodeSpectrum:
         return self.ag * self.S
 
     def at_height(
-        self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
+        self,
+        period: ModePeriod,
+        damping: BuildingDamping = 0.05,
+        *,
+        participation: Participation = 1.0,
+        height: ModeShape = 1.0,
     ) -> FloorSpectrum:
         """The spectrum on a floor of a building that vibrates in one or some modes.
 
@@ -277,7 +286,12 @@ class PointSpectrum:
         return float(self.acceleration[0])
 
     def at_height(
-        self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
+        self,
+        period: ModePeriod,
+        damping: BuildingDamping = 0.05,
+        *,
+        participation: Participation = 1.0,
+        height: ModeShape = 1.0,
     ) -> FloorSpectrum:
         """The spectrum on a floor, as `CodeSpectrum.at_height`."""
         return FloorSpectrum(self, *building_modes(period, damping, participation, height))

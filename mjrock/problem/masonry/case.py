@@ -154,7 +154,7 @@ class MasonryCase(Carrying):
     rocks_on_moving_ground: ClassVar[bool] = False
 
     masonry: Masonry
-    duration: Annotated[float, Within(1e-6, 1e6, "s")]
+    duration: Annotated[float, Within(1e-6, 1e6, "s")] = 10.0
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None

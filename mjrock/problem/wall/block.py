@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ...quantities import (
     GRAVITY,
     Array,
+    Density,
     Implausible,
     Real,
     Within,
@@ -26,6 +27,7 @@ from ...quantities import (
     require_sequence,
     require_within,
     warn_of,
+    within_ranges,
 )
 from .effects import AddedMass
 from .restoring_moment import Restoring, of_force, pose_of
@@ -33,6 +35,10 @@ from .section import PLUMB, Front, Gable, Moments, Opening, Profile, Section, mo
 
 HEAVIEST = 4000.0
 """Density above which that of a wall is taken for a weight [kg/m3]; basalt and iron ore have 3,000 to 4,000."""
+Length = Annotated[float, Within(1e-3, 1000, "m")]
+"""Length of a wall, out of the plane of rocking."""
+Inset = Annotated[float, Within(0, 10, "m", "inset")]
+"""How far the edges that a wall rocks about lie inside its faces."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +51,8 @@ class Block:
         length: length along the wall, out of the plane of rocking [m], 1e-3 to 1000. Mass and contact stiffness are
             both proportional to it, so that no rotation depends on it.
         density: mass density [kg/m3], 100 to 30000.
-        inset: how far the edges that the wall rocks about lie inside its faces [m], 0 to less than b. Crushed or broken
-            corners move them inwards. Mass and inertia are those of the full wall.
+        inset: how far the edges that the wall rocks about lie inside its faces [m], 0 to 10 and less than b. Crushed or
+            broken corners move them inwards. Mass and inertia are those of the full wall.
         openings: doors and windows through the whole thickness. A door shortens the base too.
         profile: pairs of height and thickness [m] from the base to the top, for a wall that tapers or has storeys of
             different thickness; linear in between. None is a constant thickness.
@@ -64,9 +70,9 @@ class Block:
 
     b: Annotated[float, Within(1e-3, 10, "m", "half thickness b")]
     h: Annotated[float, Within(5e-3, 100, "m", "half height h")]
-    length: Annotated[float, Within(1e-3, 1000, "m")] = 1.0
-    density: Annotated[float, Within(100, 30_000, "kg/m3")] = 2000.0
-    inset: float = 0.0
+    length: Length = 1.0
+    density: Density = 2000.0
+    inset: Inset = 0.0
     openings: tuple[Opening, ...] = ()
     profile: Profile | None = None
     masses: tuple[AddedMass, ...] = ()
@@ -75,7 +81,6 @@ class Block:
 
     def __post_init__(self) -> None:
         keep_declared(self)
-        keep(self, inset=require_real("inset", self.inset))
         require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
         if not 0 <= self.inset < self.b:
             raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
@@ -110,13 +115,14 @@ class Block:
             require_within(f"masses[{i}], offset", mass.offset, -13.0, self.b + 3, "m")
 
     @classmethod
+    @within_ranges
     def from_size(
         cls,
-        thickness: float,
-        height: float,
-        length: float = 1.0,
-        density: float = 2000.0,
-        inset: float = 0.0,
+        thickness: Annotated[float, Within(2e-3, 20, "m")],
+        height: Annotated[float, Within(1e-2, 200, "m")],
+        length: Length = 1.0,
+        density: Density = 2000.0,
+        inset: Inset = 0.0,
         openings: Sequence[Opening] = (),
         profile: Sequence[tuple[float, float]] | None = None,
         masses: Sequence[AddedMass] = (),
@@ -124,18 +130,38 @@ class Block:
         gable: Gable | None = None,
         plumb: str = "inner",
     ) -> Block:
-        """The wall of full sizes `thickness` 2b at the base, `height` 2h and `length` [m]; the rest as for `Block`."""
-        thickness = require_within("thickness", thickness, 2e-3, 20.0, "m")
-        if require_real("height", height) < thickness:
+        """The wall of full sizes.
+
+        Args:
+            thickness: 2b at the base [m], 0.002 to 20.
+            height: 2h, up to the top of a gable [m], 0.01 to 200, and 1 to 200 times the thickness.
+            length, density, inset, openings, profile, masses, gable, plumb: as of `Block`.
+
+        Raises:
+            ValueError: as `Block`.
+        """
+        if height < thickness:
             raise ValueError(f"height = {height:g} m is less than thickness = {thickness:g} m: are they swapped?")
         height = require_within("height", height, 1e-2, min(200.0, 200 * thickness), "m")
         parts = {"openings": openings, "profile": profile, "masses": masses, "gable": gable, "plumb": plumb}
         return cls(thickness / 2, height / 2, length, density, inset, **parts)  # type: ignore[arg-type]
 
     @classmethod
-    def from_slenderness(cls, slenderness: float, R: float, length: float = 1.0, density: float = 2000.0) -> Block:
-        """The wall of a `slenderness` h/b [-] and a half diagonal `R` [m], as Table 1 of the paper lists walls."""
-        slenderness = require_within("slenderness h/b", slenderness, 1.0, 200.0)
+    @within_ranges
+    def from_slenderness(
+        cls,
+        slenderness: Annotated[float, Within(1, 200, name="slenderness h/b")],
+        R: Annotated[float, Within(1e-3, 200, "m", "half diagonal R")],
+        length: Length = 1.0,
+        density: Density = 2000.0,
+    ) -> Block:
+        """The wall of a slenderness and a half diagonal, as Table 1 of the paper lists walls.
+
+        Args:
+            slenderness: h/b [-], 1 to 200.
+            R: half the diagonal [m], 0.001 to 200.
+            length, density: as of `Block`.
+        """
         alpha = math.atan(1 / slenderness)
         most = min(10 / math.sin(alpha), 100 / math.cos(alpha))
         R = require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), most, "m")

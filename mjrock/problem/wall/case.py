@@ -38,7 +38,8 @@ class Case(Carrying):
 
     Args:
         block: the wall.
-        theta0: rotation at release [rad]; positive opens away from the side stop.
+        theta0: rotation at release [rad], -1.6 to 1.6 and not beyond 90 degrees; positive opens away from the side
+            stop.
         duration: how long to follow the motion [s], 1e-6 to 1e6.
         side_stop: whether a stop behind the inner face keeps the rotation from becoming negative (one-sided rocking):
             True over the whole face, or a `SideStop` that reaches only so high.
@@ -69,8 +70,8 @@ class Case(Carrying):
     fixed: ClassVar[dict[int, Array]] = {}
 
     block: Block
-    theta0: float
-    duration: Annotated[float, Within(1e-6, 1e6, "s")]
+    theta0: Annotated[float, Within(-1.6, 1.6, "rad", "release rotation theta0")] = 0.0
+    duration: Annotated[float, Within(1e-6, 1e6, "s")] = 10.0
     side_stop: bool | SideStop = True
     omega0: Annotated[float, Within(-100, 100, "rad/s", "release velocity omega0")] = 0.0
     motion: GroundMotion | None = None

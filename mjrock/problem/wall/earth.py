@@ -8,11 +8,12 @@ from typing import Annotated
 
 from ...quantities import GRAVITY, Within, keep_declared, require_kind, require_within, short_repr
 from .block import Block
+from .effect import CombinedEffect
 from .effects import Load, Thrust
 
 
 @dataclass(frozen=True)
-class EarthPressure:
+class EarthPressure(CombinedEffect):
     """Dry earth without cohesion behind a wall whose inner face is upright.
 
     A wedge of earth slides on the plane on which it presses most, or resists least where the wall moves into it. With

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import fields
 from itertools import accumulate
-from typing import Any, ClassVar, Literal, NamedTuple, Protocol
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ...compiled import inlined
 from ...quantities import (
     Array,
+    Within,
     keep,
     keep_declared,
     require_array,
@@ -31,6 +32,8 @@ PointOf = tuple[float, ...]
 """A point x, z of the plane or x, y, z of space [m]."""
 HIGHEST_WALL = 200.0
 """Largest height of a wall, and so of an effect [m]."""
+Height = Annotated[float, Within(0, HIGHEST_WALL, "m")]
+"""Height of an effect on a wall."""
 BLOCKS = 100_000
 """Largest number of a block."""
 FARTHEST_POINT = 1e4
@@ -63,10 +66,8 @@ def _block(name: str, given: object) -> str | int:
     return given if isinstance(given, str) else require_whole(name, given, 0, BLOCKS)
 
 
-def _height(kind: str, height: float | None, at: PointOf | None) -> float:
-    """The height of an effect, that of its point where it has one [m]."""
-    if at is None:
-        return require_within(f"height of the {kind}", height, 0.0, HIGHEST_WALL, "m")
+def _height(kind: str, height: float | None, at: PointOf) -> float:
+    """The height of an effect with a point, that of the point [m]."""
     if (
         height is not None
         and require_within(f"height of the {kind}", height, -FARTHEST_POINT, FARTHEST_POINT, "m") != at[-1]
@@ -218,8 +219,10 @@ class Effect:
             raise ValueError(f"anchor of the {kind} = {anchor} m goes with at, the point that is held; give it too")
         if anchor_block is not None:
             keep(self, anchor_block=_block(f"anchor_block of the {kind}", anchor_block))
-        keep(self, height=_height(kind, self.height, self.at), block=_block(f"block of the {kind}", self.block))
-        keep_declared(self, kind)
+        if self.at is not None:
+            keep(self, height=_height(kind, self.height, self.at))
+        keep(self, block=_block(f"block of the {kind}", self.block))
+        keep_declared(self, kind, but=() if self.at is None else ("height",))
 
     @property
     def mass_added(self) -> float:
@@ -246,6 +249,14 @@ class Effect:
         """Corners of what it is in the section, x from the middle of the base and z [m], shape (n, 2); (0, 2) of what
         is at a point."""
         return np.empty((0, 2))
+
+
+class CombinedEffect:
+    """What acts as several effects that follow from the wall, such as a `Wedge` of its side walls."""
+
+    def on(self, wall: Any) -> tuple[Effect, ...]:
+        """The effects of a wall."""
+        raise NotImplementedError
 
 
 class Anchored(Effect):

@@ -21,6 +21,7 @@ from .effect import (
     OF_MASONRY,
     Anchored,
     Effect,
+    Height,
     LinkLaw,
     Point,
     PointOf,
@@ -36,7 +37,7 @@ class Damper(Anchored):
     It resists both ways with c times the rate of its length. A wall at rest does not feel it.
 
     Args:
-        height: where it holds the wall [m].
+        height: where it holds the wall [m], 0 to 200.
         c: damping coefficient [N s/m], 0 to 1e9.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
         block: the block that it holds.
@@ -58,7 +59,7 @@ class Damper(Anchored):
     arguments: ClassVar[str] = "height, c, length"
     colour: ClassVar[str] = "#3f8f5b"
     dashes: ClassVar[Literal["-", "--", "-."]] = "-."
-    height: float = None  # type: ignore[assignment]
+    height: Height = None  # type: ignore[assignment]
     c: Annotated[float, Within(0, 1e9, "N s/m", "coefficient c of the damper")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     block: int = 0
@@ -86,7 +87,7 @@ class FrictionDamper(Anchored):
     It is put in when the wall stands, so that it bears nothing at rest.
 
     Args:
-        height: where it holds the wall [m].
+        height: where it holds the wall [m], 0 to 200.
         stiffness: of the spring [N/m], 1 to 1e12.
         slip_force: force at which it slips [N], 1e-3 to 1e9.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
@@ -105,7 +106,7 @@ class FrictionDamper(Anchored):
     colour: ClassVar[str] = "#8a4f9e"
     dashes: ClassVar[Literal["-", "--", "-."]] = "--"
     limit: ClassVar[str] = "slip_force"
-    height: float = None  # type: ignore[assignment]
+    height: Height = None  # type: ignore[assignment]
     stiffness: Annotated[float, Within(1, 1e12, "N/m")] = None  # type: ignore[assignment]
     slip_force: Annotated[float, Within(1e-3, 1e9, "N")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
@@ -131,7 +132,7 @@ class Thrust(Effect):
     """A horizontal force that keeps its size and direction: the thrust of an arch, a vault or a rafter.
 
     Args:
-        height: where it acts, on the middle of the wall [m].
+        height: where it acts, on the middle of the wall [m], 0 to 200.
         force: its size on the whole length of the wall, positive outwards [N], -1e9 to 1e9.
         block: the block that it pushes.
         at: of masonry, the point where it acts, x, z or x, y, z at rest [m]; it takes the place of the height.
@@ -148,7 +149,7 @@ class Thrust(Effect):
 
     label: ClassVar[str] = "thrust"
     arguments: ClassVar[str] = "height, force"
-    height: float = None  # type: ignore[assignment]
+    height: Height = None  # type: ignore[assignment]
     force: Annotated[float, Within(-1e9, 1e9, "N")] = None  # type: ignore[assignment]
     block: int = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
@@ -183,7 +184,7 @@ class Load(Effect):
 
     Args:
         force: its size on the whole length of the wall, downwards [N], 0 to 1e9.
-        height: where it acts [m].
+        height: where it acts [m], 0 to 200.
         offset: from the middle of the base, outwards [m], -10 to 10.
         block: the block that it rests on.
         at: of masonry, the point where it acts, x, z or x, y, z at rest [m]; it takes the place of height and offset.
@@ -200,7 +201,7 @@ class Load(Effect):
     label: ClassVar[str] = "load"
     arguments: ClassVar[str] = "force, height, offset"
     force: Annotated[float, Within(0, 1e9, "N")]
-    height: float = None  # type: ignore[assignment]
+    height: Height = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-10, 10, "m")] = 0.0
     block: int = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
@@ -222,7 +223,7 @@ class AddedMass(Effect):
 
     Args:
         mass: the mass, as a point [kg], 0 to 1e8.
-        height: where it is [m].
+        height: where it is [m], 0 to 200.
         offset: from the middle of the base, outwards [m], -13 to 13.
         block: the block that it moves with.
         at: of masonry, where it is, x, z or x, y, z at rest [m]; it takes the place of height and offset.
@@ -236,7 +237,7 @@ class AddedMass(Effect):
     arguments: ClassVar[str] = "mass, height, offset"
     on_block: ClassVar[bool] = False
     mass: Annotated[float, Within(0, 1e8, "kg", "added mass")]
-    height: float = None  # type: ignore[assignment]
+    height: Height = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-13, 13, "m")] = 0.0
     block: int = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)

@@ -4,21 +4,36 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar, TypedDict, Unpack
 
-from ...quantities import Within, keep, require_array, require_one_of, require_real, require_within, within_ranges
-from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, LinkLaw, PointOf
+from ...quantities import Within, require_array, require_one_of, require_within, within_ranges
+from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, Height, LinkLaw, PointOf
 
 GOVERNING = ("bar", "punching", "bearing", "other end")
 """What the strength of a tie with an anchor plate may be that of."""
 Diameter = Annotated[float, Within(0.004, 0.2, "m", "diameter of the bar")]
 YieldStress = Annotated[float, Within(50e6, 2e9, "Pa", "yield_stress of the bar")]
+Plate = Annotated[float | tuple[float, float], Within(0.02, 3, "m", "plate")]
+Spacing = Annotated[float | None, Within(0.02, 1000, "m", "spacing of the ties")]
 Thickness = Annotated[float, Within(0.05, 10, "m", "thickness of the wall")]
 STRONGEST_TIE = 1e12
 """Largest strength of a tie [N]."""
 ShearStrength = Annotated[float, Within(1e3, 5e6, "Pa", "shear_strength of the masonry")]
 Strength = Annotated[float, Within(1e5, 1e8, "Pa", "compressive_strength of the masonry")]
 Count = Annotated[int, Within(1, 1000, name="number of ties", whole=True)]
+
+
+class TieOptions(TypedDict, total=False):
+    """Fields of a `Tie` that `Tie.of_bar` hands on."""
+
+    slack: float
+    anchor_height: float | None
+    block: int
+    ultimate: float | None
+    at: PointOf | None
+    anchor: PointOf | None
+    anchor_block: int | None
+    prestress: float
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,7 +46,7 @@ class Tie(Anchored):
     A tie that has yielded by `ultimate` breaks: it pulls no more, and its elastic energy is lost.
 
     Args:
-        height: where it holds the wall [m].
+        height: where it holds the wall [m], 0 to 200.
         stiffness: E A over its length [N/m], 1 to 1e12.
         slack: elongation before it pulls [m], 0 to 10.
         strength: force at which it yields [N], above 0 to 1e12; infinite for one that does not.
@@ -61,10 +76,10 @@ class Tie(Anchored):
 
     label: ClassVar[str] = "tie"
     arguments: ClassVar[str] = "height, stiffness, slack,\nstrength, ultimate, length, anchor_height"
-    height: float = None  # type: ignore[assignment]
+    height: Height = None  # type: ignore[assignment]
     stiffness: Annotated[float, Within(1, 1e12, "N/m")] = None  # type: ignore[assignment]
     slack: Annotated[float, Within(0, 10, "m")] = 0.0
-    strength: float = math.inf
+    strength: Annotated[float, Within(0, STRONGEST_TIE, "N", infinite=True)] = math.inf
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     anchor_height: Annotated[float | None, Within(-HIGHEST_WALL, HIGHEST_WALL, "m", "height of the anchor")] = None
     block: int = 0
@@ -77,11 +92,10 @@ class Tie(Anchored):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        keep(self, strength=require_real("strength of the tie", self.strength))
-        if not (0 < self.strength <= STRONGEST_TIE or self.strength == math.inf):
+        if self.strength == 0:
             raise ValueError(
-                f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N to "
-                f"{STRONGEST_TIE:g} N, or inf for a tie that does not yield"
+                f"strength of the tie = 0 N is outside the valid range, which is above 0 N to {STRONGEST_TIE:g} N, or "
+                "inf for a tie that does not yield"
             )
         if self.governed_by is not None:
             require_one_of("governed_by of the tie", self.governed_by, GOVERNING)
@@ -98,20 +112,20 @@ class Tie(Anchored):
     @within_ranges
     def of_bar(
         cls,
-        height: float,
+        height: Height,
         diameter: Diameter,
         yield_stress: YieldStress,
         length: Annotated[float, Within(0.01, 1000, "m", "length of the tie")],
         *,
-        plate: float | tuple[float, float],
+        plate: Plate,
         thickness: Thickness,
         shear_strength: ShearStrength,
         compressive_strength: Strength,
         elastic_modulus: Annotated[float, Within(5e10, 3e11, "Pa", "elastic_modulus of the bar")] = 210e9,
         number: Count = 1,
-        spacing: float | None = None,
+        spacing: Spacing = None,
         other_end: Annotated[float | None, Within(1, 1e9, "N", "other_end of the tie")] = None,
-        **options: Any,
+        **options: Unpack[TieOptions],
     ) -> Tie:
         """Ties of round steel bars with anchor plates on a wall, from what is known of them.
 
@@ -124,7 +138,7 @@ class Tie(Anchored):
         the punching: it is usual practice, such as in an example for a round plate in Master Magazine 7, p. 75.
 
         Args:
-            height: where they hold the wall [m].
+            height: where they hold the wall [m], 0 to 200.
             diameter: of a bar [m], 0.004 to 0.2.
             yield_stress: f_y of the steel [Pa], 50e6 to 2e9.
             length: free length L of a bar, from the inner face to its anchor [m], 0.01 to 1000.
@@ -134,7 +148,8 @@ class Tie(Anchored):
             compressive_strength: f_m of the masonry [Pa], 1e5 to 1e8.
             elastic_modulus: E of the steel [Pa], 5e10 to 3e11.
             number: n of equal ties at this height, 1 to 1000.
-            spacing: s of several ties between centres, along the side a [m], from a to 1000; None is far apart.
+            spacing: s of several ties between centres, along the side a [m], 0.02 to 1000 and at least a;
+                None is far apart.
             other_end: what holds the other end of all of them bears [N], 1 to 1e9: the least of `strengths_of_bar` of a
                 plate on the wall there, or of `strengths_of_anchor`; None does not govern.
             options: other fields of `Tie`, such as `slack` and `ultimate`.
@@ -198,13 +213,13 @@ def area_of_bar(diameter: float) -> float:
 def strengths_of_bar(
     diameter: Diameter,
     yield_stress: YieldStress,
-    plate: float | tuple[float, float],
+    plate: Plate,
     thickness: Thickness,
     shear_strength: ShearStrength,
     compressive_strength: Strength,
     *,
     number: Count = 1,
-    spacing: float | None = None,
+    spacing: Spacing = None,
 ) -> dict[str, float]:
     """Strengths of equal ties [N], by what gives way: "bar", "punching" and "bearing", of which `Tie.of_bar` takes the
     least. The arguments and their ranges are those of `Tie.of_bar`.
@@ -219,8 +234,6 @@ def strengths_of_bar(
         {'bar': 106.3, 'punching': 56.1, 'bearing': 180.0}
     """
     a, b = (plate, plate) if isinstance(plate, int | float) else require_array("plate", plate, (2,)).tolist()
-    for side in (a, b):
-        require_within("plate", side, 0.02, 3.0, "m")
     around = a + b + 2 * thickness
     punched = number * around
     if spacing is not None:

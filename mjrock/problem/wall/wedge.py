@@ -10,11 +10,12 @@ import numpy as np
 
 from ...quantities import Array, Within, keep_declared, require_kind, require_within, short_repr
 from .block import Block
+from .effect import CombinedEffect
 from .effects import AddedMass
 
 
 @dataclass(frozen=True)
-class Wedge:
+class Wedge(CombinedEffect):
     """Equal wedges of side walls between the inner face of a facade and inclined cracks, composite overturning.
 
     A crack rises from the inner face at the base, at an angle from the vertical, up to the top of the side wall. With q
@@ -87,6 +88,10 @@ class Wedge:
             for way in (-1, 1)
         )
         return inner, outer
+
+    def on(self, wall: Block) -> tuple[AddedMass, AddedMass]:
+        """The same as `behind`."""
+        return self.behind(wall)
 
 
 @dataclass(frozen=True, repr=False)

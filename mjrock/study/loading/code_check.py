@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
@@ -50,13 +50,14 @@ from ...quantities import (
     warn_of,
 )
 from ...result.response import Response
-from ..analysis import Analysis
-from ..campaign.campaign import results
 from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of
 from .limit_analysis import LimitCurve, collapse_multiplier
 from .moving_part import MovingPart, multiplier_of
 from .push import Push, of_centroid
 from .pushover import falls_to_zero, pushover
+
+if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
+    from ..analysis import Analysis
 
 WEAKER = 1e-6
 """How much less masonry has to bear the other way for a warning, more than limit analysis rounds [-]."""
@@ -829,7 +830,7 @@ def dynamic_check(
     require_one_of("limit_state", limit_state, code.states)
     require_kind("natural", natural, bool, type(None))
     require_kind("curve", curve, LimitCurve, Push, type(None))
-    if not is_iterable(runs) or not (given := list[Response | Analysis](runs)):
+    if not is_iterable(runs) or not (given := cast("list[Response | Analysis]", list(runs))):
         raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
     cases = _cases_of(given, curve)
     motions = [case.motion for case in cases if case.motion is not None]
@@ -916,6 +917,8 @@ class _Judged(NamedTuple):
 
 def _cases_of(runs: Sequence[Response | Analysis], curve: LimitCurve | Push | None) -> list[AnyCase]:
     """The cases of runs of one kind, which are of one wall or masonry with the same effects."""
+    from ..analysis import Analysis
+
     require_kind("runs[0]", runs[0], Response, Analysis)
     first, masonry = runs[0].case, None
     if isinstance(curve, Push):
@@ -955,7 +958,9 @@ def _peaks(runs: Sequence[Response | Analysis], store: str | Path | None) -> lis
         return [run.peak_over_alpha for run in responses]
     if store is None:
         raise ValueError("runs are tasks of a campaign; give its file as store")
-    rows = results([run for run in runs if isinstance(run, Analysis)], store)
+    from ..campaign.campaign import results
+
+    rows = results([run for run in runs if not isinstance(run, Response)], store)
     done = [float(row["peak_over_alpha"]) for row in rows if row is not None and row["status"] == "done"]
     if len(done) < len(rows):
         raise ValueError(f"{len(rows) - len(done)} of {len(rows)} tasks have no row that is done in {store}; run them")

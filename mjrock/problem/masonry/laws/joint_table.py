@@ -56,7 +56,7 @@ def properties_of(joints: AnyJoints | None, given: Properties) -> Properties:
     if joints is None:
         ranges = declared(Dry)
         return Dry().properties | {
-            name: value if callable(value) or name not in ranges else ranges[name][0].checked(name, value)
+            name: value if callable(value) or name not in ranges else ranges[name].within.checked(name, value)
             for name, value in named.items()
         }
     if named:
@@ -230,14 +230,9 @@ def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Arr
     """A property of each joint, with what stands for None, shape (joints,)."""
     if not callable(given):
         return np.full(len(joints), FOR_NONE[name] if given is None else given)
-    (within, optional), values = declared(Dry)[name], [asked(name, given, joint) for joint in joints]
-    pairs = zip(joints, values, strict=True)
-    return np.array(
-        [
-            FOR_NONE[name] if optional and value is None else within.checked(f"{name} of {joint.name}", value)
-            for joint, value in pairs
-        ]
-    )
+    one, values = declared(Dry)[name], [asked(name, given, joint) for joint in joints]
+    found = [one.checked(f"{name} of {joint.name}", value) for joint, value in zip(joints, values, strict=True)]
+    return np.array([FOR_NONE[name] if value is None else value for value in found])
 
 
 def _bonds(given: OfBond, joints: Sequence[AnyJoint]) -> tuple[Bond | None, ...]:

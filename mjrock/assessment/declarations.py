@@ -1,0 +1,237 @@
+"""The keys of a table: the arguments of what it stands for, with the ranges that its signature declares."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import MISSING, dataclass, is_dataclass
+from functools import cache
+from os import PathLike
+from typing import (
+    Any,
+    Literal,
+    Self,
+    Unpack,
+    get_args,
+    get_origin,
+    get_type_hints,
+    is_typeddict,
+)
+
+import numpy as np
+
+from ..problem.wall.block import Block
+from ..problem.wall.effect import CombinedEffect, Effect
+from ..quantities import Within, alternatives
+
+REQUIRED = MISSING
+"""The default of an argument that has none."""
+USUAL_MAKE = {"Block": "from_size", "Restitution": "from_geometry", "Contacts": "from_law"}
+"""The constructor of a class where a table names none, by the name of the class; of others it is the class itself."""
+ENTRY = re.compile(r"^ {4}((?:\w+, )*\w+): ")
+AS_OF = re.compile(r"(?:as|those) of `(\w+)`")
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a table.
+
+    Args:
+        name: of the argument.
+        hint: its type, as it is annotated.
+        default: what it is where it is left out, or REQUIRED.
+        doc: what the docstring says of it.
+    """
+
+    name: str
+    hint: Any
+    default: Any
+    doc: str
+
+    @property
+    def within(self) -> Within | None:
+        """Its declared range; None where there is none."""
+        return next((one for one in getattr(self.hint, "__metadata__", ()) if isinstance(one, Within)), None)
+
+    @property
+    def kinds(self) -> tuple[Any, ...]:
+        """The types that it may be of, one by one, without None."""
+        return kinds_of(self.hint)
+
+    @property
+    def is_needed(self) -> bool:
+        """Whether a table without it is refused before anything is made."""
+        return self.default is REQUIRED
+
+
+@dataclass(frozen=True)
+class Maker:
+    """What a table stands for: a class, one of its further constructors, or a function.
+
+    Args:
+        call: it.
+        keys: of the table, by name.
+        doc: the first line of its docstring.
+    """
+
+    call: Callable[..., Any]
+    keys: Mapping[str, Key]
+    doc: str
+
+    def without(self, *names: str) -> Maker:
+        """The same without some keys, which are given otherwise."""
+        return Maker(self.call, {name: key for name, key in self.keys.items() if name not in names}, self.doc)
+
+
+Makers = Mapping[str, Maker]
+"""All that makes an object of a class, by the name that `make` has in the file; "" is the class itself."""
+
+
+def kinds_of(hint: Any) -> tuple[Any, ...]:
+    """The types that a value of a hint may be of, one by one, without None and without functions. What may be an array
+    may be a number too."""
+    kinds = alternatives(hint)
+    if complex in kinds:  # ArrayLike, which has much that a file has not
+        return (float, np.ndarray, *(one for one in kinds if isinstance(one, type) and is_dataclass(one)))
+    return tuple(one for one in kinds if one is not type(None) and get_origin(one) is not Callable)
+
+
+def is_path(kinds: Sequence[Any]) -> bool:
+    """Whether an argument of these types is the path of a file."""
+    return any((get_origin(kind) or kind) is PathLike for kind in kinds)
+
+
+def items_of(kind: Any) -> tuple[Any, ...] | None:
+    """The types of the items of a sequence: one for each place of a tuple, or one and an ellipsis; None of others."""
+    origin, of = get_origin(kind), get_args(kind)
+    if origin is tuple:
+        return of
+    if isinstance(origin, type) and issubclass(origin, Sequence):
+        return *of, ...
+    return None
+
+
+def choices_of(kind: Any) -> tuple[str, ...]:
+    """The texts that a literal type may be."""
+    return tuple(map(str, get_args(kind))) if get_origin(kind) is Literal else ()
+
+
+@cache
+def described(call: Callable[..., Any]) -> dict[str, str]:
+    """What the docstring of a class or function says of each of its arguments."""
+    found: dict[str, str] = {}
+    names: list[str] = []
+    for line in _section(inspect.getdoc(call) or "", "Args").splitlines():
+        if entry := ENTRY.match(line):
+            names = entry[1].split(", ")
+            found |= {name: line[entry.end() :] for name in names}
+        else:
+            found |= {name: f"{found[name]} {line.strip()}".strip() for name in names}
+    return found
+
+
+def _section(text: str, head: str) -> str:
+    """A section of a docstring."""
+    found = re.search(rf"^{head}:\n((?:    .*\n?|\n)+)", text, re.MULTILINE)
+    return found[1] if found else ""
+
+
+@cache
+def maker_of(call: Callable[..., Any], owner: type | None = None) -> Maker:
+    """The keys of a class, of a constructor of a class `owner`, or of a function."""
+    parameters = inspect.signature(call).parameters.values()
+    hints = hints_of(call)
+    own: dict[str, Key] = {}
+    said = described(call)
+    of_owner = {} if owner is None or call is owner else maker_of(owner).keys
+    for one in parameters:
+        if one.kind is one.VAR_KEYWORD:
+            own |= {name: key for name, key in _options(hints.get(one.name), of_owner).items() if name not in own}
+        elif one.kind is not one.VAR_POSITIONAL:
+            default = REQUIRED if one.default is one.empty else one.default
+            doc = said.get(one.name, "")
+            if owner is not None and ((shared := AS_OF.search(doc)) or not doc):
+                doc = _as_of(owner, shared[1] if shared else "", one.name) or doc
+            own[one.name] = Key(one.name, hints.get(one.name, Any), default, doc)
+    return Maker(call, own, (inspect.getdoc(call) or "").partition("\n\n")[0].replace("\n", " "))
+
+
+def hints_of(call: Callable[..., Any]) -> dict[str, Any]:
+    """The types of the arguments of a class or function, with what is declared of them."""
+    hints = get_type_hints(call, include_extras=True)
+    if isinstance(call, type) and inspect.isfunction(made := vars(call).get("__init__")):
+        hints |= get_type_hints(made, include_extras=True)
+    return hints
+
+
+def _as_of(owner: type, name: str, argument: str) -> str:
+    """What another constructor of a class, or the class itself, says of an argument."""
+    other = getattr(owner, name, owner) if name else owner
+    return described(getattr(other, "__func__", other)).get(argument, "")
+
+
+def _options(hint: Any, of_owner: Mapping[str, Key]) -> dict[str, Key]:
+    """The keys that a constructor hands on: those of a typed dictionary, as the class declares them."""
+    named = get_args(hint)[0] if get_origin(hint) is Unpack else None
+    if not is_typeddict(named):
+        return {}
+    hints = get_type_hints(named, include_extras=True)
+    return {name: of_owner.get(name, Key(name, one, None, "")) for name, one in hints.items()}
+
+
+@cache
+def makers_of(kind: type) -> Makers:
+    """All that makes an object of a class."""
+    found = {"": maker_of(kind, kind)}
+    for name, member in inspect.getmembers(kind, inspect.ismethod):
+        if not name.startswith("_") and name in _constructors(kind):
+            found[name] = maker_of(member, kind)
+    return found
+
+
+def _constructors(kind: type) -> set[str]:
+    """Names of the class methods that return an object of the class."""
+    names = set()
+    for base in kind.__mro__:
+        for name, member in vars(base).items():
+            if isinstance(member, classmethod) and not name.startswith("_"):
+                returned = get_type_hints(member.__func__).get("return")
+                if returned is Self or (isinstance(returned, type) and issubclass(kind, returned)):
+                    names.add(name)
+    return names
+
+
+def subclasses_of(kind: type[Any]) -> list[type[Any]]:
+    """A class and all that are derived from it, those of a user too, in the order in which they were defined."""
+    return [kind, *(one for sub in kind.__subclasses__() for one in subclasses_of(sub))]
+
+
+@cache
+def public_names() -> Collection[str]:
+    """The public names of the package. Modules of the wall are imported, so that its classes are known."""
+    package = importlib.import_module(__package__.partition(".")[0])
+    for module in {one for one in package.HOME.values() if one.startswith("problem.wall.")}:
+        importlib.import_module(f"{package.__name__}.{module}")
+    return tuple(package.HOME)
+
+
+def is_public(kind: type) -> bool:
+    """Whether a class is one of the package that users know, or one of their own."""
+    own = kind.__module__.partition(".")[0] != __package__.partition(".")[0]
+    return own or kind.__name__ in public_names()
+
+
+def classes_of(kinds: Sequence[Any]) -> dict[str, type]:
+    """The public dataclasses that values of some types may be of, by name, with those derived from them."""
+    public_names()
+    bases = [kind for kind in kinds if isinstance(kind, type)]
+    bases += [CombinedEffect] if Effect in bases else []
+    found = (one for base in bases for one in subclasses_of(base))
+    return {one.__name__: one for one in found if is_dataclass(one) and is_public(one)}
+
+
+def key_named(key: Key) -> str:
+    """The name of a key in the file: an argument that is a wall is the table `wall`, whatever it is called."""
+    return "wall" if key.kinds == (Block,) else key.name

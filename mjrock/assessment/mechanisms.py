@@ -1,0 +1,153 @@
+"""The mechanisms of a file, and what each is checked against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, get_args
+
+from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, code_spectrum
+from ..problem.masonry.case import MasonryCase
+from ..study.loading.code import USUAL_CODE, code_of
+from ..study.loading.code_check import Checked, Demand, MechanismCheck, mechanism_check, required_demands
+from ..study.loading.limit_analysis import LimitCurve, limit_curve
+from .declarations import Makers, key_named, maker_of, makers_of
+from .reading import OWN_KEYS, Reader, RefusedError
+from .tables import Place, Table, spelt_place
+
+Problem = Checked | MasonryCase
+MECHANISMS: Mapping[str, Makers] = {
+    kind.__name__: makers_of(kind) for kind in (*get_args(Checked), MasonryCase) if kind is not LimitCurve
+}
+"""What a mechanism may be, by the name of `kind`."""
+SITES: Mapping[str, Makers] = {
+    "code_spectrum": {"": maker_of(code_spectrum)},
+    **{kind.__name__: makers_of(kind) for kind in (PointSpectrum, CodeSpectrum)},
+}
+"""What `[site]` stands for, by the name of `kind`: the first where none is named."""
+FLOOR = maker_of(CodeSpectrum.at_height).without("self")
+"""What `[floor]` stands for: the spectrum of the site at a height of a building."""
+CHECK = maker_of(mechanism_check).without("case", "demand")
+"""What `[check]` stands for."""
+CURVE = maker_of(limit_curve).without("masonry", "effects")
+"""What `[limit_curve]` stands for, of masonry of blocks."""
+SECTIONS = {"site": SITES["code_spectrum"][""], "floor": FLOOR, "check": CHECK, "limit_curve": CURVE}
+"""Tables beside those of the mechanism itself."""
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """One mechanism of an assessment.
+
+    Args:
+        problem: the wall and its effects, or what else is checked.
+        demand: what it is checked against: a spectrum, or one for each limit state by name; None where the file has no
+            site.
+        options: further arguments of `mechanism_check`.
+        curve: further arguments of `limit_curve`, of masonry of blocks.
+        place: its table in the file.
+    """
+
+    problem: Problem
+    demand: Demand | Mapping[str, Demand] | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    curve: Mapping[str, Any] = field(default_factory=dict)
+    place: Place = ()
+
+    def check(self) -> MechanismCheck:
+        """Its kinematic check, see `mechanism_check`.
+
+        Raises:
+            ValueError: as `mechanism_check` and `limit_curve` do, and without a demand.
+        """
+        if self.demand is None:
+            raise ValueError("has no site, which a check is against; give it a table [site] with ag and soil")
+        subject: Any = self.problem
+        if not isinstance(subject, Checked):
+            subject = limit_curve(subject.masonry, effects=subject.effects, **self.curve)
+        return mechanism_check(subject, self.demand, **self.options)
+
+
+def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:
+    """The mechanisms of a file by name: those under `mechanisms`, or the one at the top, whose name is empty."""
+    several = top.values.get("mechanisms")
+    if several is None:
+        return _found({"": _mechanism(reader, top, set(top.values), set())})
+    if not isinstance(several, Table) or not all(isinstance(one, Table) for one in several.values.values()):
+        reader.refuse(("mechanisms",), "mechanisms is no table of tables; write [mechanisms.NAME] for each")
+        return {}
+    shared, used = top.without("mechanisms"), set[str]()
+    made = {name: _mechanism(reader, own.over(shared), set(own.values), used) for name, own in several.values.items()}
+    for key in shared.values.keys() - used:
+        reader.refuse((key,), f"{key} is not known here: no mechanism takes it")
+    return _found(made)
+
+
+def _found(made: Mapping[str, Mechanism | None]) -> dict[str, Mechanism]:
+    return {name: one for name, one in made.items() if one is not None}
+
+
+def _mechanism(reader: Reader, table: Table, own: set[str], used: set[str]) -> Mechanism | None:
+    """The mechanism of a table; None where something is wrong with it.
+
+    Args:
+        reader: which keeps what is wrong.
+        table: with what it shares with others.
+        own: the keys that it has itself. One that is shared, and that it does not take, is left to the others.
+        used: to which those that it takes are added.
+    """
+    try:
+        maker, rest = reader.chosen(table, MECHANISMS, "Case")
+    except RefusedError:
+        used |= set(table.values)
+        return None
+    takes = {key_named(key) for key in maker.keys.values()} | SECTIONS.keys()
+    used |= (takes | set(OWN_KEYS)) & set(table.values)
+    rest = rest.without(*(set(rest.values) - takes - own))
+    options = _options(reader, rest, "check", CHECK)
+    curve = _options(reader, rest, "limit_curve", CURVE)
+    demand = reader.attempted(lambda: _demand(reader, rest, options))
+    problem = reader.attempted(lambda: reader.made(rest.without(*SECTIONS), maker))
+    return None if problem is None else Mechanism(problem, demand, options, curve, table.place)
+
+
+def _options(reader: Reader, table: Table, name: str, maker: Any) -> dict[str, Any]:
+    """The arguments that a table in another has, those of a function; none where something is wrong with them."""
+    if name not in table.values:
+        return {}
+    return reader.attempted(lambda: reader.arguments(reader.required_table(table, name), maker)) or {}
+
+
+def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand | Mapping[str, Demand] | None:
+    """What a mechanism is checked against, that of the site or of a floor above it, one for each limit state that the
+    table of the site has a table of."""
+    if "site" not in table.values:
+        if "floor" in table.values:
+            reader.refuse(table.of("floor"), f"{spelt_place(table.of('floor'))} is a floor of no [site]")
+        return None
+    site, code = reader.required_table(table, "site"), options.get("code", USUAL_CODE)
+    try:
+        rule = code_of(code)
+    except (TypeError, ValueError) as error:
+        reader.refuse(reader.required_table(table, "check").of("code"), str(error))
+        raise RefusedError from None
+    names = [*rule.states, *([] if rule.damage is None else [rule.damage.state])]
+    states = [name for name in dict.fromkeys(names) if isinstance(site.values.get(name), Table)]
+    common = site.without(*states)
+    if not states:
+        return _spectrum(reader, common, table)
+    demands = {name: _spectrum(reader, site.values[name].over(common), table) for name in states}
+    try:
+        return required_demands(demands, rule)
+    except ValueError as error:
+        reader.refuse(site.place, f"{spelt_place(site.place)}: {error}")
+        raise RefusedError from None
+
+
+def _spectrum(reader: Reader, site: Table, table: Table) -> CodeSpectrum | PointSpectrum | FloorSpectrum:
+    """The spectrum of a site, or of the floor above it that a mechanism stands on."""
+    maker, rest = reader.chosen(site, SITES, "code_spectrum")
+    ground = reader.made(rest, maker)
+    if "floor" not in table.values:
+        return ground  # type: ignore[no-any-return]
+    return reader.made(reader.required_table(table, "floor"), replace(FLOOR, call=ground.at_height))  # type: ignore[no-any-return]

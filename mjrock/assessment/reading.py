@@ -1,0 +1,355 @@
+"""Tables of a file as the objects that they stand for."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar, get_args, get_origin
+
+import numpy as np
+
+from ..problem.wall.block import Block
+from ..problem.wall.effect import CombinedEffect
+from ..quantities import Within, named, shown
+from .declarations import (
+    USUAL_MAKE,
+    Key,
+    Maker,
+    Makers,
+    choices_of,
+    classes_of,
+    is_path,
+    items_of,
+    key_named,
+    makers_of,
+)
+from .tables import AssessmentError, Fault, Place, Table, line_of, spelt_place
+from .units import examples_of, value_in
+
+Object = TypeVar("Object")
+NUMERIC = (float, int, np.ndarray)
+OWN_KEYS = "kind", "make"
+"""Keys that name the class, and the constructor of the class, that a table stands for."""
+LEADING = re.compile(r"(\w+)(?:\[(\d+)\])?")
+"""The first word of a message, which is most often the name of an argument."""
+NOT_GIVEN = re.compile(r"= None is not a ")
+
+
+class RefusedError(Exception):
+    """A value that is refused: its fault is with the reader."""
+
+
+class Reader:
+    """What makes objects of tables, and collects what is wrong with them.
+
+    Args:
+        folder: what paths of other files are relative to; None where there is no file, and no path is read.
+        lines: the line of each key.
+        name: of the file, for messages.
+
+    Attributes:
+        faults: what is wrong.
+    """
+
+    def __init__(self, folder: Path | None, lines: Mapping[Place, int], name: str) -> None:
+        self.folder, self.lines, self.name = folder, lines, name
+        self.faults: list[Fault] = []
+
+    def refuse(self, place: Place, message: str) -> None:
+        """Keep what is wrong with a key or table."""
+        self.faults.append(Fault(place, message, line_of(place, self.lines)))
+
+    def require_sound(self) -> None:
+        """Raise an AssessmentError with all that is wrong, in the order of the file."""
+        if self.faults:
+            faults = dict.fromkeys(sorted(self.faults, key=lambda one: one.line or 0))
+            raise AssessmentError(tuple(faults), self.name)
+
+    def made(self, table: Table, maker: Maker, given: Mapping[str, Any] | None = None) -> Any:
+        """What a table stands for.
+
+        Args:
+            table: the table.
+            maker: what it stands for.
+            given: arguments that do not come from the table.
+
+        Raises:
+            RefusedError: where something is wrong with it.
+        """
+        arguments = self.arguments(table, maker, given)
+        try:
+            return maker.call(**arguments)
+        except (TypeError, ValueError, OSError, ImportError) as error:
+            self.refuse(*self._cause(error, table, maker))
+            raise RefusedError from None
+
+    def arguments(self, table: Table, maker: Maker, given: Mapping[str, Any] | None = None) -> dict[str, Any]:
+        """The arguments that a table has, and those that are given."""
+        before, arguments = len(self.faults), dict(given or {})
+        keys = {key_named(key): key for name, key in maker.keys.items() if name not in arguments}
+        for name, value in table.values.items():
+            if name not in keys:
+                self.refuse(table.of(name), self._unknown(table.of(name), name, list(keys), maker))
+                continue
+            try:
+                arguments[keys[name].name] = self.value(keys[name], value, table.of(name))
+            except RefusedError:
+                continue
+        for name, key in keys.items():
+            if key.is_needed and key.name not in arguments and name not in table.values:
+                self.refuse(table.place, f"{spelt_place(table.place)} has no {name}{self._due(key)}")
+        if len(self.faults) > before:
+            raise RefusedError
+        return arguments | self._expanded(table, arguments)
+
+    def _expanded(self, table: Table, arguments: dict[str, Any]) -> dict[str, Any]:
+        """Sequences among arguments with the effects of what acts as several, such as a `Wedge`."""
+        wall = next((one for one in arguments.values() if isinstance(one, Block)), None)
+        found: dict[str, Any] = {}
+        for name, values in arguments.items():
+            if isinstance(values, tuple) and any(isinstance(one, CombinedEffect) for one in values):
+                parts = [self._effects_of(*pair, wall) for pair in zip(table.values[name], values, strict=True)]
+                found[name] = tuple(effect for part in parts for effect in part)
+        return found
+
+    def _effects_of(self, table: Table, effect: Any, wall: Block | None) -> tuple[Any, ...]:
+        """An effect, or those that one of several stands for."""
+        if not isinstance(effect, CombinedEffect):
+            return (effect,)
+        try:
+            if wall is None:
+                raise ValueError("acts on a wall, and there is none")
+            return effect.on(wall)
+        except (TypeError, ValueError) as error:
+            place = _named_in(str(error), table, {})
+            self.refuse(place, f"{spelt_place(place)}: {error}")
+            raise RefusedError from None
+
+    def attempted(self, call: Callable[[], Object]) -> Object | None:
+        """What a function returns; None where it finds something wrong."""
+        try:
+            return call()
+        except RefusedError:
+            return None
+
+    def required_table(self, table: Table, name: str) -> Table:
+        """A table in another."""
+        value = table.values.get(name)
+        if not isinstance(value, Table):
+            at = spelt_place(table.of(name))
+            self.refuse(table.of(name), f"{at} is {spelt_value(value)}; it takes a table, [{at}]")
+            raise RefusedError
+        return value
+
+    def chosen(self, table: Table, kinds: Mapping[str, Makers], usual: str | None = None) -> tuple[Maker, Table]:
+        """The maker that `kind` and `make` of a table name, and the table without these."""
+        kind = self._one_of(table, "kind", list(kinds), next(iter(kinds)) if len(kinds) == 1 else usual)
+        makers = kinds[kind]
+        make = self._one_of(table, "make", [name or kind for name in makers], USUAL_MAKE.get(kind, kind))
+        return makers["" if make == kind else make], table.without(*OWN_KEYS)
+
+    def _one_of(self, table: Table, name: str, known: Sequence[str], usual: str | None) -> str:
+        """A name that a key of a table has among those that are known."""
+        value = table.values.get(name, usual)
+        if value is None:
+            self.refuse(table.place, f"{spelt_place(table.place)} has no {name}; it is one of {', '.join(known)}")
+            raise RefusedError
+        if not isinstance(value, str) or value not in known:
+            near = difflib.get_close_matches(str(value), known, 1)
+            remedy = f"did you mean {near[0]!r}? " if near else ""
+            said = f"{spelt_place(table.of(name))} = {shown(value)} is not known; {remedy}It is one of "
+            self.refuse(table.of(name), said + ", ".join(known))
+            raise RefusedError
+        return value
+
+    def value(self, key: Key, value: Any, place: Place) -> Any:
+        """The value of a key, checked by its declaration; `RefusedError` where something is wrong with it."""
+        return self._of_kinds(key.kinds, key.within, value, place)
+
+    def _of_kinds(self, kinds: tuple[Any, ...], within: Within | None, value: Any, place: Place) -> Any:
+        """A value of one of some types, of a number within a range."""
+        if isinstance(value, Table):
+            return self._table(kinds, value)
+        if isinstance(value, list):
+            return self._row(kinds, within, value, place)
+        if isinstance(value, str) and (str in kinds or any(map(choices_of, kinds))):
+            return self._text(kinds, value, place)
+        numeric = any(kind in NUMERIC or get_origin(kind) in NUMERIC for kind in kinds)
+        if isinstance(value, bool) and bool in kinds:
+            return value
+        if numeric and isinstance(value, str | int | float):
+            return self._number(kinds, within, value, place)
+        raise self._wrong(place, value, kinds, within)
+
+    def _text(self, kinds: tuple[Any, ...], value: str, place: Place) -> Any:
+        """A text, one of several, or a path from the folder of the file."""
+        known = [choice for kind in kinds for choice in choices_of(kind)]
+        if known and value not in known:
+            self.refuse(place, f"{spelt_place(place)} = {value!r} is not one of {', '.join(known)}")
+            raise RefusedError
+        if not is_path(kinds):
+            return value
+        if self.folder is None:
+            self.refuse(place, f"{spelt_place(place)} = {value!r} is the path of a file, and these tables are in none")
+            raise RefusedError
+        return self.folder / value
+
+    def _number(self, kinds: tuple[Any, ...], within: Within | None, value: str | float, place: Place) -> Any:
+        """A number, or a text with a unit."""
+        name, unit = spelt_place(place), within.unit if within else ""
+        try:
+            number = self._converted(value, unit) if isinstance(value, str) else value
+            if within is not None:
+                return within.checked(name, number)
+            if isinstance(number, bool):
+                raise TypeError(f"{name} = {shown(number)} is not a real number")
+            return int(number) if int in kinds and float not in kinds and number == int(number) else float(number)
+        except (TypeError, ValueError, OverflowError) as error:
+            said = str(error)
+            if isinstance(value, str):
+                said = f"{name} = {shown(value).partition(' of type')[0]} {said.removeprefix(f'{name} ')}"
+                said += f"; the valid range is {spelt_range(within)}" if within and "range" not in said else ""
+            self.refuse(place, said)
+            raise RefusedError from None
+
+    @staticmethod
+    def _converted(value: str, unit: str) -> float:
+        return value_in(value, unit)
+
+    def _row(self, kinds: tuple[Any, ...], within: Within | None, value: list[Any], place: Place) -> Any:
+        """A list, each item of the type that the argument has there."""
+        rows = [items for kind in kinds if (items := items_of(kind)) is not None]
+        if not rows:
+            if any(kind is np.ndarray or get_origin(kind) is np.ndarray for kind in kinds):
+                return [self._of_kinds((float, np.ndarray), within, one, (*place, i)) for i, one in enumerate(value)]
+            raise self._wrong(place, value, kinds, within)
+        fitting = [items for items in rows if items[-1] is ... or len(items) == len(value)]
+        if not fitting:
+            self.refuse(place, f"{spelt_place(place)} has {len(value)} values; it takes {len(rows[0])}")
+            raise RefusedError
+        found, wrong = [], False
+        for i, one in enumerate(value):
+            item = fitting[0][0 if fitting[0][-1] is ... else i]
+            at = one.place if isinstance(one, Table) else (*place, i)
+            try:
+                found.append(self._of_kinds(*parted(item, within), one, at))
+            except RefusedError:
+                wrong = True
+        if wrong:
+            raise RefusedError
+        return tuple(found)
+
+    def _table(self, kinds: tuple[Any, ...], table: Table) -> Any:
+        """What a table within another stands for: an object of one of some classes, or texts by name."""
+        classes = classes_of(kinds)
+        if classes:
+            maker, rest = self.chosen(table, {name: makers_of(kind) for name, kind in classes.items()})
+            return self.made(rest, maker)
+        mapped = next((kind for kind in kinds if get_origin(kind) is not None and is_mapping(kind)), None)
+        if mapped is not None:
+            of, within = parted(get_args(mapped)[1], None)
+            return {name: self._of_kinds(of, within, one, table.of(name)) for name, one in table.values.items()}
+        raise self._wrong(table.place, table, kinds, None)
+
+    def _wrong(self, place: Place, value: Any, kinds: tuple[Any, ...], within: Within | None) -> RefusedError:
+        """Keep that a value is of another type."""
+        self.refuse(place, f"{spelt_place(place)} is {spelt_value(value)}; it takes {spelt_kinds(kinds, within)}")
+        return RefusedError()
+
+    def _unknown(self, place: Place, name: str, known: Sequence[str], maker: Maker) -> str:
+        """What is said of a key that a table does not take."""
+        near = difflib.get_close_matches(name, known, 2)
+        remedy = f"did you mean {' or '.join(near)}?" if near else f"the valid ones are {', '.join(known) or 'none'}"
+        return f"{spelt_place(place)} is not known; {remedy}"
+
+    def _due(self, key: Key) -> str:
+        """What a key that is missing takes, in words."""
+        return f"; it takes {spelt_kinds(key.kinds, key.within)}"
+
+    def _cause(self, error: Exception, table: Table, maker: Maker) -> tuple[Place, str]:
+        """The key that an error of a class or function is about, and its message."""
+        said, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
+        absent = next((key for name, key in names.items() if NOT_GIVEN.search(said) and name in said), None)
+        if absent is not None and absent not in table.values:
+            return (
+                table.place,
+                f"{spelt_place(table.place)} has no {absent}{self._due(maker.keys[names_of(names, absent)])}",
+            )
+        place = _named_in(said, table, names)
+        return place, f"{spelt_place(place)}: {said}"
+
+
+def _named_in(message: str, table: Table, names: Mapping[str, str]) -> Place:
+    """The key of a table that a message names, the table itself where it names none.
+
+    Args:
+        message: most often of the form "effects[0], height of the Tie = ...".
+        table: the table.
+        names: keys of arguments that have another name.
+    """
+    place = table.place
+    for word, index in LEADING.findall(message):
+        name = names.get(word, word)
+        if name not in table.values:
+            continue
+        place, value = table.of(name), table.values[name]
+        if index and isinstance(value, list) and int(index) < len(value):
+            value = value[int(index)]
+            place = value.place if isinstance(value, Table) else (*place, int(index))
+        if not isinstance(value, Table):
+            break
+        table, names = value, {}
+    return place
+
+
+def names_of(names: Mapping[str, str], key: str) -> str:
+    """The argument that a key stands for."""
+    return next(name for name, one in names.items() if one == key)
+
+
+def parted(hint: Any, within: Within | None) -> tuple[tuple[Any, ...], Within | None]:
+    """The types of a hint, and the range of its numbers."""
+    key = Key("", hint, None, "")
+    return key.kinds, key.within or within
+
+
+def is_mapping(kind: Any) -> bool:
+    """Whether an argument of a type is a table of values by free names."""
+    origin = get_origin(kind)
+    return isinstance(origin, type) and issubclass(origin, Mapping)
+
+
+def spelt_value(value: Any) -> str:
+    """What a key has, in words."""
+    return "a table" if isinstance(value, Table) else "a list" if isinstance(value, list) else shown(value)
+
+
+def spelt_range(within: Within) -> str:
+    """A range in words."""
+    return f"{within.low:g} to {within.high:g}" + (f" {within.unit}" if within.unit else "")
+
+
+def spelt_kinds(kinds: tuple[Any, ...], within: Within | None) -> str:
+    """What an argument of some types takes, in words."""
+    found = []
+    if any(kind in NUMERIC or get_origin(kind) in NUMERIC for kind in kinds):
+        of = f" of {spelt_range(within)}" if within and math.isfinite(within.high) else ""
+        unit = f", or a text such as {examples_of(within.unit)}" if within and within.unit else ""
+        found.append(f"a number{of}{unit}")
+    found += ["true or false"] if bool in kinds else []
+    if known := [choice for kind in kinds for choice in choices_of(kind)]:
+        found.append(f"one of {', '.join(known)}")
+    elif str in kinds:
+        found.append("a text")
+    if classes := classes_of(kinds):
+        found.append(f"a table of {named(list(classes))}")
+    for kind in kinds:
+        if (items := items_of(kind)) is not None:
+            of = spelt_kinds(parted(items[0], within)[0], None)
+            found.append(f"a list, each {of}" if items[-1] is ... else f"a list of {len(items)}, each {of}")
+        elif is_mapping(kind):
+            found.append("a table of texts")
+    return " or ".join(dict.fromkeys(found)) or "nothing that a file can have"

@@ -1,0 +1,168 @@
+"""The JSON schema of the file, for editors and forms, made from the signatures that the file is read by."""
+
+from __future__ import annotations
+
+import math
+import typing
+from collections.abc import Iterable, Mapping
+from typing import Any, get_args
+
+from ..quantities import Within
+from .assessment import OF_ALL
+from .declarations import USUAL_MAKE, Key, Maker, Makers, choices_of, classes_of, items_of, key_named, makers_of
+from .mechanisms import MECHANISMS, SECTIONS, SITES
+from .reading import NUMERIC, is_mapping, parted
+
+Schema = dict[str, Any]
+
+
+def toml_schema() -> Schema:
+    """The JSON schema of the file of an assessment, draft 2020-12, as `python -m mjrock schema` prints it.
+
+    Each class, constructor and function that a table stands for is one of `$defs`. A number has its `minimum` and
+    `maximum`, and beside them its `unit` in SI, empty for a plain number; a text is a number with a unit.
+    """
+    return SchemaWriter().whole()
+
+
+class SchemaWriter:
+    """Writes the schema, each class once.
+
+    Attributes:
+        parts: the definitions.
+    """
+
+    def __init__(self) -> None:
+        self.parts: Schema = {}
+
+    def whole(self) -> Schema:
+        """The schema of the file."""
+        once = {name: self.of_key(key) for name, key in OF_ALL.items()}
+        several = {"mechanisms": {"type": "object", "additionalProperties": {"$ref": "#/$defs/own"}}}
+        self.parts["own"] = self._mechanism({}, partial=True)
+        self.parts["one"] = self._mechanism(once, partial=False)
+        self.parts["several"] = self._mechanism(once | several, partial=True)
+        return {
+            "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "title": "mjrock assessment",
+            "type": "object",
+            "if": {"required": ["mechanisms"]},
+            "then": {"$ref": "#/$defs/several"},
+            "else": {"$ref": "#/$defs/one"},
+            "$defs": self.parts,
+        }
+
+    def _mechanism(self, once: Schema, *, partial: bool) -> Schema:
+        """The tables of a mechanism, of which a partial one shares some with others."""
+        sections = {name: self._section(name, maker, partial) for name, maker in SECTIONS.items()}
+        kinds = []
+        for kind, makers in MECHANISMS.items():
+            one = self._table(makers[""], partial=partial)
+            named = {"kind": {"const": kind, "default": "Case"}} if kind == "Case" else {"kind": {"const": kind}}
+            needed = [] if partial or kind == "Case" else ["kind"]
+            one["properties"] = named | one["properties"] | sections | once
+            one["required"] = needed + one.pop("required", [])
+            kinds.append(one)
+        if not partial:
+            return {"oneOf": kinds}
+        return {"type": "object", "anyOf": kinds}
+
+    def _section(self, name: str, maker: Maker, partial: bool) -> Schema:
+        """A table beside those of the mechanism."""
+        if name != "site":
+            return self._table(maker, partial=partial) | {"title": name}
+        own = [self._kinds({kind: makers}, partial=True, usual="code_spectrum") for kind, makers in SITES.items()]
+        states = {"type": "object", "description": "of one limit state of the code, with what it does not share"}
+        return {"title": name, "anyOf": [one | {"additionalProperties": states} for one in own]}
+
+    def _table(self, maker: Maker, *, partial: bool) -> Schema:
+        """The schema of a table that stands for a call."""
+        properties = {key_named(key): self.of_key(key, partial) for key in maker.keys.values()}
+        properties = {name: one for name, one in properties.items() if one}
+        needed = [name for key in maker.keys.values() if key.is_needed and (name := key_named(key)) in properties]
+        found: Schema = {"type": "object", "description": maker.doc, "properties": properties}
+        return found | ({"required": needed} if needed and not partial else {}) | {"additionalProperties": False}
+
+    def _kinds(self, kinds: Mapping[str, Makers], *, partial: bool = False, usual: str = "") -> Schema:
+        """The schema of a table whose `kind` and `make` say what it stands for."""
+        found = [
+            self._part(kind, make, maker, partial, kind != usual and len(kinds) > 1)
+            for kind, makers in kinds.items()
+            for make, maker in makers.items()
+        ]
+        return found[0] if len(found) == 1 else {"anyOf": found}
+
+    def _part(self, kind: str, make: str, maker: Maker, partial: bool, named: bool) -> Schema:
+        """One class or constructor, as one of the definitions."""
+        usual = USUAL_MAKE.get(kind, "" if make == "" else kind)
+        name = f"{kind}.{make}" if make else kind
+        full = name + ("?" if partial else "") + ("" if named else "!")
+        if full not in self.parts:
+            self.parts[full] = {}  # of a class within itself
+            one = self._table(maker, partial=partial)
+            given = {"kind": {"const": kind}} if named else {}
+            needed = ["kind"] if named else []
+            if make != usual or make:
+                given["make"] = {"const": make or kind} | ({"default": make} if make == usual else {})
+                needed += [] if make == usual else ["make"]
+            one["properties"] = given | one["properties"]
+            if needed + one.get("required", []):
+                one["required"] = needed + one.get("required", [])
+            self.parts[full] = {"title": name} | one
+        return {"$ref": f"#/$defs/{full}"}
+
+    def of_key(self, key: Key, partial: bool = False) -> Schema:
+        """The schema of a key; empty for one that a file cannot have."""
+        found = self._of_kinds(key.kinds, key.within, partial)
+        if not found:
+            return {}
+        if key.doc:
+            found["description"] = key.doc
+        if isinstance(key.default, bool | int | float | str) and math.isfinite(
+            key.default if isinstance(key.default, int | float) else 0
+        ):
+            found["default"] = key.default
+        return found
+
+    def _of_kinds(self, kinds: Iterable[Any], within: Within | None, partial: bool = False) -> Schema:
+        """The schema of a value of one of some types."""
+        kinds = tuple(kinds)
+        found: list[Schema] = []
+        texts = [choice for kind in kinds for choice in choices_of(kind)]
+        if bool in kinds:
+            found.append({"type": "boolean"})
+        if any(kind in NUMERIC or typing.get_origin(kind) in NUMERIC for kind in kinds):
+            found.append(_number(kinds, within))
+        if texts:
+            found.append({"type": "string", "enum": texts})
+        elif str in kinds:
+            found.append({"type": "string"})
+        for kind in kinds:
+            if (items := items_of(kind)) is not None:
+                found.append(self._list(items, within))
+            elif is_mapping(kind):
+                found.append(
+                    {"type": "object", "additionalProperties": self._of_kinds(*parted(get_args(kind)[1], None))}
+                )
+        if classes := classes_of(kinds):
+            found.append(self._kinds({name: makers_of(kind) for name, kind in classes.items()}, partial=partial))
+        found = [one for i, one in enumerate(found) if one and one not in found[:i]]
+        return (found[0] if len(found) == 1 else {"anyOf": found}) if found else {}
+
+    def _list(self, items: tuple[Any, ...], within: Within | None) -> Schema:
+        """The schema of a list."""
+        if items[-1] is ...:
+            of = self._of_kinds(*parted(items[0], within))
+            return {"type": "array", "items": of} if of else {}
+        each = [self._of_kinds(*parted(one, within)) for one in items]
+        return {"type": "array", "prefixItems": each, "minItems": len(each), "maxItems": len(each)}
+
+
+def _number(kinds: tuple[Any, ...], within: Within | None) -> Schema:
+    """The schema of a number, or of a text with a unit."""
+    whole = within.whole if within else int in kinds and float not in kinds
+    found: Schema = {"type": "integer"} if whole else {"type": ["number", "string"]}
+    if within is not None:
+        found |= {"minimum": within.low} | ({} if within.infinite else {"maximum": within.high})
+        found |= {"unit": "" if within.whole else within.unit}
+    return found

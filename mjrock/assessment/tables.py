@@ -1,0 +1,246 @@
+"""TOML text as tables that know where each key stands."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+Place = tuple[str | int, ...]
+"""A key by the tables that it is in: ("effects", 0, "height")."""
+LARGEST = 1_000_000
+"""Most characters of a file."""
+AT = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
+"""What `tomllib` says of the place of an error."""
+
+
+class Fault(NamedTuple):
+    """What is wrong with a file.
+
+    Args:
+        place: the key or table.
+        message: in words, with the valid range and the remedy.
+        line: of the file, from 1 on; None where there is no file.
+    """
+
+    place: Place
+    message: str
+    line: int | None = None
+
+
+class AssessmentError(ValueError):
+    """What is wrong with a file, or with tables of its form, all at once.
+
+    Args:
+        faults: what is wrong, in the order of the file.
+        name: of the file; empty where there is none.
+    """
+
+    def __init__(self, faults: tuple[Fault, ...], name: str = "") -> None:
+        self.faults, self.name = faults, name
+        super().__init__("\n".join(self.lines))
+
+    @property
+    def lines(self) -> list[str]:
+        """Each fault on a line, with the file and its line."""
+        before = [
+            f"{self.name or 'line'}{':' if self.name else ' '}{one.line}" if one.line else self.name
+            for one in self.faults
+        ]
+        return [f"{at}: {one.message}" if at else one.message for at, one in zip(before, self.faults, strict=True)]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.faults, self.name)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of a file.
+
+    Args:
+        place: where it is.
+        values: of its keys: a number, a text, a truth, a date, a list, or a table.
+        places: where each of its keys stands, which may be in another table that is shared.
+    """
+
+    place: Place
+    values: dict[str, Any] = field(default_factory=dict)
+    places: dict[str, Place] = field(default_factory=dict)
+
+    def without(self, *names: str) -> Table:
+        """The table without some keys."""
+        return Table(self.place, {name: one for name, one in self.values.items() if name not in names}, self.places)
+
+    def of(self, name: str) -> Place:
+        """Where a key stands, or would stand."""
+        return self.places.get(name, (*self.place, name))
+
+    def over(self, shared: Table) -> Table:
+        """The table with what it shares with others: what it has itself takes the place of that, and its effects come
+        after shared ones. False takes a shared table away."""
+        values, places = dict(shared.values), dict(shared.places)
+        for name, own in self.values.items():
+            other = values.get(name)
+            if isinstance(own, Table) and isinstance(other, Table):
+                own = own.over(other)
+            elif name == "effects" and isinstance(own, list) and isinstance(other, list):
+                own = [*other, *own]
+            values[name], places[name] = own, self.of(name)
+            if own is False and isinstance(other, Table | list):
+                del values[name]
+        return Table(self.place, values, places)
+
+
+def located(value: Any, place: Place = ()) -> Any:
+    """Nested dictionaries and lists as tables."""
+    if isinstance(value, Mapping):
+        keys = {str(name): (*place, str(name)) for name in value}
+        return Table(place, {str(name): located(one, (*place, str(name))) for name, one in value.items()}, keys)
+    if isinstance(value, list | tuple):
+        return [located(one, (*place, i)) for i, one in enumerate(value)]
+    return value
+
+
+def spelt_place(place: Place) -> str:
+    """A key as it is named in messages: effects[0].height."""
+    text = ""
+    for part in place:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text or "the file"
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """The tables of a text.
+
+    Raises:
+        AssessmentError: with the line, for a text that is not TOML, is too long, or is nested too deeply.
+    """
+    if len(text) > LARGEST:
+        raise AssessmentError((Fault((), f"has {len(text)} characters; the valid range is 0 to {LARGEST}"),))
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        found = AT.search(str(error))
+        line = int(found[1]) if found and found[1] else text.count("\n") + 1
+        message = AT.sub("", str(error)).replace("{", "(").replace("}", ")")
+        raise AssessmentError((Fault((), f"is not TOML: {message}", line),)) from None
+    except RecursionError:
+        raise AssessmentError((Fault((), "is nested too deeply; a file has some five levels", 1),)) from None
+
+
+class Scanner:
+    """Lines of the keys of a text that is valid TOML.
+
+    Args:
+        text: the text.
+
+    Attributes:
+        lines: the line of each key, table and item of a list, from 1 on.
+    """
+
+    SPACE = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+    STRING = re.compile(r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'', re.DOTALL)
+    PART = re.compile(r"""[ \t]*("(?:\\.|[^"\\\n])*"|'[^'\n]*'|[A-Za-z0-9_-]+)[ \t]*""")
+    SCALAR = re.compile(r"[^,\]}#\n]*")
+
+    def __init__(self, text: str) -> None:
+        self.text, self.at = text.replace("\r\n", "\n"), 0
+        self.lines: dict[Place, int] = {}
+        self.counts: dict[Place, int] = {}
+        self._counted, self._line = 0, 1
+        table: Place = ()
+        while self._skip() < len(self.text):
+            if self.text.startswith("[[", self.at):
+                table = self._header(2)
+            elif self.text[self.at] == "[":
+                table = self._header(1)
+            else:
+                self._pair(table)
+
+    @property
+    def line(self) -> int:
+        """The line that it is at."""
+        self._line += self.text.count("\n", self._counted, self.at)
+        self._counted = self.at
+        return self._line
+
+    def _skip(self) -> int:
+        """Go on to the next character that counts."""
+        found = self.SPACE.match(self.text, self.at)
+        self.at = found.end() if found else self.at
+        return self.at
+
+    def _note(self, place: Place) -> None:
+        """The first line of a place, and of the tables that it is in."""
+        for end in range(1, len(place) + 1):
+            self.lines.setdefault(place[:end], self.line)
+
+    def _key(self) -> list[str]:
+        """The parts of a key with dots."""
+        parts: list[str] = []
+        while found := self.PART.match(self.text, self.at):
+            raw, self.at = found[1], found.end()
+            parts.append(next(iter(tomllib.loads(f"{raw} = 0"))))
+            if not self.text.startswith(".", self.at):
+                break
+            self.at += 1
+        return parts
+
+    def _header(self, brackets: int) -> Place:
+        """The place of a table whose head is next."""
+        self.at += brackets
+        *before, last = self._key()
+        self.at += brackets
+        place: Place = ()
+        for part in before:
+            place = self._last((*place, part))
+        place = (*place, last)
+        if brackets == 2:
+            self.counts[place] = self.counts.get(place, 0) + 1
+        place = self._last(place)
+        self._note(place)
+        return place
+
+    def _last(self, place: Place) -> Place:
+        """The last table of a list of them; another place as it is."""
+        return (*place, self.counts[place] - 1) if place in self.counts else place
+
+    def _pair(self, table: Place) -> None:
+        """A key and its value."""
+        place = (*table, *self._key())
+        self._note(place)
+        self.at = self.text.index("=", self.at) + 1
+        self._value(place)
+
+    def _value(self, place: Place) -> None:
+        """A value, with what is in it."""
+        self._skip()
+        if found := self.STRING.match(self.text, self.at):
+            self.at = found.end()
+        elif (opening := self.text[self.at]) in "[{":
+            self.at += 1
+            count = 0
+            while self.text[self._skip()] not in "]}":
+                if opening == "{":
+                    self._pair(place)
+                else:
+                    self._note((*place, count))
+                    self._value((*place, count))
+                    count += 1
+                if self.text[self._skip()] == ",":
+                    self.at += 1
+            self.at += 1
+        elif found := self.SCALAR.match(self.text, self.at):
+            self.at = found.end()
+
+
+def lines_of(text: str) -> dict[Place, int]:
+    """The line of each key of a text that is valid TOML, from 1 on."""
+    return Scanner(text).lines
+
+
+def line_of(place: Place, lines: Mapping[Place, int]) -> int | None:
+    """The line of a place, or of the table that it would be in."""
+    return next((lines[place[:end]] for end in range(len(place), 0, -1) if place[:end] in lines), None)

@@ -1,0 +1,66 @@
+"""Plain tables as TOML text, floats with all their digits."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml_text(document: Mapping[str, Any]) -> str:
+    """Tables as TOML text, from which `tomllib` reads the same again.
+
+    Args:
+        document: nested dictionaries and lists of texts, numbers, truths and tables. None is left out.
+
+    Raises:
+        TypeError: for a value that TOML has not.
+    """
+    return "\n".join(_lines(document, "")).strip() + "\n"
+
+
+def _lines(table: Mapping[str, Any], name: str) -> list[str]:
+    """The lines of a table: its values first, then the tables in it."""
+    lines, tables = [], []
+    for key, value in table.items():
+        full = f"{name}.{_key(key)}" if name else _key(key)
+        if isinstance(value, Mapping):
+            below = _lines(value, full)
+            head = [f"[{full}]"] if not value or any(not one.startswith("[") for one in below[:1]) else []
+            tables += ["", *head, *below] if head else below
+        elif isinstance(value, list | tuple) and value and all(isinstance(one, Mapping) for one in value):
+            for one in value:
+                tables += ["", f"[[{full}]]", *_lines(one, full)]
+        elif value is not None:
+            lines.append(f"{_key(key)} = {_value(value)}")
+    return lines + tables
+
+
+def _key(name: str) -> str:
+    return name if BARE.fullmatch(name) else _text(name)
+
+
+def _text(text: str) -> str:
+    """A text in quotation marks. JSON writes it as TOML reads it, but for the delete character."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _value(value: Any) -> str:
+    """A value on a line."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(value) if math.isfinite(value) else str(value)
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(key)} = {_value(one)}" for key, one in value.items() if one is not None) + " }"
+    raise TypeError(f"{value!r} of type {type(value).__name__} is nothing that a TOML file has")
