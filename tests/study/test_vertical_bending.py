@@ -1,9 +1,11 @@
 """Vertical bending between floors: closed form, limit analysis, the check by hand, and runs about the multiplier."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import mjrock as mr
 
@@ -113,7 +115,7 @@ def test_it_stands_a_slow_push_below_the_multiplier_and_falls_above(solve):
         (lambda: mr.VerticalBending(3, LOAD), "wall = 3 of type int is not a Block"),
         (
             lambda: mr.Masonry.between_floors(mr.Block.from_size(0.35, 3.2, inset=0.05), LOAD),
-            "is not a plain rectangle; cut it to the strip",
+            "is not a rectangle, with a profile or without; cut it to the strip",
         ),
     ],
 )
@@ -188,3 +190,113 @@ def test_e_star_and_d_of_a_mass_in_between():
 def test_what_does_not_load_it_is_refused(effect, complaint):
     with pytest.raises((TypeError, ValueError), match=complaint):
         two_storeys((effect,))
+
+
+T0, T1, STEP, HEIGHT, FLOOR, BEARS = 0.45, 0.30, 3.2, 6.0, 14e3, 0.12
+
+
+def stepped(plumb, **options):
+    """Two storeys, the upper one thinner; the roof bears on 0.12 m from its inner face."""
+    profile = [(0, T0), (STEP, T0), (STEP, T1), (HEIGHT, T1)]
+    wall = mr.Block.from_size(T0, HEIGHT, 1.5, 1800.0, profile=profile, plumb=plumb)
+    return mr.VerticalBending(wall, FLOOR, BEARS, **options)
+
+
+def storeys(plumb, crack, above_a_step=True):
+    """Weight, x and z of the rectangles below and above a crack, x from the inner edge of the base; its inner edge."""
+    inside = T0 - T1 if plumb == "outer" else 0.0
+    thin = crack > STEP or (crack == STEP and above_a_step)
+    cuts = sorted({0.0, STEP, crack, HEIGHT})
+    below, above = [], []
+    for low, high in itertools.pairwise(cuts):
+        t, face = (T0, 0.0) if high <= STEP else (T1, inside)
+        row = 1800 * mr.GRAVITY * 1.5 * t * (high - low), face + t / 2, (low + high) / 2
+        (below if high <= crack else above).append(row)
+    return np.array(below), np.array(above), inside if thin else 0.0, inside
+
+
+def stepped_by_hand(plumb, crack, above_a_step=True):
+    """Virtual work of a unit rotation of the lower body about the outer edge of the base."""
+    below, above, c, inside = storeys(plumb, crack, above_a_step)
+    r = crack / (HEIGHT - crack)
+    work = (below[:, 0] * (T0 - below[:, 1])).sum() + (above[:, 0] * (T0 - c + r * (above[:, 1] - c))).sum()
+    work += FLOOR * (T0 - c + r * (inside + BEARS - c))
+    return work / ((below[:, 0] * below[:, 2]).sum() + (above[:, 0] * r * (HEIGHT - above[:, 2])).sum())
+
+
+@pytest.mark.parametrize("plumb", ["inner", "outer"])
+def test_a_wall_that_steps_back_bends_at_the_least_of_all_cracks(plumb):
+    bending = stepped(plumb)
+    cracks = [STEP, *np.linspace(0.07, 5.93, 3001)]
+    scanned = [stepped_by_hand(plumb, crack, side) for crack in cracks for side in (True, False)]
+    assert bending.multiplier == pytest.approx(min(scanned), rel=1e-6)
+    for crack in (1.0, STEP, 4.0, 5.5):
+        given = stepped(plumb, crack=crack)
+        hand = stepped_by_hand(plumb, crack)
+        assert given.multiplier == pytest.approx(hand, rel=1e-12)
+        assert given.curve.multiplier[0] == pytest.approx(hand, rel=1e-12)
+        blocks = mr.Masonry.between_floors(given.wall, FLOOR, bearing=BEARS, crack=crack, friction=2.0)
+        assert mr.collapse_multiplier(blocks).multiplier == pytest.approx(hand, rel=1e-8)
+
+
+@pytest.mark.parametrize("plumb", ["inner", "outer"])
+def test_the_work_along_the_curve_of_a_stepped_wall_is_what_weights_and_floor_have_risen(plumb):
+    """Both bodies as they stand at the end, from the angle of the lower one alone."""
+    crack = 4.0
+    bending = stepped(plumb, crack=crack)
+    below, above, c, inside = storeys(plumb, crack)
+    curve = bending.curve
+    theta = curve.rotation[-1]
+    edge = np.array([T0, 0.0])
+
+    def turned(points, about, angle):
+        x, z = (np.atleast_2d(points) - about).T
+        return np.column_stack([x * np.cos(angle) + z * np.sin(angle), z * np.cos(angle) - x * np.sin(angle)]) + about
+
+    hinge = turned((c, crack), edge, theta)[0]
+    bears = np.array([inside + BEARS, HEIGHT])
+    back = brentq(lambda psi: turned(bears + hinge - (c, crack), hinge, -psi)[0, 0] - bears[0], 0.0, 1.0)
+    moved = turned(below[:, 1:], edge, theta), turned(above[:, 1:] + hinge - (c, crack), hinge, -back)
+    floor = turned(bears + hinge - (c, crack), hinge, -back)[0]
+    rise = FLOOR * (floor[1] - HEIGHT)
+    total, sway = 0.0, 0.0
+    for rows, places in ((below, moved[0]), (above, moved[1])):
+        rise += rows[:, 0] @ (places[:, 1] - rows[:, 2])
+        sway += rows[:, 0] @ (places[:, 0] - rows[:, 1])
+        total += rows[:, 0].sum()
+    assert curve.displacement[-1] == pytest.approx(sway / total, rel=1e-5)
+    assert total * np.trapezoid(curve.multiplier, curve.displacement) == pytest.approx(rise, rel=1e-6)
+
+
+def test_e_star_and_the_check_of_a_stepped_wall():
+    """Virtual displacements of the two centroids: z below, r (h - z) above."""
+    bending = stepped("outer", crack=4.0)
+    below, above, *_ = storeys("outer", 4.0)
+    weights = np.array([below[:, 0].sum(), above[:, 0].sum()])
+    z = (below[:, 0] @ below[:, 2] / weights[0], above[:, 0] @ above[:, 2] / weights[1])
+    sway = np.array([z[0], 2.0 * (HEIGHT - z[1])])
+    share = (weights @ sway) ** 2 / (weights.sum() * (weights @ sway**2))
+    assert share < 1 - 1e-4
+    assert bending.participation == pytest.approx(share, rel=1e-12)
+    check = mr.mechanism_check(bending, lambda T, xi: 0.02)
+    assert check.a_0 == pytest.approx(stepped_by_hand("outer", 4.0) * mr.GRAVITY / (share * 1.35), rel=1e-12)
+
+
+def test_a_profile_of_one_thickness_is_the_plain_wall():
+    plain = mr.VerticalBending(WALL, LOAD, 0.2)
+    profile = [(0, 0.35), (1.1, 0.35), (1.1, 0.35), (3.2, 0.35)]
+    cut = mr.VerticalBending(mr.Block.from_size(0.35, 3.2, 1.5, 1800.0, profile=profile, plumb="outer"), LOAD, 0.2)
+    assert cut.multiplier == pytest.approx(plain.multiplier, rel=1e-12)
+    assert cut.crack_height == pytest.approx(plain.crack_height, rel=1e-6)
+    given = [mr.VerticalBending(one.wall, LOAD, 0.2, crack=2.0) for one in (plain, cut)]
+    assert given[0].participation == pytest.approx(given[1].participation, rel=1e-12)
+    np.testing.assert_allclose(given[0].curve.multiplier, given[1].curve.multiplier, atol=1e-12)
+
+
+def test_a_floor_on_the_setback_loads_the_lower_storey():
+    """12 kN in the middle of the ledge of 0.15 m: it rises by t - 0.075 where the crack is above."""
+    ledge = mr.Load(12e3, STEP, 0.075 - T0 / 2)
+    found = stepped("outer", crack=4.0, effects=ledge).multiplier - stepped("outer", crack=4.0).multiplier
+    below, above, *_ = storeys("outer", 4.0)
+    work = (below[:, 0] @ below[:, 2]) + (above[:, 0] * 2.0) @ (HEIGHT - above[:, 2])
+    assert found == pytest.approx(12e3 * (T0 - 0.075) / work, rel=1e-12)

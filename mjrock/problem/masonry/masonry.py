@@ -697,7 +697,7 @@ class Masonry(Drawn):
     ) -> Self:
         """A wall that cracks between two floors, which hold it sideways, seen along its length.
 
-        The inner face is x = 0. The upper floor is a block with the mass of the load between two smooth guides, so that
+        The inner face at the base is x = 0. The upper floor is a block with the mass of the load between two smooth guides, so that
         it may rise and not turn. It is anchored to the wall: its joint has a friction of 10, the largest there is.
 
         Args:

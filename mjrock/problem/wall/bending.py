@@ -31,6 +31,7 @@ from ...quantities import (
 )
 from .block import Block
 from .effects import AddedMass, Load
+from .section import moments
 from .tie import Tie
 
 CRACKS = 0.01, 0.99
@@ -57,6 +58,21 @@ class BendingCurve(NamedTuple):
     multiplier: Array
 
 
+class Hinges(NamedTuple):
+    """Where a wall that bends outwards turns, from the inner edge of its base outwards and upwards.
+
+    Args:
+        edge: x of the outer edge of the base [m].
+        x, z: inner edge of the crack [m].
+        top: x and z of the place where the floor above bears [m].
+    """
+
+    edge: float
+    x: float
+    z: float
+    top: tuple[float, float]
+
+
 class Weights(NamedTuple):
     """What loads a wall that bends.
 
@@ -72,11 +88,12 @@ class Weights(NamedTuple):
     z: Array
 
 
-def require_plain(wall: Block) -> None:
-    """Raise a TypeError or a ValueError unless a wall is a plain rectangle."""
+def require_strip(wall: Block, *, stepped: bool) -> None:
+    """Raise a TypeError or a ValueError unless a wall is a plain rectangle, or has a profile alone where it may."""
     require_kind("wall", wall, Block)
-    if not wall.is_plain or wall.inset:
-        raise ValueError(f"wall = {wall!r} is not a plain rectangle; cut it to the strip between its openings")
+    if wall.openings or wall.gable or wall.masses or wall.inset or (wall.profile and not stepped):
+        valid = "rectangle, with a profile or without" if stepped else "plain rectangle"
+        raise ValueError(f"wall = {wall!r} is not a {valid}; cut it to the strip between its openings")
 
 
 @dataclass(frozen=True)
@@ -92,23 +109,31 @@ class VerticalBending:
     which is least, 2 / (W h) [sqrt((W + N) t) + sqrt(N a)]^2, where mu / (1 - mu) = sqrt((W + N) t / (N a)). Rigid
     bodies, no tension, no sliding.
 
+    A wall with a profile, such as one whose storeys step back inside, is cut into two bodies of the weights W_1 and W_2
+    at x_1, z_1 and x_2, z_2 from the inner edge of the base. With c the inner edge of the crack, of the thinner part
+    where it is at a step, z its height, r = z / (h - z), and the floor at a,
+
+        alpha_0 = [W_1 (t - x_1) + W_2 (t - c + r (x_2 - c)) + N (t - c + r (a - c))] / [W_1 z_1 + W_2 r (h - z_2)],
+
+    and the crack with the least of it is found in each stretch between steps.
+
     A floor in between that loads the wall and does not hold it is an effect: a `Load`, or an `AddedMass` where its
     inertia pushes the wall too. With P at a distance x from the inner face and a height z, and r = mu / (1 - mu), it
     adds P (t - x) to the work of the weights below the crack and P (t + r x) above it, over mu h, and a mass adds
     P z or P r (h - z) to W mu h / 2. The crack is then found in each stretch between the effects.
 
     Args:
-        wall: a plain rectangle.
+        wall: a rectangle, or one with a `profile` and the face of it that is `plumb`.
         load: of the floor on the whole length of the wall [N], 1 to 1e9. It has no inertia sideways, where the floors
             are held.
-        bearing: how far from the inner face the floor bears at most [m], above 0 and up to the thickness, where the
-            whole load acts as the wall turns; None is the thickness.
+        bearing: how far from the inner face at the top the floor bears at most [m], above 0 and up to the thickness
+            there, where the whole load acts as the wall turns; None is the thickness.
         crack: its height [m], 0.01 to 0.99 times that of the wall; None is that of the least multiplier.
-        effects: loads and masses on the wall, their offsets from its middle, outwards [m].
+        effects: loads and masses on the wall, their offsets from the middle of its base, outwards [m].
 
     Raises:
-        TypeError, ValueError: for a wall that is not a plain rectangle, an effect of another kind or beside the wall,
-            or a value outside its range.
+        TypeError, ValueError: for a wall with openings, a gable, masses or an inset, an effect of another kind or
+            beside the wall, or a value outside its range.
 
     Examples:
         >>> strip = mr.VerticalBending(mr.Block.from_size(0.3, 4.0), load=20e3)
@@ -125,9 +150,9 @@ class VerticalBending:
     __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        require_plain(self.wall)
+        require_strip(self.wall, stepped=True)
         keep_declared(self)
-        thickness, height = 2 * self.wall.b, 2 * self.wall.h
+        thickness, height = self._top[1], 2 * self.wall.h
         if self.bearing is not None:
             keep(self, bearing=require_within("bearing", self.bearing, 1e-3 * thickness, thickness, "m"))
         if self.crack is not None:
@@ -143,29 +168,41 @@ class VerticalBending:
 
     @property
     def lever(self) -> float:
-        """Distance of the load from the inner face [m]."""
-        return 2 * self.wall.b if self.bearing is None else self.bearing
+        """Distance of the load from the inner face at the top [m]."""
+        return self._top[1] if self.bearing is None else self.bearing
+
+    @property
+    def _top(self) -> tuple[float, float]:
+        """The inner face at the top, from the inner edge of the base, and the thickness there [m]."""
+        inner, outer = (float(face) for face in self.wall.section.faces(np.array(2 * self.wall.h)))
+        return inner + self.wall.b, outer - inner
+
+    def hinges(self, crack: float) -> Hinges:
+        """Where it turns about a crack at a height [m]."""
+        inner = float(self.wall.section.met(np.array(crack))[0]) + self.wall.b
+        return Hinges(2 * self.wall.b, inner, crack, (self._top[0] + self.lever, 2 * self.wall.h))
 
     def weights(self, crack: float) -> Weights:
         """The weights of both bodies about a crack at a height [m], of the floor above and of the effects."""
-        t, h, W, mu = 2 * self.wall.b, 2 * self.wall.h, self.wall.weight, crack / (2 * self.wall.h)
-        rows = [
-            (W * mu, W * mu, 0.5 * t, 0.5 * crack),
-            (W * (1 - mu), W * (1 - mu), 0.5 * t, 0.5 * (h + crack)),
-            (self.load, 0.0, self.lever, h),
-        ]
+        wall, b, rows = self.wall, self.wall.b, list[tuple[float, ...]]()
+        for between in ((0.0, crack), (crack, 2 * wall.h)):
+            part = moments(wall.section, wall.front, between)
+            weight = GRAVITY * wall.density * part.volume
+            rows.append((weight, weight, b + part.x / part.volume, part.z / part.volume))
+        rows.append((self.load, 0.0, *self.hinges(crack).top))
         for effect in self.effects:
             inertia = GRAVITY * effect.mass_added
             weight = effect.force if isinstance(effect, Load) else inertia
-            rows.append((weight, inertia, 0.5 * t + effect.offset, effect.height))
+            rows.append((weight, inertia, b + effect.offset, effect.height))
         return Weights(*np.transpose(rows))
 
     def _rates(self, crack: float) -> tuple[Weights, Array, Array]:
         """The weights, and how fast they begin to move outwards and upwards over the rotation of the lower body [m]."""
-        found, t, h = self.weights(crack), 2 * self.wall.b, 2 * self.wall.h
-        ratio, above = crack / (h - crack), found.z > crack
+        found, at = self.weights(crack), self.hinges(crack)
+        h, above = at.top[1], found.z > crack
+        ratio = crack / (h - crack)
         sway = np.where(above, ratio * (h - found.z), found.z)
-        return found, sway, np.where(above, t + ratio * found.x, t - found.x)
+        return found, sway, np.where(above, at.edge - at.x + ratio * (found.x - at.x), at.edge - found.x)
 
     def _starts(self, crack: float) -> float:
         """The multiplier of a crack at a height [m]."""
@@ -178,16 +215,16 @@ class VerticalBending:
         height = 2 * self.wall.h
         if self.crack is not None:
             return self.crack
-        if not self.effects:
+        if not self.effects and self.wall.is_plain:
             ratio = math.sqrt((self.wall.weight + self.load) * 2 * self.wall.b / (self.load * self.lever))
             return height * ratio / (1 + ratio)
         low, high = (share * height for share in CRACKS)
-        ends = [low, *sorted(z for effect in self.effects if low < (z := effect.height) < high), high]
+        steps = [effect.height for effect in self.effects] + [z for z, _ in self.wall.profile or ()]
+        ends = [low, *sorted({z for z in steps if low < z < high}), high]
         options = {"xatol": 1e-9 * height}
         found = [
             scipy.optimize.minimize_scalar(self._starts, bounds=stretch, method="bounded", options=options)
             for stretch in pairwise(ends)
-            if stretch[1] > stretch[0]
         ]
         return float(min(found, key=lambda one: float(one.fun)).x)
 
@@ -198,7 +235,8 @@ class VerticalBending:
 
     @property
     def participation(self) -> float:
-        """e*, the share of the mass that takes part [-], C8.7.1.5; 1 without masses, as both bodies move alike."""
+        """e*, the share of the mass that takes part [-], C8.7.1.5; 1 of one thickness without masses, where both bodies
+        move alike."""
         found, sway, _ = self._rates(self.crack_height)
         return min(float((found.inertia @ sway) ** 2 / (found.inertia.sum() * (found.inertia @ sway**2))), 1.0)
 
@@ -209,8 +247,9 @@ class VerticalBending:
         The multiplier is the rate of the potential energy of the weights and the load over that of the horizontal
         displacement of the weights.
         """
-        t, a, z = 2 * self.wall.b, self.lever, self.crack_height
-        above, reach = 2 * self.wall.h - z, math.hypot(self.lever, 2 * self.wall.h - z)
+        at = self.hinges(self.crack_height)
+        t, z, a, above = at.edge - at.x, at.z, at.top[0] - at.x, at.top[1] - at.z  # from the inner edge of the crack
+        reach = math.hypot(a, above)
         theta = np.linspace(0.0, 0.5 * math.pi, CURVE_POINTS)
         x = t * (1 - np.cos(theta)) + z * np.sin(theta)  # of the inner edge of the crack
         theta, x = theta[x - a < reach], x[x - a < reach]
@@ -222,13 +261,14 @@ class VerticalBending:
         rise, sway, moved = (np.zeros_like(theta) for _ in range(3))
         for weight, inertia, px, pz in zip(*found, strict=True):
             if pz > z:
-                high = pz - z
-                moves = x + px * (cosine_up - 1) - high * sine_up
-                outwards = across - rate * (px * sine_up + high * cosine_up)
-                upwards = up + rate * (px * cosine_up - high * sine_up)
+                beside, high = px - at.x, pz - z
+                moves = x + beside * (cosine_up - 1) - high * sine_up
+                outwards = across - rate * (beside * sine_up + high * cosine_up)
+                upwards = up + rate * (beside * cosine_up - high * sine_up)
             else:
-                moves = (t - px) * (1 - cosine) + pz * sine
-                outwards, upwards = (t - px) * sine + pz * cosine, (t - px) * cosine - pz * sine
+                beside = at.edge - px
+                moves = beside * (1 - cosine) + pz * sine
+                outwards, upwards = beside * sine + pz * cosine, beside * cosine - pz * sine
             rise, sway, moved = rise + weight * upwards, sway + inertia * outwards, moved + inertia * moves
         multiplier, moved = rise / sway, moved / found.inertia.sum()
         end = int(np.flatnonzero(multiplier <= 0)[0])
@@ -241,7 +281,7 @@ class VerticalBending:
     @property
     def floor_depth(self) -> float:
         """Depth of a floor with the mass of the load at some 2500 kg/m3 [m], once to five times the thickness."""
-        thickness = 2 * self.wall.b
+        thickness = self._top[1]
         return min(max(self.load / (self._specific * TYPICAL), thickness), DEEPEST_FLOOR * thickness)
 
     @property
@@ -251,7 +291,7 @@ class VerticalBending:
         Raises:
             ValueError: for a load that is too small or too large for a block.
         """
-        thickness = 2 * self.wall.b
+        thickness = self._top[1]
         least = self._specific * thickness * DENSITIES.low
         most = self._specific * DEEPEST_FLOOR * thickness * DENSITIES.high
         load = require_within("load", self.load, least, most, "N")
@@ -264,10 +304,10 @@ class VerticalBending:
 
     @property
     def floor_ends(self) -> tuple[float, float]:
-        """Between which x from the inner face the floor above lies [m]: from half a thickness behind it to where it
-        bears, and beyond the outer face where it bears on the whole thickness."""
-        thickness = 2 * self.wall.b
-        return -0.5 * thickness, 1.5 * thickness if self.bearing is None else self.bearing
+        """Between which x from the inner edge of the base the floor above lies [m]: from half a thickness behind the
+        inner face at the top to where it bears, and beyond the outer face where it bears on the whole thickness."""
+        face, thickness = self._top
+        return face - 0.5 * thickness, face + (1.5 * thickness if self.bearing is None else self.bearing)
 
 
 TYPICAL_FRICTION = 0.4
@@ -314,7 +354,7 @@ class HorizontalBending:
     __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        require_plain(self.wall)
+        require_strip(self.wall, stepped=False)
         keep_declared(self)
         if self.crack is not None:
             length = self.wall.length

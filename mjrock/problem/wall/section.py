@@ -162,9 +162,16 @@ class Section(NamedTuple):
 
     def faces(self, z: Array) -> tuple[Array, Array]:
         """Where the inner and the outer face are at heights [m], x [m], of the thicker part at a step; (n,) each."""
+        return self.across(np.maximum(*self._thicknesses(z)))
+
+    def met(self, z: Array) -> tuple[Array, Array]:
+        """Where a crack at heights [m] begins and ends, x [m]: the faces of the thinner part at a step; (n,) each."""
+        return self.across(np.minimum(*self._thicknesses(z)))
+
+    def _thicknesses(self, z: Array) -> tuple[Array, Array]:
+        """The thickness just above and just below heights [m], shape (n,) each."""
         heights, thicknesses = np.transpose(self.profile)
-        below = np.interp(-z, -heights[::-1], thicknesses[::-1])
-        return self.across(np.maximum(np.interp(z, heights, thicknesses), below))
+        return np.interp(z, heights, thicknesses), np.interp(-z, -heights[::-1], thicknesses[::-1])
 
     def slabs(self, cuts: Collection[float]) -> Iterator[tuple[tuple[float, float], Array]]:
         """The slabs between the corners of the profile and further heights: lower and upper end, z [m], and thickness
@@ -266,15 +273,17 @@ class Front(NamedTuple):
                 )
 
 
-def moments(section: Section, front: Front) -> Moments:
-    """Volume and moments of a wall.
+def moments(section: Section, front: Front, between: tuple[float, float] = (0.0, math.inf)) -> Moments:
+    """Volume and moments of a wall, or of its part between two heights [m].
 
     Between corners a wall of one length has moments of at most the third degree, which Simpson's rule integrates
     exactly. Where the length changes the height is the sine of an angle between the ends, which makes chords of a
     circle smooth there, and Gauss's rule is taken.
     """
     total = np.zeros(5)
-    for (low, high), ends in section.slabs(front.corners):
+    for (low, high), ends in section.slabs(front.corners | set(between)):
+        if not between[0] <= low < high <= between[1]:
+            continue
         if front.is_curved:
             angle = 0.5 * math.pi * NODES
             share, weight = 0.5 * (1 + np.sin(angle)), WEIGHTS * 0.25 * math.pi * np.cos(angle)

@@ -74,7 +74,7 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[FlatBlock]:
                 "a Polygon with its corners cut off"
             )
         fixed = i == 0 and not ground
-        polygons.append(_standing(block, z, fixed, f"block_{i}"))
+        polygons.append(_standing(block, (0.0, z), fixed, f"block_{i}"))
         if not math.isclose(polygons[-1].mass, block.mass, rel_tol=1e-9):
             raise ValueError(
                 f"blocks[{i}] has openings, a gable or masses, and a block of a stack has one length: cut it at sills "
@@ -88,12 +88,15 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[FlatBlock]:
     return polygons
 
 
-def _standing(block: Block, z: float, fixed: bool, name: str) -> FlatBlock:
-    """A block whose base is at a height z [m]: a polygon, or one for each slab of its profile."""
-    parts = []
-    for (low, high), thickness in block.section.slabs(()):
-        if high > low:
-            inner, outer = block.section.across(thickness)
+def _standing(
+    block: Block, at: tuple[float, float], fixed: bool, name: str, between: tuple[float, float] = (0.0, math.inf)
+) -> FlatBlock:
+    """A block, or its part between two heights, the middle of whose base is at x and z [m]: a polygon, or one for each
+    slab of its profile."""
+    parts, (x, z) = [], at
+    for (low, high), thickness in block.section.slabs(between):
+        if between[0] <= low < high <= between[1]:
+            inner, outer = (x + face for face in block.section.across(thickness))
             corners = [(inner[0], z + low), (outer[0], z + low), (outer[1], z + high), (inner[1], z + high)]
             parts.append(Polygon(corners, block.density, block.length))
     return Compound(parts, fixed, name) if len(parts) > 1 else replace(parts[0], fixed=fixed, name=name)
@@ -231,7 +234,7 @@ def between_beams(units: Sequence[Polygon]) -> list[Polygon]:
     return [base, *units, beam]
 
 
-def bending_between_floors(bending: VerticalBending) -> list[Polygon]:
+def bending_between_floors(bending: VerticalBending) -> list[FlatBlock]:
     """The two bodies of a wall between a fixed floor and one that two guides hold sideways, see
     `Masonry.between_floors`."""
     wall, crack = bending.wall, bending.crack_height
@@ -245,8 +248,8 @@ def bending_between_floors(bending: VerticalBending) -> list[Polygon]:
 
     return [
         part("base", (-2 * thickness, 3 * thickness), (-thickness, 0.0)),
-        part("lower", (0.0, thickness), (0.0, crack), wall.density),
-        part("upper", (0.0, thickness), (crack, height), wall.density),
+        _standing(wall, (wall.b, 0.0), False, "lower", (0.0, crack)),
+        _standing(wall, (wall.b, 0.0), False, "upper", (crack, height)),
         part("floor", (left, right), (height, height + deep), bending.floor_density),
         part("inner_guide", (left - thickness, left), (low, top)),
         part("outer_guide", (right, right + thickness), (low, top)),
