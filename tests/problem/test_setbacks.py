@@ -173,3 +173,84 @@ def test_a_storey_on_top_stands_on_what_is_there():
 def test_what_is_neither_face_is_refused():
     with pytest.raises(ValueError, match="plumb = 'middle'"):
         mr.Block.from_size(T0, HEIGHT, profile=PROFILE, plumb="middle")
+
+
+def test_the_stop_of_a_stack_lies_behind_every_storey_and_clear_of_the_ledge():
+    """The inner end of the ledge rises to hypot(0.6, 3.2) m as the wall turns about its outer edge."""
+    masonry = mr.Masonry.stack([setback()], k_n=1e9, friction=0.7, side_stop=True)
+    lower, upper = masonry.blocks[-1].parts
+    clear = math.hypot(T0, STEP)
+    assert lower.corners.max(axis=0) == pytest.approx((-T0 / 2, clear))
+    assert upper.corners.max(axis=0) == pytest.approx((T0 / 2 - T1, HEIGHT))
+    assert upper.corners[:, 1].min() == pytest.approx(clear)
+    sides = {joint.name: joint for joint in masonry.joints if "side" in joint.name}
+    ends = [sorted((tuple(one.start), tuple(one.end))) for one in sides.values()]
+    assert ends[0] == [pytest.approx((-0.15, clear)), pytest.approx((-0.15, HEIGHT))]
+    assert ends[1] == [pytest.approx((-0.3, 0.0)), pytest.approx((-0.3, STEP))]
+    low = mr.Masonry.stack([setback()], k_n=1e9, friction=0.7, side_stop=mr.SideStop(2.0)).blocks[-1]
+    assert sorted(low.corners.tolist()) == [[-0.6, 0.0], [-0.6, 2.0], [-0.3, 0.0], [-0.3, 2.0]]
+
+
+@pytest.mark.parametrize(
+    ("widths", "faces"),
+    [((0.6, 0.4, 0.3), (-0.3, -0.2, -0.15)), ((0.4, 0.6, 0.4), (-0.3, -0.3, -0.2)), ((0.5, 0.5, 0.5), (-0.25,))],
+    ids=["thinner", "wider in the middle", "alike"],
+)
+def test_the_stop_of_blocks_follows_them_and_bears_none(widths, faces):
+    """A block that stands out over the one below would rest on a stop beneath it."""
+    masonry = mr.Masonry.stack([mr.Block.from_size(t, 1.0) for t in widths], k_n=1e9, friction=0.7, side_stop=True)
+    side = masonry.blocks[-1]
+    assert sorted({float(part.corners[:, 0].max()) for part in side.parts}) == sorted(set(faces))
+    assert not [joint for joint in masonry.joints if "side" in joint.name and joint.is_bed]
+    met = {joint.name for joint in masonry.joints if "side" in joint.name}
+    wide = [-0.5 * t for t in widths]
+    behind = faces if len(faces) > 1 else faces * 3
+    assert met == {f"side|block_{i}" for i, (own, face) in enumerate(zip(wide, behind, strict=True)) if own == face}
+
+
+def test_a_run_reports_that_both_storeys_meet_the_stop():
+    """A wall that comes back from a small rotation, beside the same wall as a case in MuJoCo."""
+    wall = setback()
+    masonry = mr.Masonry.stack([wall], k_n=1e9, friction=5.0, xi=0.05, frequency=20.0, side_stop=True)
+    case = mr.MasonryCase(masonry, 0.9, velocity=[0.03 * wall.turning(0.0, 1.0)])
+    response = mr.solve_explicit(case, forces=True)
+    theta, side = response.pose[:, 0, 2], [i for i, name in enumerate(response.forces.joints) if "side" in name]
+    struck = response.forces.normal[:, side]
+    assert len(side) == 2
+    assert (struck.max(axis=0) > 1e3).all()  # and none before it has come back
+    assert struck[100 : int(theta.argmax())].max() == 0.0
+    np.testing.assert_allclose(struck.sum(axis=1), response.reactions["side"][:, 0], atol=1e-6)
+    contacts = mr.Contacts.from_damping(wall, k_base=1e9, xi_base=0.05, k_side=1e9, xi_side=0.05, friction=5.0)
+    other = mr.simulate(mr.Case(wall, 0.0, 0.9, omega0=0.03), contacts)
+    assert theta.max() == pytest.approx(other.theta.max(), rel=0.02)
+    assert np.abs(theta[-100:]).max() < 0.1 * theta.max()  # the impact takes most of it, as in MuJoCo
+    assert np.abs(other.theta[-100:]).max() < 0.1 * theta.max()
+
+
+def test_wedges_reach_up_to_the_inner_face_behind_the_ledge():
+    """A triangle from the inner edge of the base and a strip of 0.15 m above the ledge, up to 8 m."""
+    wall, angle, q, t = setback(length=6.0), math.radians(20), 8.0, 0.4
+    parts = mr.Wedge(angle, t, q, number=2).behind(wall)
+    p, deep, high = q * math.tan(angle), T0 - T1, q - STEP
+    area = np.array([p * q / 2, deep * high])
+    x = np.array([-T0 / 2 - p / 3, -T0 / 2 + deep / 2])
+    z = np.array([2 * q / 3, STEP + high / 2])
+    own = area * np.array([(p**2 + q**2) / 18, (deep**2 + high**2) / 12])
+    mass = sum(part.mass for part in parts)
+    assert mass == pytest.approx(2 * 2000 * t * area.sum())
+    assert sum(part.mass * part.offset for part in parts) == pytest.approx(2 * 2000 * t * (area @ x))
+    assert sum(part.mass * part.height for part in parts) == pytest.approx(2 * 2000 * t * (area @ z))
+    about = sum(part.mass * (part.offset**2 + part.height**2) for part in parts)
+    assert about == pytest.approx(2 * 2000 * t * (own + area * (x**2 + z**2)).sum())
+    case = mr.Case(wall, 0.0, 1.0, effects=parts)
+    facade = 2000 * 6.0 * AREAS
+    lever = facade @ BEHIND + 2 * 2000 * t * (area @ (T0 / 2 - x))
+    hand = lever / (facade @ LEVELS + 2 * 2000 * t * (area @ z))
+    assert mr.pushover(case).start == pytest.approx(hand, rel=1e-12)
+    x, z = parts[0].outline.T
+    assert abs(0.5 * (x * np.roll(z, -1) - z * np.roll(x, -1)).sum()) == pytest.approx(area.sum())
+    plain = mr.Wedge(angle, t, q).behind(mr.Block.from_size(T0, HEIGHT, 6.0))
+    middle = -T0 / 2 - p / 3
+    assert [one.offset - middle for one in plain] == pytest.approx(
+        [way * math.hypot(p, q) / math.sqrt(18) for way in (-1, 1)]
+    )

@@ -454,8 +454,10 @@ class Masonry(Drawn):
             k_n: stiffness of the joints [N/m3], as of `Masonry`.
             ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
             side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
-                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
-                with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
+                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and has a joint
+                with each face that it lies behind, at whose ends they meet. It follows setbacks, as side walls do,
+                clear of the ledge as that rises, and does not reach under a block that stands out farther than those
+                below it.
             k_side: stiffness of the joints with the side stop [N/m3], 1e4 to 1e14; None takes k_n.
             side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
             options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
@@ -697,8 +699,9 @@ class Masonry(Drawn):
     ) -> Self:
         """A wall that cracks between two floors, which hold it sideways, seen along its length.
 
-        The inner face at the base is x = 0. The upper floor is a block with the mass of the load between two smooth guides, so that
-        it may rise and not turn. It is anchored to the wall: its joint has a friction of 10, the largest there is.
+        The inner face at the base is x = 0. The upper floor is a block with the mass of the load between two smooth
+        guides, so that it may rise and not turn. It is anchored to the wall: its joint has a friction of 10, the
+        largest there is.
 
         Args:
             wall, load, bearing, crack: as of `VerticalBending`.

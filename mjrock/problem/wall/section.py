@@ -180,6 +180,13 @@ class Section(NamedTuple):
             for ends in pairwise(sorted({low, high} | {z for z in cuts if low < z < high})):
                 yield ends, t_low + (t_high - t_low) * (np.array(ends) - low) / (high - low)
 
+    def inner_up_to(self, top: float) -> Array:
+        """Corners of the inner face from the base up to a height [m], shape (n, 2)."""
+        if self.plumb == "inner":
+            return np.array([(-0.5 * self.profile[0][1], 0.0), (-0.5 * self.profile[0][1], top)])
+        slabs = [(z, self.across(t)[0]) for z, t in self.slabs({top}) if z[1] <= top]
+        return np.concatenate([np.column_stack([inner, z]) for z, inner in slabs])
+
     @property
     def outline(self) -> Array:
         """Corners, counter-clockwise from the inner edge of the base [m], shape (n, 2)."""
@@ -293,8 +300,25 @@ def moments(section: Section, front: Front, between: tuple[float, float] = (0.0,
             share, weight = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
             z = low + (high - low) * share
             weight = weight * front.left(np.array(0.5 * (low + high)))
-        t = ends[0] + (ends[1] - ends[0]) * share
-        inner, outer = section.across(t)
-        terms = t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2
-        total += (high - low) * np.array([weight @ term for term in terms])
+        faces = section.across(ends[0] + (ends[1] - ends[0]) * share)
+        total += (high - low) * np.array([weight @ term for term in _terms(z, *faces)])
+    return Moments(*total.tolist())
+
+
+def _terms(z: Array, inner: Array, outer: Array) -> tuple[Array, ...]:
+    """What the moments of a section are integrals of, at heights with both faces [m], shape (n,) each."""
+    t = outer - inner
+    return t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2
+
+
+def behind(section: Section, slope: float, height: float) -> Moments:
+    """Area and moments of what lies between the inner face of a wall and a plane that rises from its inner edge
+    backwards by a slope [-], up to a height [m]."""
+    total, half = np.zeros(5), 0.5 * section.profile[0][1]
+    for (low, high), ends in section.slabs({height}):
+        if low < high <= height:
+            share, weight = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
+            z = low + (high - low) * share
+            inner, _ = section.across(ends[0] + (ends[1] - ends[0]) * share)
+            total += (high - low) * np.array([weight @ term for term in _terms(z, -half - slope * z, inner)])
     return Moments(*total.tolist())

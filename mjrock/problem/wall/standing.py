@@ -225,11 +225,7 @@ class WallStanding:
     @property
     def met_by_stop(self) -> Array:
         """Corners of the inner face of the wall from the base up to the top of the side stop [m], shape (n, 2)."""
-        wall, top = self.wall, self.stop_top or 0.0
-        if wall.plumb == "inner" or not wall.profile:
-            return np.array([(-wall.b, 0.0), (-wall.b, top)])
-        slabs = [(z, wall.section.across(t)[0]) for z, t in wall.section.slabs({top}) if z[1] <= top]
-        return np.concatenate([np.column_stack([inner, z]) for z, inner in slabs])
+        return self.wall.section.inner_up_to(self.stop_top or 0.0)
 
     @property
     def joints(self) -> tuple[WallJoint, ...]:

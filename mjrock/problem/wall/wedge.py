@@ -12,6 +12,7 @@ from ...quantities import Array, Within, keep_declared, require_kind, require_wi
 from .block import Block
 from .effect import CombinedEffect
 from .effects import AddedMass
+from .section import behind
 
 
 @dataclass(frozen=True)
@@ -20,8 +21,9 @@ class Wedge(CombinedEffect):
 
     A crack rises from the inner face at the base, at an angle from the vertical, up to the top of the side wall. With q
     the height of the wedge and p = q tan(angle) its length there, one has the mass rho t p q / 2, its centroid at p / 3
-    behind the inner face and 2 q / 3 above the base, and the moment of inertia m (p^2 + q^2) / 18 about it. Friction
-    along the crack and what interlocks there are left out, on the safe side.
+    behind the inner face and 2 q / 3 above the base, and the moment of inertia m (p^2 + q^2) / 18 about it. Where the
+    facade steps back inside, the side wall reaches up to its inner face there, and so does the wedge. Friction along
+    the crack and what interlocks there are left out, on the safe side.
 
     Args:
         angle: of the crack from the vertical [rad], 0.01 to 1.2.
@@ -80,12 +82,13 @@ class Wedge(CombinedEffect):
         require_kind("facade", facade, Block)
         require_within("height of the wedge", self.height, 0.01, 2 * facade.h * (1 + 1e-12), "m")
         density = facade.density if self.density is None else self.density
-        mass = self.number * density * self.thickness * self.depth * self.height / 2
-        radius = math.hypot(self.depth, self.height) / math.sqrt(18)
-        middle, level = -facade.b - self.depth / 3, 2 * self.height / 3
+        height = min(self.height, 2 * facade.h)
+        area, x, z, xx, zz = behind(facade.section, math.tan(self.angle), height)
+        mass, middle, level = self.number * density * self.thickness * area, x / area, z / area
+        radius = math.sqrt((xx + zz) / area - middle**2 - level**2)
+        face = tuple(map(tuple, facade.section.inner_up_to(height).tolist()))
         inner, outer = (
-            WedgeMass(mass / 2, level, middle + way * radius, wedge=self, face=-facade.b, first=way < 0)
-            for way in (-1, 1)
+            WedgeMass(mass / 2, level, middle + way * radius, wedge=self, face=face, first=way < 0) for way in (-1, 1)
         )
         return inner, outer
 
@@ -100,12 +103,12 @@ class WedgeMass(AddedMass):
 
     Args:
         wedge: the wedges.
-        face: where the inner face of the facade is, from the middle of its base [m].
+        face: corners of the inner face of the facade, from the middle of its base up to the top of the wedges [m].
         first: whether it is the one that sketch and report speak of.
     """
 
     wedge: Wedge = field(kw_only=True)
-    face: float = field(kw_only=True, repr=False)
+    face: tuple[tuple[float, float], ...] = field(kw_only=True, repr=False)
     first: bool = field(kw_only=True, repr=False)
 
     @property
@@ -115,9 +118,8 @@ class WedgeMass(AddedMass):
 
     @property
     def outline(self) -> Array:
-        """The triangle between the inner face, the crack and the top of the side wall."""
-        back, top = self.face - self.wedge.depth, self.wedge.height
-        return np.array([[self.face, 0.0], [self.face, top], [back, top]])
+        """What lies between the inner face, the crack and the top of the side wall."""
+        return np.array([*self.face, (self.face[0][0] - self.wedge.depth, self.wedge.height)])
 
 
 @dataclass(frozen=True)

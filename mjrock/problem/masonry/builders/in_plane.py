@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -102,7 +103,16 @@ def _standing(
     return Compound(parts, fixed, name) if len(parts) > 1 else replace(parts[0], fixed=fixed, name=name)
 
 
-def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> Polygon | None:
+class Inner(NamedTuple):
+    """A piece of the inner face of a stack: x and z of its lower and upper end [m], and how far its upper end rises as
+    its block turns about its outer edge [m]."""
+
+    x: tuple[float, float]
+    z: tuple[float, float]
+    rise: float
+
+
+def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> FlatBlock | None:
     """The fixed block behind the inner face of a stack, from z = 0 up to its top or to that of the stop; or None.
 
     A ValueError says if the stop ends above the stack.
@@ -110,12 +120,52 @@ def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> Polygon 
     require_kind("side_stop", side_stop, bool, SideStop)
     if not side_stop:
         return None
-    face = min(float(block.corners[:, 0].min()) for block in blocks if block.name != "ground")
+    standing = [block for block in blocks if block.name != "ground"]
+    back = 2 * min(float(block.corners[:, 0].min()) for block in standing)
     height = max(float(block.corners[:, 1].max()) for block in blocks)
     top = height
     if isinstance(side_stop, SideStop):
         top = require_within("top of the side stop", side_stop.top, 0.01, height, "m")
-    return rectangle(2 * face, face, 0.0, top, 2000.0, max(block.length for block in blocks), True, "side")
+    length = max(block.length for block in blocks)
+    parts = [
+        Polygon([(back, low), (x, low), (x_high, high), (back, high)], 2000.0, length)
+        for (x, x_high), (low, high) in _behind([piece for block in standing for piece in _inner(block)], top)
+    ]
+    return Compound(parts, True, "side") if parts[1:] else replace(parts[0], fixed=True, name="side")
+
+
+def _inner(block: FlatBlock) -> list[Inner]:
+    """The inner face of a block of a stack, from below: of each part of it its left edge."""
+    low, edge, found = float(block.corners[:, 1].min()), float(block.corners[:, 0].max()), list[Inner]()
+    for part in block.parts:
+        ends = [part.corners[part.corners[:, 1] == z] for z in (part.corners[:, 1].min(), part.corners[:, 1].max())]
+        (x, z), (x_high, high) = (tuple(end[end[:, 0].argmin()].tolist()) for end in ends)
+        found.append(Inner((x, x_high), (z, high), math.hypot(edge - x_high, high - low) - (high - low)))
+    return sorted(found, key=lambda piece: piece.z)
+
+
+def _behind(pieces: Sequence[Inner], top: float) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+    """x and z of both ends of each piece of a side stop up to a height [m], see `Masonry.stack`."""
+    inmost, faces = math.inf, list[Inner]()
+    for piece in reversed(pieces):
+        x_high = min(inmost, piece.x[1])
+        inmost = min(x_high, piece.x[0])
+        faces.insert(0, piece._replace(x=(inmost, x_high)))
+    found = list[tuple[tuple[float, float], tuple[float, float]]]()
+    for before, piece in pairwise([faces[0], *faces]):
+        (x, x_high), (low, high) = piece.x, piece.z
+        if low >= top:
+            break
+        if high > top:
+            x_high, high = x + (x_high - x) * (top - low) / (high - low), top
+        if found and x > before.x[1]:  # above a ledge
+            low = min(low + before.rise, high)
+            found[-1] = (found[-1][0], (found[-1][1][0], low))
+        if found and found[-1][0] == (x, x) == (x, x_high):
+            found[-1] = ((x, x), (found[-1][1][0], high))
+        elif high > low:
+            found.append(((x, x_high), (low, high)))
+    return found
 
 
 def required_unit(unit: object) -> tuple[float, float]:
