@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .contacts.contact import PairContact, PairContacts
     from .contacts.coulomb import CoulombFriction
     from .contacts.inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
-    from .contacts.make import contact_for, contacts_for
+    from .contacts.make import contact_for, contacts_for, stiffest_contacts
     from .contacts.notes import ContactWarning
     from .contacts.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .distinct.explicit import solve_explicit
@@ -135,8 +135,8 @@ __all__ = [
     "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
     "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
     "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
-    "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "strengths_of_anchor",
-    "strengths_of_bar", "thresholds", "toml_schema", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "solve_analytical", "solve_compliant", "solve_explicit", "stiffest_contacts", "stiffness_range",
+    "strengths_of_anchor", "strengths_of_bar", "thresholds", "toml_schema", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 HOME = homes(__file__)

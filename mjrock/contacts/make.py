@@ -12,9 +12,9 @@ from typing import Annotated
 
 import mujoco
 
-from .checks import Array, Within, keep_declared, named, require_within, shown, spelt
+from .checks import Array, Within, keep_declared, named, require_within, shown, spelt, within_ranges
 from .contact import PairContact, PairContacts, blow_spoilers, merged, soft_spoilers, spoilers, weight_spoilers
-from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, makes, names_of_objects
+from .geoms import BODY, GEOM, NO_LOAD, GeomPair, compiled_model, geom_id, makes, names_of_objects
 from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms
 from .notes import (
     LONG_STEP,
@@ -38,6 +38,8 @@ from .solver_trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
+RESTITUTIONS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0)
+"""Coefficients of restitution of `stiffest_contacts` [-]."""
 Geom = str | int
 
 
@@ -47,6 +49,10 @@ def contact_for(
     geom2: str | int,
     *,
     k: float | None = None,
+    k_face: float | None = None,
+    k_n: float | None = None,
+    depth: float | None = None,
+    load: float | None = None,
     c: float | None = None,
     restitution: float | None = None,
     xi: float | None = None,
@@ -73,8 +79,13 @@ def contact_for(
         model: a compiled model or a specification; it is not changed. See `PairContact.apply`. A specification is
             compiled at each call; `contacts_for` compiles it once for many contacts.
         geom1, geom2: names or numbers of the geoms. The name of a body stands for its geom, if it has just one.
-        k: stiffness of each contact point [N/m], positive. A box that is to have 1e5 N/m on four corners has k=2.5e4.
-            None is the stiffest that the time step resolves.
+        k: stiffness of each contact point [N/m], positive. Of k, k_face, k_n and depth one is given; with none of them
+            it is the stiffest that the time step resolves, see `stiffest_contacts`.
+        k_face: stiffness of all contact points together [N/m]: those that share the mass have equal parts of it.
+        k_n: stiffness of the face in which the two geoms meet [N/m3], that of the polygon of their contact points.
+        depth: how deep the geoms are pressed into each other at rest [m], under `load`.
+        load: static load on all contact points together [N]. None is that of gravity and of the actuators, at the
+            `ctrl` of the keyframe, in the pose at rest; where the geoms are apart, the weight of the lighter one.
         c: dashpot of each contact point [N s/m], not negative.
         restitution: e of an approach along the normal, within [0, 1] [-]. e below 0.001 is taken as 0.001, because an
             infinite dashpot would be needed for 0. Without `speed` it leaves out gravity.
@@ -117,12 +128,61 @@ def contact_for(
     """
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta, normal)
+    asked = ContactRequest(
+        k=k,
+        k_face=k_face,
+        k_n=k_n,
+        depth=depth,
+        load=load,
+        c=c,
+        restitution=restitution,
+        xi=xi,
+        friction=friction,
+        mass=mass,
+        at=at,
+        normal=normal,
+        contacts=contacts,
+        speed=speed,
+        timestep=timestep,
+        newmark_beta=newmark_beta,
+    )
     pose = Pose(whole, keyframe, qpos)
     made = _made(pose, [(pair, asked)])
     for _, sentence in _sentences(whole, made):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
     return made.contacts[0]
+
+
+@within_ranges
+def stiffest_contacts(
+    model: mujoco.MjModel | mujoco.MjSpec,
+    geom1: str | int,
+    geom2: str | int,
+    *,
+    timestep: Annotated[float | None, Within(1e-12, 1e3, "s")] = None,
+    keyframe: Keyframe = None,
+    qpos: Sequence[float] | Array | None = None,
+) -> tuple[PairContact, ...]:
+    """The stiffest contact of two geoms that a time step resolves, for each of some coefficients of restitution.
+
+    A step resolves a contact that rebounds with nearly what is requested wherever in a step the geoms touch. It is
+    shortest for restitutions of 0.2 to 0.4. `.k`, `.depth` and `.restitution` say what can be had.
+
+    Args:
+        model: a compiled model or a specification; it is not changed.
+        geom1, geom2: names or numbers of the geoms.
+        timestep: MuJoCo's step [s], 1e-12 to 1000. None takes the model's.
+        keyframe, qpos: the pose in which they meet; see `contact_for`.
+
+    Returns:
+        The contacts for the restitutions of `RESTITUTIONS`, 0.05 to 1.
+
+    Raises:
+        TypeError, ValueError: as `contact_for` does.
+    """
+    whole = compiled_model(model)
+    pair, pose = GeomPair.named(whole, geom1, geom2), Pose(whole, keyframe, qpos)
+    return tuple(contact_of(pair, pose, ContactRequest(restitution=e, timestep=timestep))[0] for e in RESTITUTIONS)
 
 
 def contacts_for(
@@ -256,11 +316,15 @@ class ContactRequest:
     """The request for a contact: the arguments of `contact_for` by name.
 
     Raises:
-        TypeError, ValueError: for a number outside its range, if both a mass and a point are given, and unless exactly
-            one of c, restitution and xi is.
+        TypeError, ValueError: for a number outside its range, if both a mass and a point are given, or two
+            stiffnesses, and unless exactly one of c, restitution and xi is.
     """
 
     k: Annotated[float | None, Within(1e-30, 1e30, "N/m", "stiffness k")] = None
+    k_face: Annotated[float | None, Within(1e-30, 1e30, "N/m")] = None
+    k_n: Annotated[float | None, Within(1e-30, 1e30, "N/m3")] = None
+    depth: Annotated[float | None, Within(1e-12, 1e3, "m")] = None
+    load: Annotated[float | None, Within(1e-12, 1e15, "N")] = None
     c: Annotated[float | None, Within(0.0, 1e30, "N s/m", "damping c")] = None
     restitution: Annotated[float | None, Within(0.0, 1.0)] = None
     xi: Annotated[float | None, Within(0.0, 1e6, name="damping ratio xi")] = None
@@ -281,9 +345,38 @@ class ContactRequest:
         if len(given) != 1:
             listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
             raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
-        if self.k is None and self.c is not None:
+        named_k = {name: getattr(self, name) for name in ("k", "k_face", "k_n", "depth")}
+        stiffness = [f"{name} = {spelt(value)}" for name, value in named_k.items() if value is not None]
+        if len(stiffness) > 1:
+            raise ValueError(f"{' and '.join(stiffness)} are given; give one of them")
+        if not stiffness and self.c is not None:
             raise ValueError(f"k = None takes restitution or xi, and c = {spelt(self.c)} is given; give k")
         keep_declared(self)
+
+    def by_point(self, pair: GeomPair, pose: Pose) -> ContactRequest:
+        """The request with k, the stiffness of each contact point, in place of k_face, k_n or depth."""
+        if self.k_face is None and self.k_n is None and self.depth is None:
+            return self
+        alone, here = self.mass is not None, pose.landing(pair)
+        points = meeting_of_geoms(pair, pose, contacts=self.contacts, at=self.at, alone=alone).points
+        if self.k_face is not None:
+            k = self.k_face / points
+        elif self.k_n is not None:
+            k = self.k_n * here.area / len(here.first)
+            if not here.area > 0:
+                raise ValueError(
+                    f"k_n = {self.k_n:g} N/m3 needs a face, and {pair.labels} meet in {len(here.first)} point"
+                    f"{'s' * (len(here.first) > 1)} at {pose.label}; give k or k_face"
+                )
+        else:
+            load = pose.load(pair, points, self.contacts) if self.load is None else self.load / points
+            if not load > NO_LOAD:
+                raise ValueError(
+                    f"depth = {self.depth:g} m needs a load, and {pair.labels} carry none at rest at {pose.label}; "
+                    "give load, or the keyframe in which they press"
+                )
+            k = load / self.depth if self.depth else math.inf
+        return replace(self, k=k, k_face=None, k_n=None, depth=None)
 
 
 TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
@@ -294,6 +387,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
     """The contact of a pair in a pose, with `remarks` on how it differs from the request, and what lands
     with it."""
     option, pose = pair.model.opt, pose.along(asked.normal)
+    asked = asked.by_point(pair, pose)
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
     grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
     met = meeting_of_geoms(
@@ -338,7 +432,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         speed=asked.speed,
         gravity=max(0.0, gravity),
         pose=pose.label,
-        load=pose.load(pair, met.points, asked.contacts),
+        load=pose.load(pair, met.points, asked.contacts) if asked.load is None else asked.load / met.points,
     )
     remarks = [*unused(asked.friction, grip), *shape_spoilers(pair, pose), *turned(pair, pose, k)]
     remarks += _remarks(pair, pose, asked, met, k, c, grip.sliding)

@@ -14,7 +14,14 @@ import mujoco
 import numpy as np
 
 from .checks import Array, Integers, is_iterable, require_array, require_whole, shown
-from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass, moved_or_sprung
+from .effective_mass import (
+    EffectiveMass,
+    ModelSprings,
+    PoseConstraints,
+    effective_mass,
+    moved_or_sprung,
+    with_tangents,
+)
 from .geoms import BOUNDLESS, FARTHEST_GEOM, NO_LOAD, GeomPair, makes
 from .versions import enable_bits, make_mass_matrix
 
@@ -134,6 +141,14 @@ class Landing(NamedTuple):
     distance: float
     first: Array
     second: Array
+
+    @property
+    def area(self) -> float:
+        """Area of the polygon of the points across the direction in which the geoms part [m2]; zero of one or two."""
+        x, y = with_tangents(self.away)[1:] @ (self.first - self.first.mean(axis=0)).T
+        order = np.argsort(np.arctan2(y, x))
+        x, y = x[order], y[order]
+        return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
 
 
 def keyframe_names(model: mujoco.MjModel) -> tuple[str, ...]:

@@ -77,7 +77,7 @@ def test_wildcards_among_bodies_and_among_each_other():
     [
         ({}, "pairs = {} of type dict name no contact"),
         ({("hand*", "floor"): {"k": 1.0, "c": 1.0}}, r"geom1 = 'hand\*' of type str matches no geom.*geoms are: floor"),
-        ({("foot0", "floor"): {"k": 1.0, "e": 1.0}}, "have e; each takes k, c, restitution"),
+        ({("foot0", "floor"): {"k": 1.0, "e": 1.0}}, "have e; each takes k, k_face, k_n, depth, load, c, restitution"),
         ({("foot0", "floor"): 3.0}, "= 3.0 of type float has to be arguments of contact_for"),
         ({"foot0": {"k": 1.0, "c": 1.0}}, "pairs have the key 'foot0' of type str; it has to be two geoms"),
         (

@@ -132,6 +132,18 @@ CALLS = OF_NUMBERS | {
         mr.contact_for,
         {"model": BALL, "geom1": "ball", "geom2": 0, "k": 1e6, "c": 30.0, "mass": 1.0, "timestep": 1e-5},
     ),
+    "contact_for, by depth": (
+        mr.contact_for,
+        {"model": BALL, "geom1": "ball", "geom2": 0, "depth": 1e-4, "load": 50.0, "xi": 1.0, "timestep": 1e-5},
+    ),
+    "contact_for, by face": (
+        mr.contact_for,
+        {"model": BALL, "geom1": "ball", "geom2": 0, "k_face": 1e6, "xi": 1.0, "timestep": 1e-5, "normal": [0, 0, 1]},
+    ),
+    "stiffest_contacts": (
+        mr.stiffest_contacts,
+        {"model": BALL, "geom1": "ball", "geom2": 0, "timestep": 1e-3, "keyframe": None, "qpos": None},
+    ),
     "contacts_for": (
         mr.contacts_for,
         {
