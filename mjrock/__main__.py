@@ -11,12 +11,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ._version import __version__
-from .command_line import Answer, parser
+from .command_line import Answer, Status, complain, parser
 from .contacts.files import aligned
 from .notice import collect_warnings, notice
-
-BROKEN_PIPE, INTERRUPTED = 141, 130
-"""Exit statuses of a command whose output nobody reads on, and of one that Ctrl-C ended, as shells have them."""
 
 
 class Command(NamedTuple):
@@ -32,6 +29,9 @@ class Command(NamedTuple):
 
 
 COMMANDS = {
+    "new": Command(".commands.new", "write a file of a facade, gable, parapet, chimney, bending, corner or masonry"),
+    "check": Command(".commands.check", "whether the mechanisms of a file hold, clause by clause"),
+    "schema": Command(".commands.schema", "what a file may have, as JSON schema for editors"),
     "demo": Command(".commands.demo", "a wall in MuJoCo beside rocking theory, with a table and a picture"),
     "examples": Command(".commands.examples", "list the examples, run one, or copy its script"),
     "compile": Command(".study.compilation", "compile the loops of all solvers and store them, once"),
@@ -79,13 +79,6 @@ def write(text: str) -> None:
         raise OSError(error.errno, error.strerror, "standard output") from None
 
 
-def message_of(error: Exception) -> str:
-    """What an error says, of a file its name first."""
-    if isinstance(error, OSError) and error.filename and error.strerror:
-        return f"{error.filename}: {error.strerror}"
-    return str(error)
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command. Returns the exit status: 1 for what does not hold, 2 for what the user can mend."""
     if isinstance(sys.stdout, io.TextIOWrapper) and not sys.stdout.isatty():
@@ -93,17 +86,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with collect_warnings(lambda text: notice(text.partition(": ")[2], by="warning")):
             answer = answered(list(sys.argv[1:] if argv is None else argv))
-        write(answer.text)
+        if answer.text:
+            write(answer.text)
     except KeyboardInterrupt as interrupt:
         notice(": ".join(filter(None, ("interrupted", str(interrupt)))))
-        return INTERRUPTED
+        return Status.INTERRUPTED
     except BrokenPipeError:
         leave_output()
-        return BROKEN_PIPE
+        return Status.BROKEN_PIPE
     except (ValueError, TypeError, OSError, RuntimeError, ImportError) as error:
-        notice(message_of(error), by="error")
-        return 2
-    return 0 if answer.holds else 1
+        complain(error)
+        return Status.ERROR
+    return answer.status
 
 
 if __name__ == "__main__":

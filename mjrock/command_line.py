@@ -5,11 +5,24 @@ from __future__ import annotations
 import argparse
 import errno
 import shutil
+from enum import IntEnum
 from pathlib import Path
 from typing import NamedTuple
 
+from .notice import notice
+
 WIDEST = 98
 """Columns of a help text, at most."""
+
+
+class Status(IntEnum):
+    """The exit status of a command. One that checks nothing ends as if it held."""
+
+    HOLDS = 0
+    FAILS = 1
+    ERROR = 2
+    INTERRUPTED = 130
+    BROKEN_PIPE = 141
 
 
 class Answer(NamedTuple):
@@ -17,11 +30,11 @@ class Answer(NamedTuple):
 
     Args:
         text: for the standard output.
-        holds: whether what it checked holds; True of a command that checks nothing.
+        status: the exit status.
     """
 
     text: str
-    holds: bool = True
+    status: Status = Status.HOLDS
 
 
 class Help(argparse.RawDescriptionHelpFormatter):
@@ -68,3 +81,16 @@ def require_free(path: Path, force: bool) -> Path:
     if not force and path.exists():
         raise FileExistsError(errno.EEXIST, "exists already, and --force replaces it", str(path))
     return path
+
+
+def message_of(error: Exception) -> str:
+    """What an error says, of a file its name first."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
+
+
+def complain(error: Exception) -> None:
+    """Write an error for the user, each of its lines as one."""
+    for line in message_of(error).splitlines():
+        notice(line, by="error")

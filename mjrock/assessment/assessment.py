@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -98,13 +99,18 @@ def read_text(path: Path) -> str:
     size = require_file(path).stat().st_size
     if size > 4 * LARGEST:
         raise AssessmentError((Fault((), f"has {size} bytes; the valid range is 0 to {4 * LARGEST}"),), str(path))
-    data = path.read_bytes()
+    return decoded(path.read_bytes(), str(path))
+
+
+def decoded(data: bytes, name: str) -> str:
+    """The text of a file in UTF-8, or in UTF-16 as PowerShell writes it; an AssessmentError for any other."""
+    marked = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        return data.decode("utf-8-sig")
+        return data.decode("utf-16" if marked else "utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         fault = Fault((), f"is no text in UTF-8: byte {error.start + 1} is 0x{data[error.start]:02x}", line)
-        raise AssessmentError((fault,), str(path)) from None
+        raise AssessmentError((fault,), name) from None
 
 
 def assessment_of_text(text: str, name: str = "", folder: Path | None = None) -> Assessment:

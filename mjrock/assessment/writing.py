@@ -27,7 +27,7 @@ def _lines(table: Mapping[str, Any], name: str) -> list[str]:
     """The lines of a table: its values first, then the tables in it."""
     lines, tables = [], []
     for key, value in table.items():
-        full = f"{name}.{_key(key)}" if name else _key(key)
+        full = f"{name}.{toml_key(key)}" if name else toml_key(key)
         if isinstance(value, Mapping):
             below = _lines(value, full)
             head = [f"[{full}]"] if not value or any(not one.startswith("[") for one in below[:1]) else []
@@ -36,11 +36,12 @@ def _lines(table: Mapping[str, Any], name: str) -> list[str]:
             for one in value:
                 tables += ["", f"[[{full}]]", *_lines(one, full)]
         elif value is not None:
-            lines.append(f"{_key(key)} = {_value(value)}")
+            lines.append(f"{toml_key(key)} = {toml_value(value)}")
     return lines + tables
 
 
-def _key(name: str) -> str:
+def toml_key(name: str) -> str:
+    """A key as TOML, in quotation marks where it needs them."""
     return name if BARE.fullmatch(name) else _text(name)
 
 
@@ -49,7 +50,7 @@ def _text(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _value(value: Any) -> str:
+def toml_value(value: Any) -> str:
     """A value on a line."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -60,7 +61,11 @@ def _value(value: Any) -> str:
     if isinstance(value, float):
         return repr(value) if math.isfinite(value) else str(value)
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(one)}" for key, one in value.items() if one is not None) + " }"
+        return (
+            "{ "
+            + ", ".join(f"{toml_key(key)} = {toml_value(one)}" for key, one in value.items() if one is not None)
+            + " }"
+        )
     raise TypeError(f"{value!r} of type {type(value).__name__} is nothing that a TOML file has")

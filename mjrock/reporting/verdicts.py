@@ -147,16 +147,40 @@ def _adds(subject: Any, base: Any) -> bool:
     return len(base.effects) < len(subject.effects) and all(one in subject.effects for one in base.effects)
 
 
-def _sentence(mechanism: Mechanism, key: str, words: Words, now: bool) -> Markup:
-    """What holds of a mechanism, with its least ratio and the conditions that refuse it."""
+class Sentence(NamedTuple):
+    """What holds of a mechanism.
+
+    Args:
+        kind: "holds", "part" or "fails".
+        start: the name, whether it holds, and the conditions that refuse it.
+        end: the least ratio.
+    """
+
+    kind: str
+    start: str
+    end: str
+
+
+def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
+    """What holds of a mechanism, with its least ratio and the conditions that refuse it.
+
+    Args:
+        mechanism: it.
+        key: of the words that it starts with.
+        words: of the language.
+    """
     least, verdicts = mechanism.least, mechanism.verdicts
     kind = "holds" if mechanism.held == len(verdicts) else "part" if mechanism.held else "fails"
     refused = "; ".join(_of(verdict, words) for verdict in verdicts if not verdict.holds)
-    said = words(f"lead_{kind}", refused=refused)
-    start = words(f"{key}_now" if now else key, name=mechanism.name)
     numbers = {"ratio": words.ratio(least.ratio), "check": _of(least, words)}
     end = words("lead_ratio", held=mechanism.held, count=len(verdicts), **numbers)
-    return element("p", element("span", words(kind), kind=kind), " ", element("b", f"{start} {said}"), f" {end}")
+    return Sentence(kind, f"{words(key, name=mechanism.name)} {words(f'lead_{kind}', refused=refused)}", end)
+
+
+def _sentence(mechanism: Mechanism, key: str, words: Words, now: bool) -> Markup:
+    """The sentence on a mechanism, as it is now where that is said, as a paragraph."""
+    kind, start, end = sentence_of(mechanism, f"{key}_now" if now else key, words)
+    return element("p", element("span", words(kind), kind=kind), " ", element("b", start), f" {end}")
 
 
 def _of(verdict: Verdict, words: Words) -> str:
@@ -164,18 +188,23 @@ def _of(verdict: Verdict, words: Words) -> str:
     return ", ".join(filter(None, (words(verdict.what), verdict.limit_state)))
 
 
-def _conditions(verdict: Verdict, words: Words) -> list[str]:
-    """Cells of one condition."""
+def conditions(verdict: Verdict, words: Words) -> list[str]:
+    """Cells of one condition: its check, limit state, demand, capacity, ratio, whether it holds, and its clause."""
 
-    def amount(value: float) -> Markup:
+    def amount(value: float) -> str:
         fell = math.isinf(value) and value == verdict.demand
-        said = words("overturned") if fell else words.quantity(value, verdict.unit, FOUND)
-        return element("td", said, kind="right")
+        return words("overturned") if fell else words.quantity(value, verdict.unit, FOUND)
 
+    numbers = amount(verdict.demand), amount(verdict.capacity), words.ratio(verdict.ratio)
+    held = words("holds" if verdict.holds else "fails")
+    return [words(verdict.what), verdict.limit_state, *numbers, held, verdict.clause]
+
+
+def _conditions(verdict: Verdict, words: Words) -> list[str]:
+    """The same with what they look like."""
+    what, state, *numbers, held, clause = conditions(verdict, words)
     kind = "holds" if verdict.holds else "fails"
-    numbers = amount(verdict.demand), amount(verdict.capacity), element("td", words.ratio(verdict.ratio), kind="right")
-    what = words(verdict.what), verdict.limit_state
-    return [*what, *numbers, element("td", words(kind), kind=kind), verdict.clause]
+    return [what, state, *(element("td", one, kind="right") for one in numbers), element("td", held, kind=kind), clause]
 
 
 def governing(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words: Words) -> Markup:

@@ -2,7 +2,7 @@
 
     python scripts/models/inspect_contacts.py model.xml
 
-It is `python -m mjrock inspect model.xml --all`, which needs no clone of the repository and chooses geoms, bodies and
+It is `mjrock inspect model.xml --all`, which needs no clone of the repository and chooses geoms, bodies and
 pairs, and writes inspect_contacts.txt. Without a model, the one-sided wall of `models/` is taken.
 """
 

@@ -12,7 +12,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.__main__ import COMMANDS, main
-from mjrock.command_line import Answer
+from mjrock.command_line import Answer, Status
 from mjrock.commands import examples as examples_command
 
 ROOT = Path(__file__).parents[2]
@@ -103,9 +103,9 @@ def test_the_exit_status_says_how_it_ended(error, status, said, probe, capsys):
     assert (printed.out, printed.err) == ("", said)
 
 
-@pytest.mark.parametrize(("holds", "status"), [(True, 0), (False, 1)])
-def test_what_does_not_hold_is_no_error(holds, status, probe, capsys):
-    probe(lambda argv: Answer("0.87", holds))
+@pytest.mark.parametrize("status", [Status.HOLDS, Status.FAILS])
+def test_what_does_not_hold_is_no_error(status, probe, capsys):
+    probe(lambda argv: Answer("0.87", status))
     assert written(capsys, "status", status=status) == ["0.87"]
 
 

@@ -14,8 +14,8 @@ from mjrock import contacts
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
     ("contacts",),
-    ("command_line", "machine", "notice"),
-    ("_version", "bars", "interrupts", "notebook", "patience"),
+    ("machine", "notice"),
+    ("_version", "bars", "command_line", "interrupts", "notebook", "patience"),
     ("stored",),
     ("compiled", "compiler", "method", "quantities"),
     ("geometry", "linear"),

@@ -69,7 +69,7 @@ def campaign(
     says so. A task that fails becomes a row with its error, and so does one that calls `sys.exit`, ends its process, or
     cannot be built, pickled or labelled. The rows do not depend on the order in which tasks finish. Without a terminal
     a line every 30 s says how far the campaign is. A last line says how many tasks are done, failed and left and how
-    they ended; `python -m mjrock status walls.sqlite` says it later.
+    they ended; `mjrock status walls.sqlite` says it later.
 
     Args:
         tasks: `Analysis` objects, a `Grid` of them, or an iterator; they are taken as they are needed.

@@ -1,0 +1,166 @@
+"""Files to begin with, which can be checked as they are, with what each key means, made from the schema of files."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from .schema import toml_schema
+from .writing import toml_key, toml_value
+
+FILE = Path(__file__).with_name("templates.toml")
+"""The values of all templates."""
+WIDE = 100
+"""Columns of a template."""
+Schema = Mapping[str, Any]
+SENTENCE = re.compile(r"(?<=\.)\s+(?=[A-Z`])")
+"""Between two sentences."""
+HEAD = """\
+Numbers are in SI units, or texts with a unit, such as "30 cm", "60 kN", "0.2 g" and "12 deg".
+A key after # may be left out, and has the value that is shown, if one is; take the # away to give
+it another one. None in a comment stands for a key that is left out.
+`mjrock check FILE` prints whether it holds."""
+
+
+def seeds() -> dict[str, dict[str, Any]]:
+    """The values of each template by its name, with what they share, and its `title`."""
+    found = tomllib.loads(FILE.read_text(encoding="utf-8"))
+    shared = found.pop("shared")
+    return {name: merged(shared, own) for name, own in found.items()}
+
+
+def merged(shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables with what they share, table by table."""
+    made = dict(own)
+    for name, value in shared.items():
+        mine = own.get(name, {})
+        made[name] = merged(value, mine) if isinstance(value, Mapping) and isinstance(mine, Mapping) else value
+    return made
+
+
+class Writer:
+    """Writes the tables of a template with what each key means.
+
+    Args:
+        schema: of the file.
+
+    Attributes:
+        explained: names of the classes whose optional keys have been listed.
+    """
+
+    def __init__(self, schema: Schema) -> None:
+        self.schema = schema
+        self.explained: set[str] = set()
+
+    def alternatives(self, node: Schema) -> list[Schema]:
+        """What a value may be, each without references."""
+        if "$ref" in node:
+            rest = {key: value for key, value in node.items() if key != "$ref"}
+            of = self.schema["$defs"][node["$ref"].removeprefix("#/$defs/")]
+            return [{**one, **rest} for one in self.alternatives(of)]
+        several = node.get("anyOf") or node.get("oneOf")
+        return [one for each in several for one in self.alternatives(each)] if several else [node]
+
+    def fitting(self, node: Schema, value: Mapping[str, Any]) -> Schema:
+        """The alternative that a table is of, by its `kind` and `make`."""
+        for one in self.alternatives(node):
+            named = [one.get("properties", {}).get(key, {}) for key in ("kind", "make")]
+            given = [value.get(key, part.get("default")) for key, part in zip(("kind", "make"), named, strict=True)]
+            if one.get("type") == "object" and given == [part.get("const") for part in named]:
+                return one
+        return {}
+
+    def table(self, node: Schema, value: Mapping[str, Any], path: str) -> Iterator[str]:
+        """The lines of a table: its keys, those that may be left out, and the tables in it."""
+        of = self.fitting(node, value)
+        keys: Schema = of.get("properties", {})
+        again = of.get("title", path) in self.explained
+        self.explained.add(of.get("title", path))
+        below = {name: value[name] for name in sorted(value, key=[*keys, *value].index) if is_table(value[name])}
+        for name, one in value.items():
+            if name not in below:
+                yield from explained(f"{toml_key(name)} = {toml_value(one)}", keys.get(name, {}))
+        if "mechanisms" in value:  # what stands above them is for all
+            common = [one.get("properties", {}).keys() for one in self.alternatives(node)]
+            keys = {name: key for name, key in keys.items() if all(name in one for one in common)}
+        for name, key in keys.items():
+            if not again and name not in value and "const" not in key and not self.holds_tables(key):
+                yield from explained(f"#{name} = {default_of(key)}".rstrip(), key)
+        others = of.get("additionalProperties")  # of a limit state, as the site; of a mechanism, its own
+        other = others if isinstance(others, Mapping) and "$ref" in others else of
+        for name, one in below.items():
+            yield from self.below(keys.get(name, other), one, f"{path}.{toml_key(name)}".lstrip("."))
+        left = [name for name, key in keys.items() if name not in value and self.holds_tables(key)]
+        if left and not again:
+            where = f"[{path}]" if path else "this file"
+            yield from ("", *comment(f"Further tables of {where}: {', '.join(left)}. See `mjrock schema`."))
+
+    def below(self, node: Schema, value: Any, path: str) -> Iterator[str]:
+        """The lines of a table in another, or of several in a list."""
+        if isinstance(value, Mapping):
+            of = self.fitting(node, value)
+            if not value or not all(map(is_table, value.values())):
+                yield from ("", *comment(of.get("description", node.get("description", ""))), f"[{path}]")
+            yield from self.table(node, value, path)
+            return
+        items = [item for one in self.alternatives(node) for item in [one.get("items")] if item]
+        for one in value:
+            of = self.fitting({"anyOf": items}, one)
+            yield from ("", *comment(of.get("description", "")), f"[[{path}]]")
+            yield from self.table(of, one, path)
+
+    def holds_tables(self, node: Schema) -> bool:
+        """Whether a key is a table or a list of tables, whatever it is."""
+        found = [part for one in self.alternatives(node) for part in self.alternatives(one.get("items") or one)]
+        return all("properties" in one or one.get("type") == "object" for one in found)
+
+
+def is_table(value: object) -> bool:
+    """Whether a value is a table, or a list of tables."""
+    items = value if isinstance(value, list) and value else [value]
+    return all(isinstance(one, Mapping) for one in items)
+
+
+def default_of(key: Schema) -> str:
+    """The value of a key that is left out, as TOML; empty where it has none."""
+    return toml_value(key["default"]) if "default" in key else ""
+
+
+def explained(line: str, key: Schema) -> Iterator[str]:
+    """A line with what its key means, beside it or above it."""
+    text = SENTENCE.split(key.get("description", ""))[0]
+    low, high, unit = key.get("minimum"), key.get("maximum"), key.get("unit", "")
+    if low is not None and high is not None and " to " not in text:
+        text = f"{text} {low:g} to {high:g} {unit}".strip()
+    beside = f"{line:<32}  # {text}" if text else line
+    if len(beside) <= WIDE:
+        yield beside
+    else:
+        yield from (*comment(text), line)
+
+
+def comment(text: str) -> list[str]:
+    """A text as comments."""
+    return textwrap.wrap(" ".join(text.split()), WIDE, initial_indent="# ", subsequent_indent="# ")
+
+
+def template(name: str) -> str:
+    """The text of a template."""
+    return written(seeds()[name], toml_schema())
+
+
+def templates() -> dict[str, str]:
+    """The texts of all templates by name."""
+    schema = toml_schema()
+    return {name: written(values, schema) for name, values in seeds().items()}
+
+
+def written(values: dict[str, Any], schema: Schema) -> str:
+    """Values as the text of a template."""
+    head = [*comment(values.pop("title")), "#", *(f"# {line}" for line in HEAD.splitlines()), ""]
+    root = schema["then" if "mechanisms" in values else "else"]
+    return "\n".join([*head, *Writer(schema).table(root, values, "")]) + "\n"

@@ -1,0 +1,41 @@
+"""The file of an assessment that a command is given."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from ..assessment.assessment import Assessment, assessment_of_text, decoded, from_toml
+from ..reporting.texts import Words
+from ..study.loading.code_check import MechanismCheck
+
+FILE_HELP = "the file; - is the standard input"
+INPUT = "-"
+"""The name of the standard input."""
+MENDABLE = (ValueError, TypeError, OSError)
+"""What is raised for a file that cannot be read or checked."""
+
+
+def opened(file: str, language: str | None = None) -> Assessment:
+    """The assessment of a file, or of the standard input, whose paths are relative to the current folder.
+
+    Args:
+        file: its path, or INPUT.
+        language: in place of that of the file; None keeps it.
+
+    Raises:
+        OSError, ValueError: as `from_toml`.
+    """
+    if file == INPUT:
+        name = "standard input"
+        found = assessment_of_text(decoded(sys.stdin.buffer.read(), name), name, Path.cwd())
+    else:
+        found = from_toml(file)
+    return found if language is None else replace(found, language=language)
+
+
+def named_checks(checks: Mapping[str, MechanismCheck], words: Words) -> dict[str, MechanismCheck]:
+    """Checks by the names of their mechanisms; one that has none is that of the wall or of the masonry."""
+    return {name or words(f"kind_{'masonry' if one.moving else 'wall'}"): one for name, one in checks.items()}
