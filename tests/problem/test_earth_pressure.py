@@ -1,6 +1,7 @@
 """Earth on walls: Mononobe and Okabe beside trial wedges, and the factor of safety of a wall against overturning."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -90,6 +91,43 @@ def test_the_wind_on_a_chimney():
     assert mr.collapse_multiplier(case, None, loads=(mr.Thrust(high / 2, -1e3),)).multiplier == (
         pytest.approx(stack.weight * wide / high / 1e3)
     )
+
+
+def leaning(plumb):
+    """A garden wall that tapers from 0.6 to 0.3 m, free both ways, 3 m high."""
+    wall = mr.Block.from_size(0.6, 3.0, 1.0, 2000.0, profile=[(0.0, 0.6), (3.0, 0.3)], plumb=plumb)
+    return mr.Case(wall, 0.0, 1.0, side_stop=False)
+
+
+def test_wind_on_a_wall_that_is_free_both_ways_is_warned_of_where_the_other_way_is_weaker():
+    """The centroid lies (a^2 + a b + b^2) / 3 (a + b) = 7 / 30 m from the plumb face, W = 0.45 m x 3 m rho g."""
+    weight, near = 0.45 * 3.0 * 2000.0 * G, 0.63 / 2.7
+    weak, strong = (weight * arm / (2e3 * 1.5) for arm in (near, 0.6 - near))
+    for plumb, way in (("outer", 1.0), ("inner", -1.0)):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            found = mr.collapse_multiplier(leaning(plumb), None, loads=[mr.Thrust(1.5, way * 2e3)])
+        assert found.multiplier == pytest.approx(weak)
+        with pytest.warns(mr.Implausible, match=f"other way {weak:.4g} times do: check that way too"):
+            found = mr.collapse_multiplier(leaning(plumb), None, loads=[mr.Thrust(1.5, -way * 2e3)])
+        assert found.multiplier == pytest.approx(strong)
+        with pytest.warns(mr.Implausible, match="other way"):
+            mr.collapse_multiplier(leaning(plumb), -int(way))
+    held = mr.Case(leaning("inner").block, 0.0, 1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # with a side stop there is one way
+        mr.collapse_multiplier(held, None, loads=[mr.Thrust(1.5, 2e3)])
+
+
+def test_a_push_over_of_a_wall_that_is_free_both_ways_is_warned_of_likewise():
+    curve, z = mr.pushover(leaning("inner")), leaning("inner").wall.centroid_height
+    near = 0.63 / 2.7
+    with pytest.warns(mr.Implausible, match=f"inwards the wall starts at {near / z:.4g} g"):
+        check = mr.load_check(curve, 0.1)
+    assert check.capacity == pytest.approx((0.6 - near) / z)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        mr.load_check(mr.pushover(leaning("outer")), 0.1)
 
 
 def test_beside_blocks_with_ties_masses_and_an_earthquake():

@@ -51,7 +51,7 @@ from ...quantities import (
 )
 from ...result.response import Response
 from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of
-from .limit_analysis import LimitCurve, collapse_multiplier
+from .limit_analysis import WEAKER, LimitCurve, collapse_multiplier
 from .moving_part import MovingPart, multiplier_of
 from .push import Push, of_centroid
 from .pushover import falls_to_zero, pushover
@@ -59,8 +59,6 @@ from .pushover import falls_to_zero, pushover
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
     from ..analysis import Analysis
 
-WEAKER = 1e-6
-"""How much less masonry has to bear the other way for a warning, more than limit analysis rounds [-]."""
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 SHORT = 0.05
@@ -529,7 +527,7 @@ def _of_wall(case: Case, code: Code) -> _Mechanism:
     curve = pushover(case)
     if not math.isfinite(curve.end):
         raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
-    _warn_of_inner_edge(case, float(curve.multiplier[0]))
+    warn_of_inner_edge(case, float(curve.multiplier[0]))
     wall = case.wall
     weights, heights = _masses(case)
     first, second = float(weights @ heights), float(weights @ heights**2)
@@ -545,12 +543,12 @@ def _of_wall(case: Case, code: Code) -> _Mechanism:
     return _Mechanism(curve.multiplier, d, first**2 / (float(weights.sum()) * second), tied, yielding, breaking)
 
 
-def _warn_of_inner_edge(case: Case, outwards: float) -> None:
-    """Warn of a wall that is free both ways and starts inwards at a lower multiplier than `outwards` [-]."""
+def warn_of_inner_edge(case: Case, outwards: float) -> None:
+    """Warn of a wall that is free both ways and starts inwards at a lower multiplier than it bears outwards [-]."""
     inner = case.restoring.inner.P / (case.wall.weight * case.wall.centroid_height)
     if case.lopsided and inner < (1 - WEAKER) * outwards:
         warn_of(
-            f"case has side_stop=False, and the check is of the way outwards, which starts at {outwards:.4g} g; "
+            f"case has side_stop=False, and the check is of the way outwards, with {outwards:.4g} g; "
             f"inwards the wall starts at {inner:.4g} g: check that way too, with the mirrored wall: the other plumb, "
             "offsets and forces with the other sign",
             Implausible,

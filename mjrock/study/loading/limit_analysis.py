@@ -45,6 +45,8 @@ from ...quantities import (
 from ...scene.masonry import wedged
 from .pushover import falls_to_zero
 
+WEAKER = 1e-6
+"""How much less is borne the other way for a warning, more than limit analysis rounds [-]."""
 NOTHING, BORNE = 1e-6, 1e-3
 """Multiplier that counts as none, and that of associated friction from which something is borne [-]."""
 STAYS = 1e-6
@@ -133,7 +135,9 @@ def collapse_multiplier(
             without dilatancy is found.
 
     Warns:
-        Implausible: for blocks that stand only by wedging, and where no torsion is borne without dilatancy.
+        Implausible: for blocks that stand only by wedging, where no torsion is borne without dilatancy, and for the
+            wall of a case without a side stop that the same forces overturn at a lower factor when they push the other
+            way.
 
     Examples:
         >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
@@ -206,19 +210,52 @@ def overturned(case: Case, direction: object, loads: Any) -> Collapse:
         require_within(f"loads[{i}], height", load.height, 0.0, top, "m")
         across, _, up = load.force_vector
         forces.append((load.offset, load.height, across, -up))
+    found = _overturning(case, forces)
+    if found is None:
+        raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
+    if not case.one_sided:
+        _warn_of_other_way(case, forces, found.factor)
+    acting: dict[str, Any] = {"loads": grown, "effects": case.effects, "case": case}
+    if found.factor == math.inf:
+        return Collapse(math.inf, np.array([way, 0.0]), (), np.zeros((1, 3)), **acting)
+    motion = found.side * wall.weight / found.moment * wall.turning(0.0, found.side)
+    return Collapse(found.factor, np.array([way, 0.0]), ("wall",), np.atleast_2d(motion), **acting)
+
+
+class _Overturning(NamedTuple):
+    """How forces that grow overturn a wall: the factor on them [-], the side of the edge, 1 outwards and -1 inwards,
+    and their moment about it [N m]. The factor is infinite where they overturn it to no side."""
+
+    factor: float
+    side: float = 1.0
+    moment: float = 1.0
+
+
+def _overturning(case: Case, forces: Sequence[tuple[float, float, float, float]]) -> _Overturning | None:
+    """How forces overturn the wall of a case, each given by its place x, z [m] and its parts outwards and downwards
+    [N]; None where they have no moment about its edges."""
     held = {1.0: case.restoring.outer.P + moment_at_strength(case.pulls)}
     if not case.one_sided:
         held[-1.0] = case.restoring.inner.P
-    over = {side: -sum(of_force(*force, wall.half_base).towards(side).P for force in forces) for side in held}
-    if not any(moment for moment in over.values()):
-        raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
-    factors = {side: held[side] / moment for side, moment in over.items() if moment > 0}
-    if not factors or min(factors.values()) == math.inf:
-        return Collapse(math.inf, np.array([way, 0.0]), (), np.zeros((1, 3)))
-    side = min(factors, key=lambda name: factors[name])
-    motion = side * wall.weight / over[side] * wall.turning(0.0, side)
-    acting = {"loads": grown, "effects": case.effects}
-    return Collapse(factors[side], np.array([way, 0.0]), ("wall",), np.atleast_2d(motion), **acting)  # type: ignore[arg-type]
+    edge = case.wall.half_base
+    over = {side: -sum(of_force(*force, edge).towards(side).P for force in forces) for side in held}
+    if not any(over.values()):
+        return None
+    found = [_Overturning(held[side] / moment, side, moment) for side, moment in over.items() if moment > 0]
+    return min(found, default=_Overturning(math.inf))
+
+
+def _warn_of_other_way(case: Case, forces: Sequence[tuple[float, float, float, float]], factor: float) -> None:
+    """Warn where horizontal forces overturn a wall that is free both ways at a lower factor when they push the other
+    way."""
+    other = _overturning(case, [(x, z, -across, down) for x, z, across, down in forces])
+    if other is not None and other.factor < (1 - WEAKER) * factor:
+        warn_of(
+            f"the wall has side_stop=False, and {factor:.4g} times the forces that grow overturn it; where they push "
+            f"the other way {other.factor:.4g} times do: check that way too, with direction and forces of the other "
+            "sign",
+            Implausible,
+        )
 
 
 def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:

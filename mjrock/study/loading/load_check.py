@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...problem.masonry.case import AnyCase
 from ...problem.masonry.limit.collapse import Collapse
 from ...quantities import require_kind, require_within
-from .code_check import Verdict, verdicts_of
+from .code_check import Verdict, verdicts_of, warn_of_inner_edge
 from .limit_analysis import LimitCurve
 from .push import Push
 from .pushover import PushoverCurve
@@ -90,12 +90,17 @@ def load_check(result: Borne, demand: float | None = None) -> LoadCheck:
     Raises:
         TypeError, ValueError: for another result, a demand outside its range, or none where a horizontal force grows.
 
+    Warns:
+        Implausible: for the push-over of a wall that is free both ways and bears less inwards.
+
     Examples:
         >>> column = mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 3)
         >>> mr.load_check(mr.collapse_multiplier(column), 0.15)
         <LoadCheck HOLDS: 0.2 for 0.15, limit analysis>
     """
     require_kind("result", result, *WHAT)
+    if isinstance(result, PushoverCurve):
+        warn_of_inner_edge(result.case, result.peak)
     if demand is None:
         start = result.start if isinstance(result, LimitCurve) else result
         if not isinstance(start, Collapse) or start.direction.any():

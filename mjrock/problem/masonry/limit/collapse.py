@@ -12,6 +12,7 @@ from scipy.sparse import hstack
 
 from ....notebook import Drawn
 from ....quantities import Array, named
+from ...wall.case import Case
 from ...wall.effect import Effect
 from ..blocks.joints_in_space import axes_along
 from ..laws.joint_law import Law, shear_limit
@@ -88,6 +89,7 @@ class Collapse(Drawn):
         pulls: of the ties among the effects, in their order [N], shape (ties,).
         loads: the loads that grow, by the name of their block [N] and [N m], or of a wall as effects.
         effects: what is constant.
+        case: the wall, where it is that of a `Case`.
     """
 
     multiplier: float
@@ -101,6 +103,7 @@ class Collapse(Drawn):
     pulls: Array | None = field(default=None, compare=False, repr=False)
     loads: Mapping[str, tuple[float, ...]] | tuple[Effect, ...] = field(default=(), compare=False, repr=False)
     effects: tuple[Effect, ...] = field(default=(), compare=False, repr=False)
+    case: Case | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
         if not self.moving:
