@@ -22,7 +22,7 @@ from ...contacts.files import aligned
 from ...notebook import html_of
 from ...problem.ground.motion import GroundMotion
 from ...problem.ground.oscillator import SHORTEST_PERIOD
-from ...problem.ground.spectrum import SpectrumOfCode, response_spectrum
+from ...problem.ground.spectrum import FloorSpectrum, SpectrumOfCode, response_spectrum
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.bending import HorizontalBending, VerticalBending
@@ -176,7 +176,7 @@ class MechanismCheck:
         confidence_factor: FC [-].
         d: spectral displacements of the capacity curve [m], shape (n,).
         a: spectral accelerations [m/s2], shape (n,).
-        d_0: displacement at which the acceleration falls to zero [m].
+        d_0: spectral displacement at which the acceleration falls to zero [m]: that of the centroid over e*.
         states: the limit states of the code, by name.
         peak: peak acceleration of the demand, where the wall stands [m/s2]; None of a displacement spectrum. Of an
             element that vibrates freely it is the spectral acceleration at its period.
@@ -206,6 +206,18 @@ class MechanismCheck:
     demands: Mapping[str, Demand] = field(default_factory=dict)
     moving: tuple[str, ...] = ()
     damage: float | None = None
+
+    @property
+    def floor_peak(self) -> float | None:
+        """The peak acceleration of the demand on a floor [m/s2]; None on the ground and of what vibrates freely."""
+        return self.peak if self._is_on_floor else None
+
+    @property
+    def _is_on_floor(self) -> bool:
+        """Whether the peak of the demand is that of a floor."""
+        demand = self.demands.get(self.code.first)
+        floor = demand.header.get("FLOOR") if isinstance(demand, GroundMotion) else isinstance(demand, FloorSpectrum)
+        return bool(floor) and not self._is_free
 
     @property
     def free_peak(self) -> float | None:
@@ -251,6 +263,11 @@ class MechanismCheck:
         """Capacity over demand of the linear check [-], with the ties at their strength; None of a code without one,
         and where the peak acceleration of the demand is not known."""
         return None if self.peak is None or self.code.linear is None else self.verdicts[0].ratio
+
+    @property
+    def floor_linear_ratio(self) -> float | None:
+        """The same on a floor; None elsewhere."""
+        return self.linear_ratio if self._is_on_floor else None
 
     @property
     def free_linear_ratio(self) -> float | None:
@@ -303,9 +320,9 @@ class MechanismCheck:
         for name, state in self.states.items():
             found += [(key, name, getattr(state, key)) for key in OF_LIMIT_STATE]
         found += [("ground_ratio", name, self._nonlinear(name).ratio) for name in self.states if self.is_of_start(name)]
-        steps = []
+        kind, steps = "free" if self._is_free else "floor" if self._is_on_floor else "", []
         for key, of, value in found:
-            hidden = key in ("peak", "linear_ratio") and self._is_free and f"free_{key}" in self.code.steps
+            hidden = key in ("peak", "linear_ratio") and f"{kind}_{key}" in self.code.steps
             if value is not None and key in self.code.steps and not hidden:
                 unit = CHECK_STEPS[key].unit
                 value = value / GRAVITY if unit == "g" else value
@@ -328,7 +345,7 @@ class MechanismCheck:
         rows = [("what moves", "", named(self.moving))] if self.moving else []
         for step in self.steps:
             what, note = self.code.step(step.key, step.of).plain, step.clause
-            if step.key in ("linear_ratio", "free_linear_ratio"):
+            if step.key.endswith("linear_ratio"):
                 note = self.verdicts[0].said
             elif step.key == "damage_ratio":
                 note = self.verdicts[-1].said
@@ -647,7 +664,7 @@ class DynamicCheck:
 
     Args:
         limit_state: of the code, such as "SLV".
-        d_0: displacement of the centroid at which nothing brings the wall back [m].
+        d_0: displacement of the centroid at which nothing brings the wall back [m]. Over e* it is `MechanismCheck.d_0`.
         runs: the largest displacement of each run.
         restitution: |e| of all impacts of the responses [-], shape (n,); none is known of masonry and of rows of a
             campaign.
@@ -754,6 +771,7 @@ class DynamicCheck:
         """
         require_kind("kinematic", kinematic, MechanismCheck, type(None))
         lines = [f"{run.solver}, {run.name}: {run.d:.4f} m, {share_said(run.d / self.d_0)} d_0" for run in self.runs]
+        lines.append(f"d_0 of the centroid: {self.d_0:.4f} m; over e* it is that of the curve a(d)")
         if self.restitution:
             low, middle, high = np.percentile(self.restitution, [5, 50, 95])
             said = f"{middle:.3f} in the median, {low:.3f} to {high:.3f} in nine of ten"
@@ -772,7 +790,7 @@ class DynamicCheck:
         said = f"{self.limit_state} {'HOLDS' if self.holds else 'FAILS'}{f', {self.judged}' if self.judged else ''}"
         return (
             f"<DynamicCheck {said}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
-            f"{len(self.exceeded)} of {len(self.runs)} runs beyond d_0 = {self.d_0:.4g} m>"
+            f"{len(self.exceeded)} of {len(self.runs)} runs beyond d_0 = {self.d_0:.4g} m of the centroid>"
         )
 
 

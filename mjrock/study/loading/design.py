@@ -123,8 +123,12 @@ class Design(Drawn):
     @property
     def governs(self) -> Condition | None:
         """The condition with the least ratio, of the chosen value, or of the best one where none holds."""
-        built = [trial for trial in self.trials if trial.governs is not None]
-        return (self.chosen or max(built, key=lambda trial: trial.ratio)).governs
+        return (self.chosen or self.nearest).governs
+
+    @property
+    def nearest(self) -> Trial:
+        """The value with the largest of the least ratios."""
+        return max((trial for trial in self.trials if trial.governs is not None), key=lambda trial: trial.ratio)
 
     def table(self) -> str:
         """Each value with its least ratio and the condition that it is of, as text."""
@@ -147,8 +151,8 @@ class Design(Drawn):
         if self.chosen is not None:
             every = f"every {method} condition" if method else "every condition"
             return f"{self.chosen.label} is the first of {len(self.trials)} values for which {every} holds"
-        best = max((trial for trial in self.trials if trial.checks), key=lambda trial: trial.ratio)
-        return f"none of {len(self.trials)} values holds; {best.label} comes nearest, {ratio_said(best.ratio)}"
+        best, count = self.nearest, len(self.trials)
+        return f"none of {count} values holds; {best.label} comes nearest, {ratio_said(best.ratio)}"
 
     def __repr__(self) -> str:
         return f"<Design: {self.sentence}>"
