@@ -10,7 +10,8 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def interrupts_held_back() -> Iterator[None]:
-    """Delay Ctrl-C to the end of the block, for imports: one that is cut off leaves modules that are half made.
+    """Delay Ctrl-C to the end of the block: an import that is cut off leaves modules that are half made, and a start of
+    processes leaves some that nothing ends.
 
     Python receives signals in the main thread, and nothing is done in another. The same holds where no function of
     Python handles Ctrl-C.

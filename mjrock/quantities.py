@@ -28,6 +28,7 @@ from .contacts.checks import (
     is_iterable,
     keep,
     keep_declared,
+    listed,
     named,
     require_array,
     require_flag,
@@ -115,9 +116,20 @@ def takes(value: object, count: int) -> bool:
 
 
 def require_sequence(name: str, value: object, takes: str) -> None:
-    """Raise a TypeError that names the value and what it should be, unless it is a sequence and no text."""
+    """Check a sequence.
+
+    Args:
+        name: what it is called.
+        value: the sequence.
+        takes: what it should be, in words.
+
+    Raises:
+        TypeError: unless it is a sequence and no text, with as many values as its length, at most MOST_VALUES.
+    """
     if not isinstance(value, Sequence) or isinstance(value, str):
         raise TypeError(f"{name} = {shown(value)} is not {takes}")
+    if len(listed(name, value)) != len(value):
+        raise TypeError(f"{name} = {shown(value)} is not {takes}: its length is {len(value)}, and it has other values")
 
 
 def require_path(name: str, path: object) -> Path:

@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields
 from functools import cache, wraps
+from itertools import islice
 from numbers import Real as RealNumber
 from types import UnionType
 from typing import (
@@ -31,6 +32,7 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 P = ParamSpec("P")
+Element = TypeVar("Element")
 Result = TypeVar("Result")
 
 PACKAGE = __name__.partition(".")[0]
@@ -41,6 +43,8 @@ PASSED = (PACKAGE, "functools", "contextlib")
 """Packages whose lines a warning does not point to."""
 MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
+MOST_VALUES = 1_000_000
+"""Most values of an argument that is a list of things."""
 
 
 def keep(instance: object, **checked: object) -> None:
@@ -289,6 +293,18 @@ def is_iterable(values: object) -> TypeGuard[Iterable[object]]:
     if isinstance(values, str | bytes) or (isinstance(values, np.ndarray | np.generic) and values.ndim == 0):
         return False
     return isinstance(values, Iterable) or hasattr(type(values), "__getitem__")
+
+
+def listed(name: str, values: Iterable[Element]) -> list[Element]:
+    """The values of what can be gone through, whatever it says of its length.
+
+    Raises:
+        ValueError: if there are more than MOST_VALUES, as where they have no end.
+    """
+    found = list(islice(values, MOST_VALUES + 1))
+    if len(found) > MOST_VALUES:
+        raise ValueError(f"{name} has more values than the largest valid number, {MOST_VALUES}")
+    return found
 
 
 def require_flag(name: str, value: object) -> bool:

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from .checks import Array, is_iterable, require_within, shown
+from .checks import Array, is_iterable, listed, require_within, shown
 from .geoms import GeomPair
 from .solref import IMPEDANCE_RANGE
 from .versions import GAP_IS_BEYOND, MARGINS_ADD_UP, field
@@ -156,7 +156,8 @@ class Grip(NamedTuple):
         mixed = Mixed.of(pair)
         if friction is None:
             return cls(mixed.friction, mixed.condim)
-        numbers = list(friction) if is_iterable(friction) else [friction, friction, *mixed.friction[2:]]
+        alone = [friction, friction, *mixed.friction[2:]]
+        numbers = listed("friction", friction) if is_iterable(friction) else alone
         if len(numbers) != 5:
             raise ValueError(
                 f"friction = {shown(friction)} has {len(numbers)} numbers; one of sliding is needed, or five: two of "

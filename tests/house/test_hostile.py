@@ -9,6 +9,7 @@ import math
 import re
 import warnings
 from functools import cache
+from itertools import repeat
 
 import mujoco
 import numpy as np
@@ -521,6 +522,13 @@ class Unreadable:
         raise RuntimeError("there is no array")
 
 
+class Lying(list):
+    """A list that says that it has more values than memory holds."""
+
+    def __len__(self):
+        return 10**12
+
+
 RAGGED = [[1.0], [1.0, 2.0]]
 AN_ARRAY_IS_TAKEN = {
     "Damper, space": ("at", "anchor"),
@@ -544,12 +552,43 @@ def test_what_cannot_be_read_is_refused_by_name():
                 is_answered((name, function, given | {argument: value}))
 
 
+A_LIST_IS_TAKEN = {
+    "Block": ("openings", "masses"),
+    "VerticalBending": ("effects",),
+    "Case": ("effects",),
+    "contact_for": ("friction",),
+    "dynamic_check": ("runs",),
+    "scaled_together": ("motions",),
+    "Masonry": ("blocks",),
+    "Masonry.stack": ("blocks",),
+}
+"""Arguments that take lists of things."""
+
+
+@pytest.mark.parametrize("values", [Lying, lambda: Lying([1.0]), lambda: repeat(1.0)], ids=["empty", "one", "endless"])
+def test_a_list_that_lies_about_its_length_is_refused_by_name(values):
+    for name, arguments in A_LIST_IS_TAKEN.items():
+        function, given = CALLS[name]
+        for argument in arguments:
+            with pytest.raises((TypeError, ValueError), match=STANDS_FOR.get(argument, argument)):
+                function(**given | {argument: values()})
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(CALLS))
 def test_what_cannot_be_read_is_refused_by_name_everywhere(name):
     function, given = CALLS[name]
     for argument in given:
-        for value in (Unreadable(), RAGGED, np, np.ma.masked_all(3), np.array([1.0, None]), {"a": 1}, [[[[[1.0]]]]]):
+        for value in (
+            Unreadable(),
+            RAGGED,
+            Lying([1.0]),
+            np,
+            np.ma.masked_all(3),
+            np.array([1.0, None]),
+            {"a": 1},
+            [[[[[1.0]]]]],
+        ):
             is_answered((name, function, given | {argument: value}))
 
 

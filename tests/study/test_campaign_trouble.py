@@ -1,16 +1,20 @@
 """Campaigns in trouble: tasks that misbehave, points that cannot be built, Ctrl-C, and cases that take too long."""
 
+import contextlib
 import os
 import signal
 import subprocess
 import sys
 import time
+from _thread import interrupt_main
 from concurrent.futures import ThreadPoolExecutor
+from multiprocessing import resource_tracker, util
 from pathlib import Path
 
 import numpy as np
 import pytest
 from campaign_tasks import Misbehave, Square
+from pebble.pool import process
 from test_campaign import ENVIRONMENT, children, gone
 
 import mjrock as mr
@@ -194,6 +198,39 @@ def rows_of(path):
             return len(store)
     except (ValueError, OSError):  # it is not written yet
         return 0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes start in another way")
+@pytest.mark.parametrize(
+    "waits", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["ends them", "lets them start"]
+)
+def test_ctrl_c_while_workers_start(tmp_path, monkeypatch, capfd, waits):
+    """As the first one has been started: both are ended, also where one opens the pipes and locks of a campaign that
+    has closed them already."""
+    started, spawn, end = [], util.spawnv_passfds, process.WorkerManager.force_stop_workers
+
+    def interrupted(*given):
+        started.append(spawn(*given))
+        if len(started) == 1:
+            interrupt_main()  # as if another thread had received the signal
+        return started[-1]
+
+    def late(manager):
+        for worker in manager.workers.values():
+            worker.join(60.0)
+        end(manager)
+
+    resource_tracker.ensure_running()
+    monkeypatch.setattr(util, "spawnv_passfds", interrupted)
+    if waits:
+        monkeypatch.setattr(process.WorkerManager, "force_stop_workers", late)
+    with pytest.raises(KeyboardInterrupt, match="0 rows are kept"):
+        mr.campaign([Square(1), Square(2)], tmp_path / "c.sqlite", workers=2)
+    for pid in started:
+        with contextlib.suppress(ChildProcessError):  # it has ended
+            os.waitpid(pid, 0)
+    assert len(started) == 2
+    assert "Traceback" not in capfd.readouterr().err
 
 
 @pytest.mark.slow

@@ -18,7 +18,18 @@ from typing import NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, keep, named, require_kind, require_path, require_text, shown, spelt, warn_of
+from ...quantities import (
+    Array,
+    keep,
+    named,
+    require_kind,
+    require_path,
+    require_sequence,
+    require_text,
+    shown,
+    spelt,
+    warn_of,
+)
 from .formats import recognised
 from .motion import GroundMotion, motion_of
 from .records import NoRecordError, Wanted, read, table_traces
@@ -421,7 +432,8 @@ def scaled_together(
     Raises:
         TypeError, ValueError: for a value outside its range, a motion at rest, or vertical components alone.
     """
-    if not isinstance(motions, Sequence) or not motions:
+    require_sequence("motions", motions, "a sequence of at least one GroundMotion")
+    if not motions:
         raise TypeError(f"motions = {shown(motions)} is not a sequence of at least one GroundMotion")
     for i, motion in enumerate(motions):
         require_kind(f"motions[{i}]", motion, GroundMotion)

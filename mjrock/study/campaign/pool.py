@@ -15,11 +15,13 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
+from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 
 from pebble import ProcessPool
 from tqdm import tqdm
 
+from ...interrupts import interrupts_held_back
 from ...notice import collect_warnings
 from .task import Row, Task, carry_out
 
@@ -45,7 +47,9 @@ class Workers:
 
     def submit(self, tasks: Sequence[tuple[Task, Path | None]]) -> Future[list[Row]]:
         """The rows of the first tasks; raises whatever pickle does for a task that it cannot take."""
-        found: Future[list[Row]] = self.pool.schedule(serve, (pickle.dumps(list(tasks)),), timeout=self.limit)
+        content = pickle.dumps(list(tasks))
+        with interrupts_held_back():  # the first call starts the processes, and one that is cut off would leave some
+            found: Future[list[Row]] = self.pool.schedule(serve, (content,), timeout=self.limit)
         return found
 
     def __enter__(self) -> Workers:
@@ -65,6 +69,18 @@ class _Worker(SpawnProcess):
         """Start it."""
         with _uninterrupted():
             super().start()
+
+    def __getstate__(self) -> dict[str, object]:
+        """What the new process reads first. The pipes and locks of the pool are opened in `run`."""
+        return vars(self) | {"_args": bytes(ForkingPickler.dumps(vars(self)["_args"]))}
+
+    def run(self) -> None:
+        """Carry out tasks, unless the campaign has ended while this process started: its locks are gone then."""
+        try:
+            vars(self)["_args"] = pickle.loads(vars(self)["_args"])
+        except FileNotFoundError:
+            return
+        super().run()
 
     def is_alive(self) -> bool:
         """Whether it runs: False from the second call after a death, when `pebble` has read which task it ended."""

@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 
 from ..._version import __version__
-from ...quantities import is_iterable, shown, spelt
+from ...quantities import is_iterable, listed, shown, spelt
 
 Value = str | int | float | None
 
@@ -222,14 +222,14 @@ class Grid(Sequence[Task]):
 
     Raises:
         TypeError: for a build that is not a function, or values that cannot be gone through.
-        ValueError: if an axis has no values, or more than memory holds.
+        ValueError: if an axis has no values, or more than 1000000.
     """
 
     def __init__(self, build: Callable[..., Task], **axes: Iterable[object]) -> None:
         if not callable(build):
             raise TypeError(f"build = {shown(build)} is not a function that makes the task of a point")
         self.build = build
-        self.axes = {name: _listed(name, values) for name, values in axes.items()}
+        self.axes = {name: _axis_values(name, values) for name, values in axes.items()}
 
     def __repr__(self) -> str:
         axes = ", ".join(f"{name} ({len(values)})" for name, values in self.axes.items())
@@ -274,17 +274,13 @@ class Grid(Sequence[Task]):
         return {name: axis_label(value) for name, value in point.items()}
 
 
-def _listed(name: str, values: object) -> list[object]:
+def _axis_values(name: str, values: object) -> list[object]:
     """The values of an axis; a TypeError or ValueError with its name if there are none."""
     if not (isinstance(values, str) or is_iterable(values)):
         raise TypeError(f"the axis {name} = {shown(values)} is not a row of values")
-    try:
-        listed = list(values)
-    except MemoryError:
-        raise ValueError(f"the axis {name} = {shown(values)} has more values than memory holds") from None
-    if not listed:
+    if not (found := listed(f"the axis {name}", values)):
         raise ValueError(f"the axis {name} has no values")
-    return listed
+    return found
 
 
 def labelled(task: Task, labels: Mapping[str, object]) -> Task:

@@ -36,6 +36,7 @@ from ...quantities import (
     Array,
     Implausible,
     is_iterable,
+    listed,
     named,
     percent_said,
     ratio_said,
@@ -846,7 +847,7 @@ def dynamic_check(
     require_one_of("limit_state", limit_state, code.states)
     require_kind("natural", natural, bool, type(None))
     require_kind("curve", curve, LimitCurve, Push, type(None))
-    if not is_iterable(runs) or not (given := cast("list[Response | Analysis]", list(runs))):
+    if not is_iterable(runs) or not (given := cast("list[Response | Analysis]", listed("runs", runs))):
         raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
     cases = _cases_of(given, curve)
     motions = [case.motion for case in cases if case.motion is not None]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contacts.files import aligned
 from ...notebook import Drawn
-from ...quantities import is_iterable, ratio_said, require_one_of, shown
+from ...quantities import is_iterable, listed, ratio_said, require_one_of, shown
 from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands
 from .load_check import Borne, LoadCheck, load_check
 
@@ -205,7 +205,7 @@ def design(
         raise TypeError(f"build = {shown(build)} is not a function of a value")
     if not is_iterable(values) or isinstance(values, str | Mapping):
         raise TypeError(f"values = {shown(values)} is not a sequence of values")
-    given = list(values)
+    given = listed("values", values)
     if not given:
         raise ValueError("values is empty; at least one is needed")
     if demand is not None and not isinstance(demand, int | float):

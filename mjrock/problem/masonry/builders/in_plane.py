@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....quantities import Array, require_flag, require_kind, require_whole, require_within, shown
+from ....quantities import Array, require_flag, require_kind, require_sequence, require_whole, require_within, shown
 from ...wall.bending import VerticalBending
 from ...wall.block import Block
 from ...wall.effects import SideStop
@@ -64,7 +64,8 @@ def ground_below_all(blocks: Sequence[FlatBlock]) -> Polygon:
 def stacked(blocks: Sequence[Block], ground: bool) -> list[FlatBlock]:
     """Blocks one on the other, their bases centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
     require_flag("ground", ground)
-    if not isinstance(blocks, Sequence) or isinstance(blocks, str) or not blocks:
+    require_sequence("blocks", blocks, "a list of blocks")
+    if not blocks:
         raise TypeError(f"blocks = {shown(blocks)} is not a list of blocks")
     polygons, z = list[FlatBlock](), 0.0
     for i, block in enumerate(blocks):
