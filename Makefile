@@ -35,7 +35,10 @@ test-processors: $(TEST) # the everyday tests of the physics by the linear algeb
 mutants: $(TEST) # changes one operator or number of the physics at a time and names what no test notices; some minutes
 	$(BIN)/python tests/mutants.py $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))
 
-test-oldest: $(OLDEST)/.ready # the everyday tests with the oldest Python and versions that pyproject.toml allows
+# The everyday tests with the oldest Python and versions that pyproject.toml allows. An older numba has a store of its own:
+# each version removes what another one has stored.
+test-oldest: export NUMBA_CACHE_DIR = $(CURDIR)/out/oldest
+test-oldest: $(OLDEST)/.ready
 	$(OLDEST)/bin/pytest -n auto
 
 # The everyday tests by PYTHON, away from the checkout. The package is installed from files alone: the wheel that brings what

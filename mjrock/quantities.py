@@ -124,7 +124,7 @@ def require_sequence(name: str, value: object, takes: str) -> None:
         takes: what it should be, in words.
 
     Raises:
-        TypeError: unless it is a sequence and no text, with as many values as its length, at most MOST_VALUES.
+        TypeError: unless it is a sequence and no text, with as many values as its length, at most MOST_LISTED.
     """
     if not isinstance(value, Sequence) or isinstance(value, str):
         raise TypeError(f"{name} = {shown(value)} is not {takes}")

@@ -43,7 +43,7 @@ PASSED = (PACKAGE, "functools", "contextlib")
 """Packages whose lines a warning does not point to."""
 MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
-MOST_VALUES = 1_000_000
+MOST_LISTED = 1_000_000
 """Most values of an argument that is a list of things."""
 
 
@@ -299,11 +299,11 @@ def listed(name: str, values: Iterable[Element]) -> list[Element]:
     """The values of what can be gone through, whatever it says of its length.
 
     Raises:
-        ValueError: if there are more than MOST_VALUES, as where they have no end.
+        ValueError: if there are more than MOST_LISTED, as where they have no end.
     """
-    found = list(islice(values, MOST_VALUES + 1))
-    if len(found) > MOST_VALUES:
-        raise ValueError(f"{name} has more values than the largest valid number, {MOST_VALUES}")
+    found = list(islice(values, MOST_LISTED + 1))
+    if len(found) > MOST_LISTED:
+        raise ValueError(f"{name} has more values than the largest valid number, {MOST_LISTED}")
     return found
 
 

@@ -120,8 +120,10 @@ def write_text(path: str | Path, text: str) -> Path:
 
 def write_arrays(path: str | Path, **arrays: Any) -> None:
     """Write arrays to an .npz file, by their names."""
-    with replacing(path) as partial, open(partial, "wb") as file:
-        np.savez_compressed(file, **arrays)
+    content = io.BytesIO()  # an archive on a full disk would be left open
+    np.savez_compressed(content, **arrays)
+    with replacing(path) as partial:
+        partial.write_bytes(content.getvalue())
 
 
 def quoted(value: str) -> str:

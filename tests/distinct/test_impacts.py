@@ -14,7 +14,7 @@ K_N = 1e8
 """Stiffness of the joints [N/m3]."""
 
 
-def setup(blocks, xi=0.1, **options):
+def at_start(blocks, xi=0.1, **options):
     """Masonry of these blocks at its start."""
     masonry = mr.Masonry(blocks, k_n=K_N, friction=0.7, xi=xi, **options)
     return masonry, setup_of(mr.MasonryCase(masonry, 1.0), None, None)
@@ -28,7 +28,7 @@ def test_an_impact_is_that_of_a_reduced_mass(in_space):
         blocks = [ground, *(mr.Polyhedron.box((2 - i, 1, 1), (0, 0, 0.5 + i)) for i in range(2))]
     else:
         blocks = [GROUND, box(-1, 1, 0, 1), box(-0.5, 0.5, 1, 2)]
-    masonry, start = setup(blocks)
+    masonry, start = at_start(blocks)
     lower, upper = (masonry.blocks[i].mass for i in masonry.free)
     mass, area = np.array([lower, lower * upper / (lower + upper)]), np.array([2.0, 1.0])
     order = np.argsort([joint.above for joint in masonry.joints])
@@ -39,7 +39,7 @@ def test_an_impact_is_that_of_a_reduced_mass(in_space):
 
 def test_dashpots_of_a_moving_face_count_as_those_on_the_ground():
     """Blocks side by side: normals of beds are vertical, those of heads horizontal, and both count."""
-    masonry, start = setup([GROUND, box(0, 1, 0, 1), box(1, 2, 0, 1)])
+    masonry, start = at_start([GROUND, box(0, 1, 0, 1), box(1, 2, 0, 1)])
     mass = masonry.blocks[1].mass
     expected = [math.sqrt(K_N / mass) if 0 in (j.below, j.above) else math.sqrt(2 * K_N / mass) for j in masonry.joints]
     np.testing.assert_allclose(start.impacts.frequency, expected, rtol=1e-12)
@@ -98,7 +98,7 @@ def test_dashpots_look_ahead_where_they_lag_and_steps_are_short():
 def test_masonry_with_strong_dashpots_takes_the_step_that_they_ask_for():
     blocks = [GROUND, box(-0.4, 0.4, 0, 0.5)]
     for xi, strong in ((0.05, False), (0.2, True), (0.3, True)):
-        masonry, start = setup(blocks, xi)
+        masonry, start = at_start(blocks, xi)
         stats = mr.solve_explicit(mr.MasonryCase(masonry, 1.0), output_step=0.1).stats
         if strong:
             step = 0.05 / start.impacts.ratio[0] / start.impacts.frequency[0]
@@ -110,7 +110,7 @@ def test_masonry_with_strong_dashpots_takes_the_step_that_they_ask_for():
     given = 0.4 * start.limit  # too long for what dashpots could foresee
     assert not start.foresees(given)
     assert start.foresees(0.2 * start.limit)
-    assert setup(blocks, 0.0)[1].foresees(0.25 * start.limit)
+    assert at_start(blocks, 0.0)[1].foresees(0.25 * start.limit)
 
 
 @pytest.mark.parametrize("share", [0.7, 0.95])

@@ -9,11 +9,13 @@ import importlib
 import io
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from packaging.version import Version
 from PIL import Image, ImageFilter
 
 import mjrock as mr
@@ -27,9 +29,8 @@ DPI = 45
 CELL = 6
 """Side of a cell [pixel]."""
 DIFFERENT = 0.05
-"""Largest mean difference of a cell, over that of black and white. Matplotlib 3.10.7 for 3.11.2 makes up to 0.018, and
-0.039 in the sketch, most lines of results that are missing 0.07 or more, a block of a wall 0.28. Faint lines of
-reference make less."""
+"""Largest mean difference of a cell, over that of black and white. Matplotlib 3.10.7 for 3.11.2 makes up to 0.018, most
+lines of results that are missing 0.07 or more, a block of a wall 0.28. Faint lines of reference make less."""
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)], gable=mr.Gable(1.0))
 E = mr.Restitution.from_geometry(WALL)
@@ -207,6 +208,8 @@ def test_every_public_picture_is_kept():
 
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_is_the_one_that_was_looked_at(name):
+    if name == "sketch" and Version(matplotlib.__version__) < Version("3.11"):
+        pytest.skip("the elevation is a pixel larger: its place depends on the width of texts, which 3.11 has changed")
     drawn = PICTURES[name]()
     assert isinstance(drawn, Axes | Figure)
     assert difference(name, drawn) < DIFFERENT

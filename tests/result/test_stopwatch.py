@@ -15,10 +15,10 @@ def test_a_thread_that_waits_takes_no_time_of_the_processor():
     waited = watch.took()
     assert waited["wall_time"] >= 0.1
     assert waited["processor_time"] < 0.05
-    end = time.perf_counter() + 0.1
-    while time.perf_counter() < end:
+    end = time.thread_time() + 0.05
+    while time.thread_time() < end:
         pass
-    assert watch.stepping()["stepping_processor_time"] > waited["processor_time"] + 0.02
+    assert watch.stepping()["stepping_processor_time"] >= waited["processor_time"] + 0.05
 
 
 @pytest.mark.parametrize("solver", ["MuJoCo", "explicit", "compliant", "analytical"])
