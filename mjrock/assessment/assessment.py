@@ -3,25 +3,44 @@
 from __future__ import annotations
 
 import codecs
-from collections.abc import Callable, Mapping
+import copy
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from ..contacts.files import require_file
+from ..contacts.files import require_file, write_text
 from ..quantities import require_path, require_text
-from ..study.loading.code_check import MechanismCheck
-from .declarations import Key
+from ..result.response import Response
+from ..study.loading.code_check import DynamicCheck, MechanismCheck
+from ..study.loading.design import Design, design
+from .declarations import REQUIRED, Key, Maker, maker_of
 from .mechanisms import Mechanism, mechanisms_of
 from .reading import Reader
 from .tables import LARGEST, AssessmentError, Fault, Place, Table, line_of, lines_of, located, parsed, spelt_place
+from .writing import toml_text
+
+if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
+    from ..study.analysis import Analysis
 
 OF_ALL = {
     "language": Key("language", Literal["en", "it"], "en", "of check and report"),
     "project": Key("project", Mapping[str, str], None, "title block of the report"),
 }
 """Keys that a file has once."""
+DESIGN = Maker(
+    design,
+    {
+        "key": Key("key", str, REQUIRED, "the key of the file whose values are tried, such as effects[0].diameter"),
+        "method": maker_of(design).keys["method"],
+    },
+    "The first of some values for which every condition holds.",
+)
+"""What `[design]` has, beside the values that are tried."""
+OF_EACH = "checks", "e", "contacts"
+"""Arguments of `report` that may be mappings by mechanism."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,6 +54,9 @@ class Assessment:
         name: of the file, for messages; empty where there is none.
         document: the tables of the file, as plain dictionaries and lists.
         lines: the line of each key of the file.
+        folder: what paths in the tables are relative to; None reads none.
+        texts: further arguments of `report`.
+        trials: of `[design]`, the key, its values and the method that counts; empty where the file has none.
     """
 
     mechanisms: Mapping[str, Mechanism]
@@ -43,6 +65,9 @@ class Assessment:
     name: str = ""
     document: Mapping[str, Any] = field(default_factory=dict, repr=False)
     lines: Mapping[Place, int] = field(default_factory=dict, repr=False, compare=False)
+    folder: Path | None = None
+    texts: Mapping[str, Any] = field(default_factory=dict)
+    trials: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         parts = [f"{name or 'mechanism'}: {one.problem!r}" for name, one in self.mechanisms.items()]
@@ -56,14 +81,123 @@ class Assessment:
         """
         return {name: self._of(one, one.check) for name, one in self.mechanisms.items()}
 
+    def analyses(self) -> dict[str, list[Analysis]]:
+        """Tasks of all runs for `campaign`, by mechanism: each record in both polarities, or the release.
+
+        Raises:
+            AssessmentError: with the line of the mechanism that cannot be run, and why.
+        """
+        return {name: self._of(one, one.analyses) for name, one in self.mechanisms.items()}
+
+    def run(self) -> dict[str, list[Response]]:
+        """The responses of all runs, by mechanism, see `analyses`."""
+        solving = {
+            name: [partial(self._of, self.mechanisms[name], task.solve) for task in tasks]
+            for name, tasks in self.analyses().items()
+        }
+        return {name: [solve() for solve in each] for name, each in solving.items()}
+
+    def dynamic_check(self, runs: Mapping[str, Sequence[Response]]) -> dict[str, DynamicCheck]:
+        """The check by its runs of each mechanism, see `mjrock.dynamic_check`.
+
+        Args:
+            runs: responses by mechanism, such as those of `run`.
+        """
+        found = {name: self.mechanisms[name] for name in runs}
+        return {name: self._of(one, partial(one.dynamic, runs[name])) for name, one in found.items()}
+
+    def design(self) -> Design:
+        """The first of the values of `[design]` for which every condition holds.
+
+        The conditions are those of the mechanism that has the key, or of all where they share it.
+
+        Raises:
+            AssessmentError: without that table, or where no value can be checked.
+        """
+        if not self.trials:
+            raise self._error((), "the file has no [design]; give it key and values")
+        place, values = place_of(self.trials["key"]), self.trials["values"]
+
+        def build(value: Any) -> dict[str, MechanismCheck]:
+            whole = assessment_of(replaced(self.document, place, value), folder=self.folder)
+            changed = [str(place[1])] if place[0] == "mechanisms" else list(whole.mechanisms)
+            return {name: whole.mechanisms[name].check() for name in changed}
+
+        try:
+            return design(build, values, method=self.trials.get("method"))
+        except (TypeError, ValueError) as error:
+            raise self._error(("design",), f"design: {error}") from None
+
+    def report(
+        self, path: str | Path, runs: Mapping[str, Sequence[Response]] | None = None, *, language: str | None = None
+    ) -> Path:
+        """Write the report of all checks, and of runs where they are given, see `mjrock.report`.
+
+        Args:
+            path: where to, an .html or a .pdf.
+            runs: responses by mechanism, such as those of `run`.
+            language: "en" or "it"; None is that of the file.
+        """
+        from ..reporting.page import report
+
+        first = next(iter(self.mechanisms.values())).case
+        checks: dict[str, Any] = {name: [one] for name, one in self.check().items()} if self.has_site else {}
+        for name, one in (self.dynamic_check(runs) if runs else {}).items():
+            checks.setdefault(name, []).append(one)
+        shown = {name: of for name, of in (runs or {}).items() if self.mechanisms[name].case.built == first.built}
+        impacts = {name: self.mechanisms[name].shaking for name in shown}
+        given: dict[str, Any] = {
+            "checks": checks or None,
+            "project": dict(self.project) or None,
+            "language": language or self.language,
+            "e": {name: one.e for name, one in impacts.items() if one.e is not None} or None,
+            "contacts": {name: one.contacts for name, one in impacts.items() if one.contacts is not None} or None,
+        }
+        if list(self.mechanisms) == [""]:
+            given |= {name: value[""] for name, value in given.items() if name in OF_EACH and value}
+        responses: Any = shown.get("", ()) if "" in self.mechanisms else shown or ()
+        return report(first, responses, path, **given, **self.texts)
+
+    @property
+    def has_site(self) -> bool:
+        """Whether each mechanism has what a check is against."""
+        return all(one.demand is not None for one in self.mechanisms.values())
+
+    def to_toml(self, path: str | Path | None = None) -> str:
+        """The file as TOML text, floats with all their digits; written to a path where one is given.
+
+        Values are those of the file, with their units. Comments are not kept.
+        """
+        text = toml_text(self.document)
+        if path is not None:
+            write_text(require_path("path", path), text)
+        return text
+
     def _of(self, mechanism: Mechanism, call: Callable[[], Any]) -> Any:
         """What a function of a mechanism returns; its error names the table."""
         try:
             return call()
         except (TypeError, ValueError) as error:
-            place = mechanism.place
-            fault = Fault(place, f"{spelt_place(place)}: {error}", line_of(place, self.lines))
-            raise AssessmentError((fault,), self.name) from None
+            raise self._error(mechanism.place, f"{spelt_place(mechanism.place)}: {error}") from None
+
+    def _error(self, place: Place, message: str) -> AssessmentError:
+        """An error at a table of the file."""
+        return AssessmentError((Fault(place, message, line_of(place, self.lines)),), self.name)
+
+
+def place_of(text: str) -> Place:
+    """A key as messages spell it, effects[0].diameter, as a place."""
+    return tuple(int(number) if number else name for number, name in re.findall(r"\[(\d+)\]|([^.\[\]]+)", text))
+
+
+def replaced(document: Mapping[str, Any], place: Place, value: Any) -> dict[str, Any]:
+    """A copy of tables in which a key has another value; LookupError for a place that they have not."""
+    copied = copy.deepcopy(dict(document))
+    table: Any = copied
+    for part in place[:-1]:
+        table = table[part]
+    table[place[-1]] = value
+    return copied
 
 
 def from_toml(path: str | Path | None = None, *, text: str | None = None) -> Assessment:
@@ -144,8 +278,43 @@ def assessment_of(
     whole: dict[str, Any] = {}
     for name_of in OF_ALL.keys() & top.values.keys():
         whole[name_of] = reader.attempted(partial(reader.value, OF_ALL[name_of], top.values[name_of], (name_of,)))
-    mechanisms = mechanisms_of(reader, top.without(*OF_ALL))
+    texts = reader.attempted(partial(_texts, reader, top)) or {}
+    trials = reader.attempted(partial(_trials, reader, top, document))
+    mechanisms = mechanisms_of(reader, top.without(*OF_ALL, "report", "design"))
     if not mechanisms and not reader.faults:
         reader.refuse((), "the file has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
     reader.require_sound()
-    return Assessment(mechanisms, name=name, document=document, lines=lines or {}, **whole)
+    rest: dict[str, Any] = {"lines": lines or {}, "folder": folder, "texts": texts, "trials": trials or {}}
+    return Assessment(mechanisms, name=name, document=document, **rest, **whole)
+
+
+def _texts(reader: Reader, top: Table) -> dict[str, Any]:
+    """What `[report]` has for the report."""
+    return reader.arguments(reader.required_table(top, "report"), report_maker()) if "report" in top.values else {}
+
+
+def _trials(reader: Reader, top: Table, document: Mapping[str, Any]) -> dict[str, Any]:
+    """What `[design]` has: a key of the file, its values, and the method that counts."""
+    if "design" not in top.values:
+        return {}
+    table = reader.required_table(top, "design")
+    found = reader.arguments(table.without("values"), DESIGN)
+    try:
+        replaced(document, place_of(found["key"]), None)
+    except (LookupError, TypeError):
+        reader.refuse(
+            table.of("key"), f"design.key = {found['key']!r} is no key of the file; spell it effects[0].diameter"
+        )
+    values = table.values.get("values")
+    if not isinstance(values, list) or not values:
+        reader.refuse(table.of("values"), "design.values is no list of at least one value of that key")
+    return found | {"values": document["design"].get("values")}
+
+
+@cache
+def report_maker() -> Maker:
+    """The keys of `[report]`."""
+    from ..reporting.page import report
+
+    given = "case", "responses", "path", "e", "contacts", "checks", "project", "language", "sections"
+    return maker_of(report).without(*given)

@@ -154,16 +154,27 @@ def maker_of(call: Callable[..., Any], owner: type | None = None) -> Maker:
             doc = said.get(one.name, "")
             if owner is not None and ((shared := AS_OF.search(doc)) or not doc):
                 doc = _as_of(owner, shared[1] if shared else "", one.name) or doc
-            own[one.name] = Key(one.name, hints.get(one.name, Any), default, doc)
+            key = Key(one.name, hints.get(one.name, Any), default, doc)
+            own |= {one.name: key} if key.kinds or default is REQUIRED else {}
     return Maker(call, own, (inspect.getdoc(call) or "").partition("\n\n")[0].replace("\n", " "))
 
 
 def hints_of(call: Callable[..., Any]) -> dict[str, Any]:
     """The types of the arguments of a class or function, with what is declared of them."""
-    hints = get_type_hints(call, include_extras=True)
+    hints = _evaluated(call)
     if isinstance(call, type) and inspect.isfunction(made := vars(call).get("__init__")):
-        hints |= get_type_hints(made, include_extras=True)
+        hints |= _evaluated(made)
     return hints
+
+
+def _evaluated(call: Callable[..., Any]) -> dict[str, Any]:
+    """Annotations as types; a name that type checkers alone import stands for any type."""
+    unknown: dict[str, Any] = {}
+    while True:
+        try:
+            return get_type_hints(call, localns=unknown or None, include_extras=True)
+        except NameError as error:
+            unknown[str(error.name)] = Any
 
 
 def _as_of(owner: type, name: str, argument: str) -> str:

@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, get_args
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, get_args
 
 from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, code_spectrum
 from ..problem.masonry.case import MasonryCase
+from ..problem.wall.bending import HorizontalBending, VerticalBending
+from ..problem.wall.case import Case
+from ..problem.wall.wedge import Corner
+from ..result.response import Response
 from ..study.loading.code import USUAL_CODE, code_of
-from ..study.loading.code_check import Checked, Demand, MechanismCheck, mechanism_check, required_demands
+from ..study.loading.code_check import (
+    Checked,
+    Demand,
+    DynamicCheck,
+    MechanismCheck,
+    dynamic_check,
+    mechanism_check,
+    required_demands,
+)
 from ..study.loading.limit_analysis import LimitCurve, limit_curve
 from .declarations import Makers, key_named, maker_of, makers_of
 from .reading import OWN_KEYS, Reader, RefusedError
+from .running import Shaking, shaking_of
 from .tables import Place, Table, spelt_place
+
+if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
+    from ..study.analysis import Analysis
 
 Problem = Checked | MasonryCase
 MECHANISMS: Mapping[str, Makers] = {
@@ -31,7 +48,7 @@ CHECK = maker_of(mechanism_check).without("case", "demand")
 """What `[check]` stands for."""
 CURVE = maker_of(limit_curve).without("masonry", "effects")
 """What `[limit_curve]` stands for, of masonry of blocks."""
-SECTIONS = {"site": SITES["code_spectrum"][""], "floor": FLOOR, "check": CHECK, "limit_curve": CURVE}
+SECTIONS = ("site", "floor", "check", "limit_curve", "restitution", "contacts", "records", "run", "dynamic_check")
 """Tables beside those of the mechanism itself."""
 
 
@@ -45,6 +62,7 @@ class Mechanism:
             site.
         options: further arguments of `mechanism_check`.
         curve: further arguments of `limit_curve`, of masonry of blocks.
+        shaking: its records and runs.
         place: its table in the file.
     """
 
@@ -52,7 +70,13 @@ class Mechanism:
     demand: Demand | Mapping[str, Demand] | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     curve: Mapping[str, Any] = field(default_factory=dict)
+    shaking: Shaking = field(default_factory=Shaking)
     place: Place = ()
+
+    @property
+    def case(self) -> Case | MasonryCase:
+        """The case that is drawn and run: of a corner its wall and masses, of a wall that bends the wall."""
+        return case_of(self.problem)
 
     def check(self) -> MechanismCheck:
         """Its kinematic check, see `mechanism_check`.
@@ -62,10 +86,46 @@ class Mechanism:
         """
         if self.demand is None:
             raise ValueError("has no site, which a check is against; give it a table [site] with ag and soil")
-        subject: Any = self.problem
-        if not isinstance(subject, Checked):
-            subject = limit_curve(subject.masonry, effects=subject.effects, **self.curve)
+        subject: Any = self.problem if self.limit_curve is None else self.limit_curve
         return mechanism_check(subject, self.demand, **self.options)
+
+    @cached_property
+    def limit_curve(self) -> LimitCurve | None:
+        """The curve of masonry of blocks that is checked; None of a wall."""
+        if isinstance(self.problem, Checked):
+            return None
+        return limit_curve(self.problem.masonry, effects=self.problem.effects, **self.curve)
+
+    def analyses(self) -> list[Analysis]:
+        """One task for each record and polarity, for `campaign`, or one of the release where there are no records.
+
+        Raises:
+            ValueError: for a wall that bends, which is checked and not run, or where the solver needs what is missing.
+        """
+        from ..study.analysis import Analysis, MasonryAnalysis
+
+        if isinstance(self.problem, VerticalBending | HorizontalBending):
+            raise ValueError("a wall that bends is checked and not run; give its blocks as a MasonryCase to run it")
+        shaking, case = self.shaking, self.case
+        shaken: list[Any] = [replace(case, motion=motion) for motion in shaking.motions] or [case]
+        if not isinstance(self.problem, Checked):
+            return [MasonryAnalysis(one, solver=shaking.solver, options=shaking.options) for one in shaken]
+        of = {"e": shaking.e} if shaking.solver == "analytical" else {"contacts": shaking.contacts}
+        return [Analysis(one, shaking.solver, options=shaking.options, **of) for one in shaken]
+
+    def dynamic(self, runs: Sequence[Response]) -> DynamicCheck:
+        """The check of its runs, see `dynamic_check`."""
+        options = dict(self.shaking.dynamic) | {name: one for name, one in self.options.items() if name == "code"}
+        return dynamic_check(runs, curve=self.limit_curve, **options)
+
+
+def case_of(problem: Any) -> Case | MasonryCase:
+    """The case that stands for a problem in pictures and runs."""
+    if isinstance(problem, Corner):
+        return Case(problem.block, effects=problem.masses)
+    if isinstance(problem, VerticalBending | HorizontalBending):
+        return Case(problem.wall)
+    return problem  # type: ignore[no-any-return]
 
 
 def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:
@@ -101,14 +161,20 @@ def _mechanism(reader: Reader, table: Table, own: set[str], used: set[str]) -> M
     except RefusedError:
         used |= set(table.values)
         return None
-    takes = {key_named(key) for key in maker.keys.values()} | SECTIONS.keys()
+    takes = {key_named(key) for key in maker.keys.values()} | set(SECTIONS)
     used |= (takes | set(OWN_KEYS)) & set(table.values)
     rest = rest.without(*(set(rest.values) - takes - own))
     options = _options(reader, rest, "check", CHECK)
     curve = _options(reader, rest, "limit_curve", CURVE)
     demand = reader.attempted(lambda: _demand(reader, rest, options))
     problem = reader.attempted(lambda: reader.made(rest.without(*SECTIONS), maker))
-    return None if problem is None else Mechanism(problem, demand, options, curve, table.place)
+    if problem is None:
+        return None
+    severe = next(iter(demand.values())) if isinstance(demand, Mapping) else demand
+    ground = severe.ground if isinstance(severe, FloorSpectrum) else severe
+    wall = getattr(case_of(problem), "block", None)
+    shaking = reader.attempted(lambda: shaking_of(reader, rest, wall, ground))
+    return Mechanism(problem, demand, options, curve, shaking or Shaking(), table.place)
 
 
 def _options(reader: Reader, table: Table, name: str, maker: Any) -> dict[str, Any]:

@@ -146,12 +146,12 @@ class Reader:
 
     def chosen(self, table: Table, kinds: Mapping[str, Makers], usual: str | None = None) -> tuple[Maker, Table]:
         """The maker that `kind` and `make` of a table name, and the table without these."""
-        kind = self._one_of(table, "kind", list(kinds), next(iter(kinds)) if len(kinds) == 1 else usual)
+        kind = self.named(table, "kind", list(kinds), next(iter(kinds)) if len(kinds) == 1 else usual)
         makers = kinds[kind]
-        make = self._one_of(table, "make", [name or kind for name in makers], USUAL_MAKE.get(kind, kind))
+        make = self.named(table, "make", [name or kind for name in makers], USUAL_MAKE.get(kind, kind))
         return makers["" if make == kind else make], table.without(*OWN_KEYS)
 
-    def _one_of(self, table: Table, name: str, known: Sequence[str], usual: str | None) -> str:
+    def named(self, table: Table, name: str, known: Sequence[str], usual: str | None) -> str:
         """A name that a key of a table has among those that are known."""
         value = table.values.get(name, usual)
         if value is None:

@@ -7,13 +7,20 @@ import typing
 from collections.abc import Iterable, Mapping
 from typing import Any, get_args
 
+import numpy as np
+
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.restitution import Restitution
 from ..quantities import Within
-from .assessment import OF_ALL
+from .assessment import DESIGN, OF_ALL, report_maker
 from .declarations import USUAL_MAKE, Key, Maker, Makers, choices_of, classes_of, items_of, key_named, makers_of
-from .mechanisms import MECHANISMS, SECTIONS, SITES
+from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, SECTIONS, SITES
 from .reading import NUMERIC, is_mapping, parted
+from .running import DYNAMIC, RECORDS, SCALED, SOLVERS, run_maker
 
 Schema = dict[str, Any]
+STATES = "SLV", "SLC", "SLD"
+"""Limit states that an editor proposes; a code of one's own may have others."""
 
 
 def toml_schema() -> Schema:
@@ -38,6 +45,8 @@ class SchemaWriter:
     def whole(self) -> Schema:
         """The schema of the file."""
         once = {name: self.of_key(key) for name, key in OF_ALL.items()}
+        self.parts |= {"[report]": self._table(report_maker(), partial=False), "[design]": self._design()}
+        once |= {name: {"$ref": f"#/$defs/[{name}]"} for name in ("report", "design")}
         several = {"mechanisms": {"type": "object", "additionalProperties": {"$ref": "#/$defs/own"}}}
         self.parts["own"] = self._mechanism({}, partial=True)
         self.parts["one"] = self._mechanism(once, partial=False)
@@ -52,9 +61,24 @@ class SchemaWriter:
             "$defs": self.parts,
         }
 
+    def _design(self) -> Schema:
+        """What `[design]` has: the values are those of the key."""
+        found = self._table(DESIGN, partial=False)
+        found["properties"]["values"] = {
+            "type": "array",
+            "minItems": 1,
+            "description": "those that are tried, in order",
+        }
+        return found | {"required": ["key", "values"]}
+
     def _mechanism(self, once: Schema, *, partial: bool) -> Schema:
         """The tables of a mechanism, of which a partial one shares some with others."""
-        sections = {name: self._section(name, maker, partial) for name, maker in SECTIONS.items()}
+        mark = "?" if partial else ""
+        if f"[site]{mark}" not in self.parts:
+            self.parts |= {f"[{name}]{mark}": one for name, one in self._sections(partial).items()}
+        sections: Schema = {name: {"$ref": f"#/$defs/[{name}]{mark}"} for name in SECTIONS}
+        if partial:
+            sections = {name: {"anyOf": [one, {"const": False}]} for name, one in sections.items()}
         kinds = []
         for kind, makers in MECHANISMS.items():
             one = self._table(makers[""], partial=partial)
@@ -67,13 +91,32 @@ class SchemaWriter:
             return {"oneOf": kinds}
         return {"type": "object", "anyOf": kinds}
 
-    def _section(self, name: str, maker: Maker, partial: bool) -> Schema:
-        """A table beside those of the mechanism."""
-        if name != "site":
-            return self._table(maker, partial=partial) | {"title": name}
-        own = [self._kinds({kind: makers}, partial=True, usual="code_spectrum") for kind, makers in SITES.items()]
-        states = {"type": "object", "description": "of one limit state of the code, with what it does not share"}
-        return {"title": name, "anyOf": [one | {"additionalProperties": states} for one in own]}
+    def _sections(self, partial: bool) -> Schema:
+        """The tables beside those of the mechanism."""
+        state = {"type": "object", "description": "of one limit state of the code, with what it does not share"}
+        site = self._with(self._kinds(SITES, partial=True, usual="code_spectrum"), dict.fromkeys(STATES, state))
+        scaled = {"scaled_to": self._table(SCALED, partial=False)}
+        records = self._with(self._kinds(RECORDS, partial=partial, usual="records_in"), scaled)
+        for part in records["anyOf"]:
+            part["properties"] = {name: _or_several(one) for name, one in part["properties"].items()}
+        found: Schema = {"site": site}
+        found |= {
+            name: self._table(maker, partial=partial)
+            for name, maker in (("floor", FLOOR), ("check", CHECK), ("limit_curve", CURVE), ("dynamic_check", DYNAMIC))
+        }
+        for kind in (Restitution, Contacts):
+            makers = {name: one.without("wall", "e") for name, one in makers_of(kind).items()}
+            found[kind.__name__.lower()] = self._kinds({kind.__name__: makers}, partial=partial)
+        found["records"] = {"anyOf": [records, {"type": "array", "items": records}]}
+        found["run"] = {"anyOf": [self._table(run_maker(name), partial=partial) for name in SOLVERS]}
+        for one, name in zip(found["run"]["anyOf"], SOLVERS, strict=True):
+            one["properties"]["solver"] = {"const": name} | ({"default": name} if name == SOLVERS[0] else {})
+        return found
+
+    def _with(self, found: Schema, further: Schema) -> Schema:
+        """What a table stands for, with further keys."""
+        parts = [self.parts[one["$ref"].removeprefix("#/$defs/")] for one in found["anyOf"]]
+        return {"anyOf": [part | {"properties": part["properties"] | further} for part in parts]}
 
     def _table(self, maker: Maker, *, partial: bool) -> Schema:
         """The schema of a table that stands for a call."""
@@ -133,6 +176,8 @@ class SchemaWriter:
             found.append({"type": "boolean"})
         if any(kind in NUMERIC or typing.get_origin(kind) in NUMERIC for kind in kinds):
             found.append(_number(kinds, within))
+        if any(kind is np.ndarray or typing.get_origin(kind) is np.ndarray for kind in kinds):
+            found.append({"type": "array"})
         if texts:
             found.append({"type": "string", "enum": texts})
         elif str in kinds:
@@ -156,6 +201,16 @@ class SchemaWriter:
             return {"type": "array", "items": of} if of else {}
         each = [self._of_kinds(*parted(one, within)) for one in items]
         return {"type": "array", "prefixItems": each, "minItems": len(each), "maxItems": len(each)}
+
+
+def _or_several(one: Schema) -> Schema:
+    """The schema of a number of which several may be given, each for a record of its own."""
+    return {"anyOf": [one, {"type": "array", "items": one}]} | one_of_form(one) if "minimum" in one else one
+
+
+def one_of_form(one: Schema) -> Schema:
+    """What a form shows of a number."""
+    return {name: one[name] for name in ("description", "unit", "default") if name in one}
 
 
 def _number(kinds: tuple[Any, ...], within: Within | None) -> Schema:

@@ -1,0 +1,169 @@
+"""Records and runs of an assessment: what shakes a mechanism, by which solver, and what its impacts lose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from itertools import product
+from typing import Any
+
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.restitution import Restitution
+from ..problem.ground.motion import GroundMotion
+from ..problem.ground.record_sets import RecordSet, records_in
+from ..problem.ground.spectrum import SpectrumOfCode
+from ..problem.wall.block import Block
+from ..study.loading.code_check import dynamic_check
+from .declarations import Key, Maker, Makers, maker_of, makers_of
+from .reading import Reader, RefusedError
+from .tables import Table, spelt_place
+
+RECORDS: Mapping[str, Makers] = {"records_in": {"": maker_of(records_in)}, "GroundMotion": makers_of(GroundMotion)}
+"""What `[records]` stands for, by the name of `kind`: the files of a folder where none is named."""
+SCALED = maker_of(RecordSet.scaled_to).without("self", "spectrum")
+"""What `[records.scaled_to]` stands for: the records scaled to the spectrum of the site."""
+DYNAMIC = maker_of(dynamic_check).without("runs", "curve", "store", "code")
+"""What `[dynamic_check]` stands for."""
+SOLVERS = "analytical", "explicit", "MuJoCo", "compliant"
+"""The solvers, the quickest of a wall first."""
+GIVEN = "case", "contacts", "e", "start", "method"
+"""Arguments of solvers that do not come from `[run]`."""
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """What moves a mechanism, and how its motion is solved.
+
+    Args:
+        records: horizontal motions, each with the number of its record.
+        solver: "analytical", "explicit", "MuJoCo" or "compliant".
+        polarities: whether each record is run in both polarities.
+        options: of the solver.
+        e: restitution of its impacts, for "analytical".
+        contacts: its interfaces, for the others.
+        dynamic: further arguments of `dynamic_check`.
+    """
+
+    records: tuple[GroundMotion, ...] = ()
+    solver: str = "analytical"
+    polarities: bool = True
+    options: Mapping[str, Any] = field(default_factory=dict)
+    e: Restitution | None = None
+    contacts: Contacts | None = None
+    dynamic: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def motions(self) -> tuple[GroundMotion, ...]:
+        """The motion of each run, in either polarity."""
+        return tuple(one for record in self.records for one in (record.polarities if self.polarities else (record,)))
+
+
+@cache
+def run_maker(solver: str) -> Maker:
+    """The keys of `[run]` for a solver: its options, and those that all have."""
+    from ..study.analysis import SOLVERS as SOLVING
+
+    own = {
+        "solver": Key("solver", str, "analytical", f"one of {', '.join(SOLVERS)}"),
+        "polarities": Key("polarities", bool, True, "whether each record is run in both polarities"),
+    }
+    call = SOLVING[solver]
+    return Maker(call, own | dict(maker_of(call).without(*GIVEN).keys), "How the mechanism is run.")
+
+
+def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: object) -> Shaking:
+    """What moves a mechanism.
+
+    Args:
+        reader: which keeps what is wrong.
+        table: of the mechanism.
+        wall: its wall, None of masonry.
+        spectrum: that of the site, to which records are scaled.
+    """
+    found: dict[str, Any] = {}
+    if not table.values.keys() & {"restitution", "contacts", "records", "run"}:
+        return Shaking()
+    if "restitution" in table.values or wall is not None:
+        found["e"] = _of_wall(reader, table, "restitution", makers_of(Restitution), wall)
+    if "contacts" in table.values:
+        given = {} if found.get("e") is None else {"e": found["e"]}
+        found["contacts"] = _of_wall(reader, table, "contacts", makers_of(Contacts), wall, given)
+    if "run" in table.values:
+        found |= _run(reader, reader.required_table(table, "run"))
+    if "dynamic_check" in table.values:
+        found["dynamic"] = reader.arguments(reader.required_table(table, "dynamic_check"), DYNAMIC)
+    if "records" in table.values:
+        found["records"] = _records(reader, table, spectrum)
+    return Shaking(**found)
+
+
+def _of_wall(
+    reader: Reader, table: Table, name: str, makers: Makers, wall: Block | None, given: Mapping[str, Any] | None = None
+) -> Any:
+    """Restitution or contacts of a wall; the usual ones where the file has no table of them."""
+    own = reader.required_table(table, name) if name in table.values else Table((*table.place, name))
+    if wall is None:
+        reader.refuse(own.place, f"{spelt_place(own.place)} is of a wall, and masonry has joints; leave it out")
+        raise RefusedError
+    maker, rest = reader.chosen(own, {next(iter(makers.values())).call.__name__: makers})
+    arguments = {"wall": wall, **(given or {})}
+    return reader.made(rest, maker, {key: arguments[key] for key in maker.keys if key in arguments})
+
+
+def _run(reader: Reader, table: Table) -> dict[str, Any]:
+    """The solver and its options."""
+    solver = reader.named(table, "solver", SOLVERS, "analytical")
+    options = reader.arguments(table, run_maker(solver))
+    options.pop("solver", None)
+    own = {name: options.pop(name) for name in ("polarities",) if name in options}
+    return {"solver": solver, "options": options} | own
+
+
+def _records(reader: Reader, table: Table, spectrum: object) -> tuple[GroundMotion, ...]:
+    """The horizontal motions of the records, scaled to the spectrum, and on the floor where there is one."""
+    value = table.values["records"]
+    tables = value if isinstance(value, list) else [reader.required_table(table, "records")]
+    found: list[GroundMotion] = []
+    for one in tables:
+        if not isinstance(one, Table):
+            reader.refuse(table.of("records"), "records is no table and no list of tables")
+            raise RefusedError
+        records = _read(reader, one.without("scaled_to"))
+        if "scaled_to" in one.values:
+            given = {"spectrum": _required(reader, one, spectrum)}
+            maker = replace(SCALED, call=records.scaled_to)
+            records = reader.made(reader.required_table(one, "scaled_to"), maker, given)
+        found += records.horizontal
+    if "floor" not in table.values:
+        return tuple(found)
+    floor = reader.required_table(table, "floor")
+    through = maker_of(GroundMotion.through_building).without("self")
+    return tuple(reader.made(floor, replace(through, call=motion.through_building)) for motion in found)
+
+
+def _required(reader: Reader, table: Table, spectrum: object) -> SpectrumOfCode:
+    """The spectrum that records are scaled to."""
+    if not isinstance(spectrum, SpectrumOfCode):
+        reader.refuse(table.of("scaled_to"), f"{spelt_place(table.of('scaled_to'))} needs a [site], to scale to")
+        raise RefusedError
+    return spectrum
+
+
+def _read(reader: Reader, table: Table) -> RecordSet:
+    """The records of a table. One that makes a single motion makes one for each value where a key that takes a number
+    has a list, as of seeds."""
+    maker, rest = reader.chosen(table, RECORDS, "records_in")
+    many = {
+        name: value
+        for name, value in rest.values.items()
+        if isinstance(value, list) and name in maker.keys and set(maker.keys[name].kinds) <= {int, float}
+    }
+    if not many:
+        made = reader.made(rest, maker)
+        return made if isinstance(made, RecordSet) else RecordSet({made.name: (made,)})
+    found = RecordSet()
+    for values in product(*many.values()):
+        motion = reader.made(replace(rest, values=rest.values | dict(zip(many, values, strict=True))), maker)
+        found[f"{len(found)}: {motion.name}"] = (motion,)
+    return found

@@ -1,0 +1,111 @@
+"""Whole files: jobs of an engineer with the numbers of the same objects in Python, and what they become."""
+
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+FILES = Path(__file__).parent / "files"
+g = mr.GRAVITY
+
+
+def same(one, other):
+    assert one.verdicts == other.verdicts
+    assert one.table() == other.table()
+
+
+def of_gable():
+    """Job 1 in Python."""
+    demand = {
+        "SLV": mr.code_spectrum("NTC 2018", ag=0.21 * g, F0=2.45, Tc=0.33, soil="C", topography="T1"),
+        "SLC": mr.code_spectrum("NTC 2018", ag=0.27 * g, F0=2.47, Tc=0.34, soil="C", topography="T1"),
+    }
+    openings = [mr.Opening(width=1.6, height=2.6), mr.Opening(width=1.0, height=1.0, sill=4.2, round=True)]
+    wall = mr.Block.from_size(0.5, 7.5, 8.0, 1900.0, openings=openings, gable=mr.Gable(height=2.5))
+    push = mr.Thrust(7.3, 1.5e3)
+    mass = mr.AddedMass(9e3 / g, 7.3, -0.10)
+
+    def tie(plate):
+        masonry = {"thickness": 0.5, "shear_strength": 30e3, "compressive_strength": 1.5e6}
+        return mr.Tie.of_bar(6.8, 0.016, 235e6, 6.0, plate=plate, ultimate=0.03, **masonry)
+
+    effects = {
+        "no beam": (),
+        "beam as load": (mr.Load(9e3, 7.3, -0.10), push),
+        "beam as mass": (mass, push),
+        "tied": (tie(0.3), mass, push),
+    }
+    return {name: mr.Case(wall, effects=each) for name, each in effects.items()}, demand, tie
+
+
+def test_the_gable_has_the_verdicts_of_python():
+    cases, demand, tie = of_gable()
+    assessment = mr.from_toml(FILES / "gable.toml")
+    checks = assessment.check()
+    assert list(checks) == list(cases)
+    for name, case in cases.items():
+        same(checks[name], mr.mechanism_check(case, demand))
+    wall, beam = cases["tied"].block, cases["tied"].effects[1:]
+    found = mr.design(
+        lambda plate: mr.Case(wall, effects=(tie(plate), *beam)), [0.2, 0.3, 0.4], demand, method="linear"
+    )
+    designed = assessment.design()
+    assert [trial.ratio for trial in designed.trials] == [trial.ratio for trial in found.trials]
+    assert [trial.label for trial in designed.trials] == ["20 cm", "30 cm", "40 cm"]
+
+
+def test_a_parapet_is_shaken_on_its_floor_as_in_python():
+    assessment = mr.from_toml(FILES / "parapet.toml")
+    slv = mr.code_spectrum("NTC 2018", ag=0.18 * g, F0=2.5, Tc=0.33, soil="B")
+    slc = mr.code_spectrum("NTC 2018", ag=0.23 * g, F0=2.52, Tc=0.34, soil="B")
+    floor = {"period": 0.05 * 10.0**0.75, "participation": 9 / 7, "height": 1.0}
+    wall = mr.Block.from_size(0.30, 1.2, 10.0, 18e3 / g)
+    case = mr.Case(wall, 0.0, 15.0, side_stop=False)
+    up = {"SLV": slv.at_height(**floor), "SLC": slc.at_height(**floor)}
+    checks = assessment.check()
+    same(checks["parapet, rigid"], mr.mechanism_check(case, up))
+    same(checks["parapet, elastic"], mr.mechanism_check(case, up, elastic_period=0.11617))
+    runs = []
+    for seed in range(2):
+        record = mr.scaled_to_spectrum(mr.GroundMotion.synthetic(2.0, 12.0, seed=seed), [0.1, 0.5, 1.0, 2.0], slv)
+        for motion in record.through_building(**floor).polarities:
+            shaken = mr.Case(wall, 0.0, 15.0, motion=motion, side_stop=False)
+            runs.append(mr.solve_analytical(shaken, mr.Restitution.from_geometry(wall)))
+    answers = assessment.run()
+    for name in ("parapet, rigid", "parapet, elastic"):
+        assert all(np.array_equal(one.theta, other.theta) for one, other in zip(answers[name], runs, strict=True))
+    found, expected = assessment.dynamic_check(answers)["parapet, rigid"], mr.dynamic_check(runs, natural=False)
+    assert (found.d_0, found.mean) == (expected.d_0, expected.mean)
+
+
+@pytest.mark.parametrize("path", sorted(FILES.glob("*.toml")), ids=lambda path: path.stem)
+def test_files_are_written_and_read_again(path, tmp_path):
+    assessment = mr.from_toml(path)
+    again = tmp_path / path.name
+    assessment.to_toml(again)
+    assert tomllib.loads(again.read_text(encoding="utf-8")) == assessment.document
+    pairs = zip(mr.from_toml(again).mechanisms.values(), assessment.mechanisms.values(), strict=True)
+    assert all(one.problem == other.problem for one, other in pairs)
+
+
+@pytest.mark.parametrize("path", sorted(FILES.glob("*.toml")), ids=lambda path: path.stem)
+def test_files_fit_the_schema(path):
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = mr.toml_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    document = tomllib.loads(path.read_text(encoding="utf-8"))
+    assert jsonschema.Draft202012Validator(schema).is_valid(document)
+    for wrong in ({"language": "fr"}, {"wal": {}}, {"mechanisms": {"a": {"wall": {"thicknes": 0.3}}}}):
+        assert not jsonschema.Draft202012Validator(schema).is_valid(document | wrong)
+
+
+def test_a_report_has_the_checks_and_the_runs(tmp_path):
+    assessment = mr.from_toml(FILES / "gable.toml")
+    page = assessment.report(tmp_path / "gable.html").read_text(encoding="utf-8")
+    for part in ("Parete di timpano", "Sala parrocchiale", "beam as mass", "Tab. C8.5.I"):
+        assert part in page
+    assert math.isfinite(assessment.check()["tied"].ground_ratio)
