@@ -171,10 +171,10 @@ class Within(NamedTuple):
 
 
 def alternatives(hint: object) -> tuple[object, ...]:
-    """The types that a value of a hint may be of, one by one."""
+    """The types that a value of a hint may be of, one by one, with those that are noted with it."""
     origin, of = get_origin(hint), get_args(hint)
     if origin is Annotated:
-        return alternatives(of[0])
+        return (*alternatives(of[0]), *(note for note in of[1:] if isinstance(note, type)))
     if isinstance(hint, TypeVar):
         return alternatives(hint.__bound__) if hint.__bound__ else hint.__constraints__
     if origin in (Union, UnionType):

@@ -166,21 +166,32 @@ def test_masonry_of_blocks_is_made_by_its_builder():
     text = """
 kind = "MasonryCase"
 [masonry]
-make = "arch"
-radius = 5.0
-thickness = 0.9
-voussoirs = 9
-joints = { kind = "Dry", k_n = "1 MN/m2/m", friction = 0.6 }
+make = "stack"
+k_n = "1 N/mm3"
+[[masonry.blocks]]
+thickness = 0.6
+height = 1.2
+[[masonry.blocks]]
+thickness = 0.5
+height = 1.0
+[[effects]]
+kind = "Load"
+block = "block_1"
+force = "2 kN"
+height = 2.2
+[limit_curve]
+poses = 20
 [site]
 code = "EC8 type 1"
 ag = 1.0
 soil = "A"
 """
-    assessment = mr.from_toml(text=text.replace('"1 MN/m2/m"', '"1 N/mm3"'))
-    arch = mr.Masonry.arch(5.0, 0.9, voussoirs=9, joints=mr.Dry(k_n=1e9, friction=0.6))
-    assert assessment.mechanisms[""].problem == mr.MasonryCase(arch, 10.0)
+    assessment = mr.from_toml(text=text)
+    blocks = [mr.Block.from_size(0.6, 1.2), mr.Block.from_size(0.5, 1.0)]
+    stack, load = mr.Masonry.stack(blocks, k_n=1e9), mr.Load(2e3, 2.2, block=2)
+    assert assessment.mechanisms[""].problem == mr.MasonryCase(stack, effects=(load,))
     demand = mr.code_spectrum("EC8 type 1", ag=1.0, soil="A")
-    same(assessment.check()[""], mr.mechanism_check(mr.limit_curve(arch), demand))
+    same(assessment.check()[""], mr.mechanism_check(mr.limit_curve(stack, effects=(load,), poses=20), demand))
 
 
 WRONG = (

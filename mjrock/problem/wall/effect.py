@@ -34,6 +34,8 @@ HIGHEST_WALL = 200.0
 """Largest height of a wall, and so of an effect [m]."""
 Height = Annotated[float, Within(0, HIGHEST_WALL, "m")]
 """Height of an effect on a wall."""
+OfBlock = Annotated[int, str]
+"""Number of a block. Where an effect is made it may be the name, of which a case of masonry knows the number."""
 BLOCKS = 100_000
 """Largest number of a block."""
 FARTHEST_POINT = 1e4

@@ -23,6 +23,7 @@ from .effect import (
     Effect,
     Height,
     LinkLaw,
+    OfBlock,
     Point,
     PointOf,
     place_or_none,
@@ -62,10 +63,10 @@ class Damper(Anchored):
     height: Height = None  # type: ignore[assignment]
     c: Annotated[float, Within(0, 1e9, "N s/m", "coefficient c of the damper")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
-    block: int = 0
+    block: OfBlock = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: OfBlock | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     @property
     def law(self) -> LinkLaw:
@@ -110,10 +111,10 @@ class FrictionDamper(Anchored):
     stiffness: Annotated[float, Within(1, 1e12, "N/m")] = None  # type: ignore[assignment]
     slip_force: Annotated[float, Within(1e-3, 1e9, "N")] = None  # type: ignore[assignment]
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
-    block: int = 0
+    block: OfBlock = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: OfBlock | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     @property
     def law(self) -> LinkLaw:
@@ -151,7 +152,7 @@ class Thrust(Effect):
     arguments: ClassVar[str] = "height, force"
     height: Height = None  # type: ignore[assignment]
     force: Annotated[float, Within(-1e9, 1e9, "N")] = None  # type: ignore[assignment]
-    block: int = 0
+    block: OfBlock = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     direction: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
@@ -203,7 +204,7 @@ class Load(Effect):
     force: Annotated[float, Within(0, 1e9, "N")]
     height: Height = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-10, 10, "m")] = 0.0
-    block: int = 0
+    block: OfBlock = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     @property
@@ -239,7 +240,7 @@ class AddedMass(Effect):
     mass: Annotated[float, Within(0, 1e8, "kg", "added mass")]
     height: Height = None  # type: ignore[assignment]
     offset: Annotated[float, Within(-13, 13, "m")] = 0.0
-    block: int = 0
+    block: OfBlock = 0
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, TypedDict, Unpack
 
 from ...quantities import Within, require_array, require_one_of, require_within, within_ranges
-from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, Height, LinkLaw, PointOf
+from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, Height, LinkLaw, OfBlock, PointOf
 
 GOVERNING = ("bar", "punching", "bearing", "other end")
 """What the strength of a tie with an anchor plate may be that of."""
@@ -28,11 +28,11 @@ class TieOptions(TypedDict, total=False):
 
     slack: float
     anchor_height: float | None
-    block: int
+    block: OfBlock
     ultimate: float | None
     at: PointOf | None
     anchor: PointOf | None
-    anchor_block: int | None
+    anchor_block: OfBlock | None
     prestress: float
 
 
@@ -82,11 +82,11 @@ class Tie(Anchored):
     strength: Annotated[float, Within(0, STRONGEST_TIE, "N", infinite=True)] = math.inf
     length: Annotated[float, Within(0.01, 1000, "m")] = 5.0
     anchor_height: Annotated[float | None, Within(-HIGHEST_WALL, HIGHEST_WALL, "m", "height of the anchor")] = None
-    block: int = 0
+    block: OfBlock = 0
     ultimate: Annotated[float | None, Within(0, 10, "m")] = None
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
+    anchor_block: OfBlock | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     governed_by: str | None = field(default=None, kw_only=True)
     prestress: Annotated[float, Within(0, 1e9, "N")] = field(default=0.0, kw_only=True)
 

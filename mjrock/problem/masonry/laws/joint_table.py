@@ -7,7 +7,7 @@ import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
-from typing import Any, NamedTuple, TypedDict, TypeVar
+from typing import Annotated, Any, NamedTuple, TypedDict, TypeVar
 
 import numpy as np
 
@@ -25,6 +25,13 @@ OfJoint = float | FunctionOfJoint[float]
 """A number, or a function of the joint that gives one."""
 OfCount = int | FunctionOfJoint[int]
 """A whole number, or a function of the joint that gives one."""
+OfStiffness = Annotated[OfJoint | None, declared(Dry)["k_n"].within]
+OfFriction = Annotated[OfJoint | None, declared(Dry)["friction"].within]
+OfDamping = Annotated[OfJoint | None, declared(Dry)["xi"].within]
+OfShear = Annotated[OfJoint | None, declared(Dry)["k_s"].within]
+OfFrequency = Annotated[OfJoint | None, declared(Dry)["frequency"].within]
+OfPoints = Annotated[OfCount | None, declared(Dry)["points"].within]
+"""The properties of joints one by one, in the ranges of a `Dry`."""
 OfBond = Bond | FunctionOfJoint[Bond | None] | None
 """A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
 AnyJoints = Dry | Mortar | FunctionOfJoint[Dry | Mortar]
@@ -252,11 +259,11 @@ class OtherOptions(TypedDict, total=False):
     """Keywords of `Masonry` beside `k_n`, see `JointOptions`."""
 
     joints: AnyJoints | None
-    friction: OfJoint | None
-    xi: OfJoint | None
-    k_s: OfJoint | None
-    frequency: OfJoint | None
-    points: OfCount | None
+    friction: OfFriction
+    xi: OfDamping
+    k_s: OfShear
+    frequency: OfFrequency
+    points: OfPoints
     bond: OfBond
     law: AnyLaw | str | None
     tolerance: float
@@ -270,7 +277,7 @@ class JointOptions(OtherOptions, total=False):
     What they mean is said at `Masonry`. None takes the usual one.
     """
 
-    k_n: OfJoint | None
+    k_n: OfStiffness
 
 
 def one_by_one(options: JointOptions) -> Properties:
