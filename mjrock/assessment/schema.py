@@ -93,8 +93,9 @@ class SchemaWriter:
 
     def _sections(self, partial: bool) -> Schema:
         """The tables beside those of the mechanism."""
-        state = {"type": "object", "description": "of one limit state of the code, with what it does not share"}
-        site = self._with(self._kinds(SITES, partial=True, usual="code_spectrum"), dict.fromkeys(STATES, state))
+        ground = self._kinds(SITES, partial=True, usual="code_spectrum")
+        state = ground | {"description": "of one limit state of the code, with what it does not share"}
+        site = self._with(ground, dict.fromkeys(STATES, state))
         scaled = {"scaled_to": self._table(SCALED, partial=False)}
         records = self._with(self._kinds(RECORDS, partial=partial, usual="records_in"), scaled)
         for part in records["anyOf"]:
