@@ -37,6 +37,7 @@ COMMANDS = {
     "compile": Command(".study.compilation", "compile the loops of all solvers and store them, once"),
     "status": Command(".study.campaign.progress", "how far a campaign is, from its store"),
     "inspect": Command(".commands.inspect_contacts", "contacts of a MuJoCo model in physical units"),
+    "measure": Command(".commands.measure_contact", "drop, press and push a contact of a MuJoCo model, and compare"),
     "view": Command(".engine.replay", "a model and its motion in MuJoCo's viewer"),
 }
 """Every command, in the order of the help."""

@@ -14,15 +14,16 @@ if TYPE_CHECKING:
     from .coulomb import CoulombFriction
     from .inspect import FlexContact, InspectedContact, inspect_contacts, inspect_flexes
     from .make import contact_for, contacts_for, stiffest_contacts
+    from .measurement import Measurement, measure
     from .notes import ContactWarning
     from .rebound import rebound_damping, rebound_restitution
     from .solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
 
 __all__ = [
     "ContactParameters", "ContactWarning", "CoulombFriction", "FlexContact", "InspectedContact",
-    "ManyContactParameters", "PairContact", "PairContacts", "contact_for", "contact_parameters", "contact_stiffness",
-    "contacts_for", "inspect_contacts", "inspect_flexes", "rebound_damping", "rebound_restitution",
-    "stiffest_contacts",
+    "ManyContactParameters", "Measurement", "PairContact", "PairContacts", "contact_for", "contact_parameters",
+    "contact_stiffness", "contacts_for", "inspect_contacts", "inspect_flexes", "measure", "rebound_damping",
+    "rebound_restitution", "stiffest_contacts",
 ]  # fmt: skip
 
 HOME = homes(__file__)

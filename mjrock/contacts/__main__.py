@@ -1,4 +1,4 @@
-"""`python -m mjcontacts inspect model.xml`: commands on the contacts of a MuJoCo model, see `command`."""
+"""`python -m mjcontacts inspect model.xml`: commands on the contacts of a MuJoCo model."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from . import command
+from . import command, measure_command
 from .checks import PACKAGE
 
 
@@ -14,11 +14,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run a command. Returns the exit status: 2 for what the user can mend."""
     made = argparse.ArgumentParser(f"python -m {PACKAGE}", description="Contacts of a MuJoCo model in N/m and N s/m.")
     commands = made.add_subparsers(metavar="COMMAND", required=True)
-    command.add_arguments(commands.add_parser("inspect", help="what they are, the worst first"))
+    for name, module, line in (
+        ("inspect", command, "what they are, the worst first"),
+        ("measure", measure_command, "drop, press and push a contact of two geoms, and compare"),
+    ):
+        one = commands.add_parser(name, help=line)
+        module.add_arguments(one)
+        one.set_defaults(answer=module.answer)
     args = made.parse_args(argv)
     try:
-        text = command.answer(args)
-    except (ValueError, TypeError, OSError) as error:
+        text = args.answer(args)
+    except (ValueError, TypeError, OSError, ImportError) as error:
         sys.stderr.write(f"error: {error}\n")
         return 2
     sys.stdout.write(f"{text}\n")

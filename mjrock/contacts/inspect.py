@@ -147,10 +147,11 @@ def inspect_contacts(
     whole = compiled_model(model)
     pose = Pose(whole, keyframe, qpos)
     pairs = (pair for pair in every_pair(whole, candidates=candidates) if chosen is None or chosen(pair))
-    return tuple(_inspected(pair, pose, points, force) for pair in pairs)
+    return tuple(inspected(pair, pose, points, force) for pair in pairs)
 
 
-def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
+def inspected(pair: GeomPair, pose: Pose, contacts: int | None = None, load: float | None = None) -> InspectedContact:
+    """The contact of two geoms in a pose, see `inspect_contacts`."""
     row = ModelRow.of(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting_of_geoms(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)

@@ -261,6 +261,13 @@ class Pose:
         self._landings: dict[tuple[int, ...], Landing] = {}
         self._groups: dict[tuple[int, ...], Group] = {}
 
+    def moved(self, qpos: Array) -> Pose:
+        """The same controls with other positions of the joints."""
+        other = Pose(self.model, qpos=qpos)
+        other.data.ctrl[:], other.data.act[:] = self.data.ctrl, self.data.act
+        other.exact, other.label = self.exact, self.label
+        return other
+
     def landing(self, pair: GeomPair) -> Landing:
         """Where two geoms meet in the pose."""
         key = (*pair.geoms, *([] if self.normal is None else self.normal.tolist()))

@@ -14,6 +14,7 @@ Under a load at rest the row is a spring of the stiffness K d^2 / ((1 - d) W), w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -204,7 +205,7 @@ class ModelRow:
         inertia: inertia that the row adds, beyond what the Euler step takes [kg].
         impedance: d at zero penetration [-].
         constant: whether d is the same at every penetration.
-        spring, dashpot: K [1/s2] and B [1/s].
+        spring, dashpot, slip_dashpot: K [1/s2] and B [1/s], and B of the rows of friction.
         scale: what 1 / W is multiplied by for the cone, over W [kg].
         solimp: impedances at zero and full width [-], width [m], midpoint and power [-].
         impratio: of the model [-].
@@ -224,6 +225,8 @@ class ModelRow:
             d = 0.5 * (d + full)
         safe = not option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)  # time constants above two steps
         spring, dashpot = _reference(float(solref[0]), float(solref[1]), full, h, safe)
+        slip = mixed.solreffriction if any(mixed.solreffriction) else solref
+        self.slip_dashpot = _reference(float(slip[0]), float(slip[1]), full, h, safe)[1]
         self.mixed, self.impratio, self.impedance = mixed, float(option.impratio), d
         self.elliptic = option.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         cone = mixed.pyramid(self.impratio) if mixed.condim > 1 and not self.elliptic else 1.0
@@ -248,6 +251,14 @@ class ModelRow:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if middle * self._stiffness(middle) < load else (low, middle)
         return self._stiffness(0.5 * (low + high))
+
+    def creep(self, force: float, indentation: float) -> float:
+        """Speed at which a contact point slips under a force that friction holds [m/s]; NaN for the pyramidal cone, or
+        without friction."""
+        if not self.elliptic or self.mixed.condim == 1:
+            return math.nan
+        d = self._impedance(indentation)
+        return force * (1 - d) / (d * self.scale * self.impratio * self.slip_dashpot)
 
     def _stiffness(self, indentation: float) -> float:
         d = self._impedance(indentation)
