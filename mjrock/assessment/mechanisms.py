@@ -199,6 +199,12 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
         raise RefusedError from None
     names = [*rule.states, *([] if rule.damage is None else [rule.damage.state])]
     states = [name for name in dict.fromkeys(names) if isinstance(site.values.get(name), Table)]
+    for name in [key for key, value in site.values.items() if isinstance(value, Table) and key not in states]:
+        known = ", ".join(dict.fromkeys(names))
+        reader.refuse(
+            site.of(name), f"{spelt_place(site.of(name))} is no limit state of {rule.name}; those are {known}"
+        )
+        raise RefusedError
     common = site.without(*states)
     if not states:
         return _spectrum(reader, common, table)

@@ -159,9 +159,8 @@ class Reader:
             raise RefusedError
         if not isinstance(value, str) or value not in known:
             near = difflib.get_close_matches(str(value), known, 1)
-            remedy = f"did you mean {near[0]!r}? " if near else ""
-            said = f"{spelt_place(table.of(name))} = {shown(value)} is not known; {remedy}It is one of "
-            self.refuse(table.of(name), said + ", ".join(known))
+            remedy = f"did you mean {near[0]!r}?" if near else f"it is one of {', '.join(known)}"
+            self.refuse(table.of(name), f"{spelt_place(table.of(name))} = {shown(value)} is not known; {remedy}")
             raise RefusedError
         return value
 

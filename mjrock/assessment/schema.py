@@ -78,10 +78,12 @@ class SchemaWriter:
             self.parts |= {f"[{name}]{mark}": one for name, one in self._sections(partial).items()}
         sections: Schema = {name: {"$ref": f"#/$defs/[{name}]{mark}"} for name in SECTIONS}
         if partial:
-            sections = {name: {"anyOf": [one, {"const": False}]} for name, one in sections.items()}
+            sections = {name: _or_taken_away(one) for name, one in sections.items()}
         kinds = []
         for kind, makers in MECHANISMS.items():
             one = self._table(makers[""], partial=partial)
+            if partial and "effects" in one["properties"]:
+                one["properties"]["effects"] = _or_taken_away(one["properties"]["effects"])
             named = {"kind": {"const": kind, "default": "Case"}} if kind == "Case" else {"kind": {"const": kind}}
             needed = [] if partial or kind == "Case" else ["kind"]
             one["properties"] = named | one["properties"] | sections | once
@@ -202,6 +204,11 @@ class SchemaWriter:
             return {"type": "array", "items": of} if of else {}
         each = [self._of_kinds(*parted(one, within)) for one in items]
         return {"type": "array", "prefixItems": each, "minItems": len(each), "maxItems": len(each)}
+
+
+def _or_taken_away(one: Schema) -> Schema:
+    """The schema of what may be shared: false takes it away."""
+    return {"anyOf": [one, {"const": False}]}
 
 
 def _or_several(one: Schema) -> Schema:

@@ -12,6 +12,8 @@ Place = tuple[str | int, ...]
 """A key by the tables that it is in: ("effects", 0, "height")."""
 LARGEST = 1_000_000
 """Most characters of a file."""
+DEEPEST = 50
+"""Most tables and lists within each other."""
 AT = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
 """What `tomllib` says of the place of an error."""
 
@@ -120,14 +122,26 @@ def parsed(text: str) -> dict[str, Any]:
     if len(text) > LARGEST:
         raise AssessmentError((Fault((), f"has {len(text)} characters; the valid range is 0 to {LARGEST}"),))
     try:
-        return tomllib.loads(text)
+        found = tomllib.loads(text)
+        if not is_deep(found):
+            return found
+        raise RecursionError
     except tomllib.TOMLDecodeError as error:
-        found = AT.search(str(error))
-        line = int(found[1]) if found and found[1] else text.count("\n") + 1
+        place = AT.search(str(error))
+        line = int(place[1]) if place and place[1] else text.count("\n") + 1
         message = AT.sub("", str(error)).replace("{", "(").replace("}", ")")
         raise AssessmentError((Fault((), f"is not TOML: {message}", line),)) from None
     except RecursionError:
         raise AssessmentError((Fault((), "is nested too deeply; a file has some five levels", 1),)) from None
+
+
+def is_deep(document: Mapping[str, Any]) -> bool:
+    """Whether tables and lists are within each other more than DEEPEST times."""
+    level: list[Any] = [document]
+    for _ in range(DEEPEST):
+        inside = (one.values() if isinstance(one, Mapping) else one for one in level)
+        level = [value for values in inside for value in values if isinstance(value, Mapping | list)]
+    return bool(level)
 
 
 class Scanner:

@@ -109,3 +109,69 @@ def test_a_report_has_the_checks_and_the_runs(tmp_path):
     for part in ("Parete di timpano", "Sala parrocchiale", "beam as mass", "Tab. C8.5.I"):
         assert part in page
     assert math.isfinite(assessment.check()["tied"].ground_ratio)
+
+
+def test_the_mechanisms_of_a_facade_have_the_verdicts_of_python():
+    """Job 6: storeys above floors, with their floor spectra, and bending between floors."""
+    slv = mr.code_spectrum("NTC 2018", ag=0.17 * g, F0=2.5, Tc=0.33, soil="C")
+    slc = mr.code_spectrum("NTC 2018", ag=0.22 * g, F0=2.5, Tc=0.34, soil="C")
+    ground = {"SLV": slv, "SLC": slc}
+
+    def at(z):
+        floor = {"period": 0.05 * 9.6**0.75, "participation": 9 / 7, "height": z / 9.6}
+        return {name: one.at_height(**floor) for name, one in ground.items()}
+
+    def windows(count, sill):
+        return count * (mr.Opening(1.0, 1.6, sill),)
+
+    def floors(levels, z0=0.0, t=0.6):
+        return [mr.AddedMass(144e3 / g, z - z0, -t / 2 + 0.10) for z in levels]
+
+    def tie(z):
+        masonry = {"thickness": 0.45, "shear_strength": 30e3, "compressive_strength": 1.5e6}
+        return mr.Tie.of_bar(z, 0.020, 235e6, 8.0, plate=0.25, number=3, ultimate=0.03, **masonry)
+
+    size = {"length": 12.0, "density": 1800.0}
+    profile = [(0, 0.6), (3.2, 0.6), (3.21, 0.45), (9.6, 0.45)]
+    openings = (mr.Opening(1.2, 2.3), *windows(3, 4.2), *windows(4, 7.4))
+    whole = mr.Block.from_size(0.60, 9.6, profile=profile, openings=openings, **size)
+    upper = mr.Block.from_size(0.45, 6.4, openings=(*windows(3, 1.0), *windows(4, 4.2)), **size)
+    top = mr.Block.from_size(0.45, 3.2, openings=windows(4, 1.0), **size)
+    above = 144e3 + top.mass * g + 144e3
+    strip, low = mr.Block.from_size(0.45, 3.2, **size), mr.Block.from_size(0.60, 3.2, **size)
+    carried = above + 144e3 + upper.mass * g / 2
+    expected = {
+        "A whole, no ties": (mr.Case(whole, effects=floors((3.2, 6.4, 9.6))), ground),
+        "A whole, tied": (mr.Case(whole, effects=(*floors((3.2, 6.4, 9.6)), tie(3.2), tie(6.4))), ground),
+        "B above floor 1": (mr.Case(upper, effects=(*floors((6.4, 9.6), 3.2, 0.45), tie(3.2))), at(3.2)),
+        "C top storey": (mr.Case(top, effects=floors((9.6,), 6.4, 0.45)), at(6.4)),
+        "D bending, storey 2": (mr.VerticalBending(strip, above, bearing=0.225), at(3.2)),
+        "E bending, storey 1": (mr.VerticalBending(low, carried, bearing=0.3), ground),
+    }
+    checks = mr.from_toml(FILES / "facade.toml").check()
+    assert list(checks) == list(expected)
+    for name, (case, demand) in expected.items():
+        same(checks[name], mr.mechanism_check(case, demand))
+
+
+def test_the_variants_of_row_houses_have_the_verdicts_of_python():
+    """Job 8: wedges of party walls, ties, and a strip under the roof that bends in plan."""
+    slv = mr.code_spectrum("NTC 2018", ag=0.22 * g, F0=2.4, Tc=0.34, soil="C")
+    slc = mr.code_spectrum("NTC 2018", ag=0.28 * g, F0=2.4, Tc=0.35, soil="C")
+    openings = [*3 * [mr.Opening(1.0, 2.2)], *6 * [mr.Opening(1.0, 1.4, 3.8)]]
+    wall = mr.Block.from_size(0.5, 6.2, 18.0, 1900.0, openings=openings)
+    roof = (mr.Thrust(6.2, 1.0e3 * 18), mr.AddedMass(3e3 * 18 / g, 6.2, 0.0))
+    masonry = {"thickness": 0.5, "shear_strength": 30e3, "compressive_strength": 1.5e6}
+    tie = mr.Tie.of_bar(5.9, 0.020, 235e6, 6.0, plate=0.25, number=4, ultimate=0.03, **masonry)
+
+    def wedges(count):
+        return mr.Wedge(np.radians(15), 0.30, 6.2, number=count).behind(wall)
+
+    further = {"no bond": (), "4 walls, 15 deg": wedges(4), "2 ends, 15 deg": wedges(2), "4 ties": (tie,)}
+    expected = {name: mr.Case(wall, effects=(*roof, *one)) for name, one in further.items()}
+    strip = mr.Block.from_size(0.5, 1.0, 6.0, 1900.0)
+    expected["strip of one house"] = mr.HorizontalBending(strip, thrust=20e3)
+    checks = mr.from_toml(FILES / "row_houses.toml").check()
+    assert list(checks) == list(expected)
+    for name, case in expected.items():
+        same(checks[name], mr.mechanism_check(case, {"SLV": slv, "SLC": slc}))
