@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,27 +17,43 @@ from ..problem.damping.restitution import Restitution
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
 from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.masonry.laws.dry import Dry, asked_pair
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect, Told
-from ..problem.wall.effects import named_effects
+from ..problem.wall.effects import EFFECT_KINDS, Load, named_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import GRAVITY, Array, declared
 from ..study.loading.code_check import Demand
 from ..study.loading.limit_analysis import LimitCurve
 from .pictures import Run, by_variant
-from .texts import DASH, FOUND, Words, texts
-from .verdicts import Mechanism, told_name
+from .texts import BY_HAND, DASH, FINEST, FOUND, GIVEN, Words, effect_name, texts
+from .verdicts import REVERSED, Mechanism, told_name
 
 LISTED = 60
 """Most blocks, and most joints, that stand in a table of the report. More of them stand in a file beside it."""
 ABREAST = 3
 """Things whose inputs stand beside each other in one table."""
-MADE = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM", "SCALED_TO", "FLOOR")
-"""Fields of the header of a motion that a report names."""
+UNITS = {"height": "m", "anchor_height": "m", "strength": "N", "stiffness": "N/m", "damping": "N s/m"}
+"""Units of fields of effects that are declared without one, or that a wall and masonry have alike."""
+OF_BLOCKS = ("block", "anchor_block")
+"""Fields of effects that are numbers of blocks."""
+HEADS = {
+    "blocks": ("block", "density", "length", "fixed", "vertices"),
+    "joints": ("joint", "k_n", "k_s", "friction", "xi", "frequency", "points", "bond"),
+    "pairs": ("block", "other", "friction", "xi", "frequency"),
+    "histories": ("driven", "t", "d_1", "d_2", "d_3"),
+}
+"""What stands above the columns of each listing."""
+MADE = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM")
+"""Fields of the header of a motion that a report names as they are."""
+SCALED = re.compile(r"(?P<target>.+); factor (?P<factor>[\d.e+-]+) over T = (?P<periods>.+) s")
+"""How a header says to what its motion was scaled, see `scaled_by`."""
+ON_A_FLOOR = " on a floor"
+"""How the names of motions and spectra of floors end."""
 
 
 class Input(NamedTuple):
@@ -44,13 +63,14 @@ class Input(NamedTuple):
         key: its name in the program, by which `basis` names it.
         name: in words.
         value: with its unit.
-        computed: whether it follows from others, and rests on nothing of its own.
+        rests: what it rests on where the user says nothing: "not_given"; "computed" of what follows from others;
+            "assumed" of what the program takes where nothing is given.
     """
 
     key: str
     name: str
     value: str
-    computed: bool = False
+    rests: str = "not_given"
 
 
 class Section(NamedTuple):
@@ -99,10 +119,10 @@ def beside(sections: Sequence[Section]) -> list[Beside]:
 
 
 class Listing(NamedTuple):
-    """The blocks or the joints of masonry.
+    """The blocks or the joints of masonry, or another table of its inputs.
 
     Args:
-        key: "blocks" or "joints".
+        key: one of `HEADS`.
         heading: in words.
         columns: what stands above each.
         rows: a row for each.
@@ -115,34 +135,23 @@ class Listing(NamedTuple):
 
 
 def subjects(own: str, case: AnyCase, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[tuple[str, object]]:
-    """What a report is of, with the names that each has: the case, whose own name is given, what its checks are of, and
-    what its runs are of."""
+    """What a report is of, each with its name: the case, whose own name is given, what its checks are of, and what its
+    runs are of."""
     called: list[tuple[str, object]] = [(own, case)]
     called += [(mechanism.name, subject) for mechanism in mechanisms for subject in mechanism.subjects]
-    called += [(variant or own, some[0].response.case) for variant, some in by_variant(runs).items()]
-    return grouped(called, alike)
+    return called + [(variant or own, some[0].response.case) for variant, some in by_variant(runs).items()]
 
 
-def grouped(called: Iterable[tuple[str, Any]], same: Callable[[Any, Any], bool]) -> list[tuple[str, Any]]:
-    """Things with their names, each once, with all names that it has."""
-    groups: list[tuple[dict[str, None], Any]] = []
-    for name, one in called:
-        names = next((names for names, other in groups if same(one, other)), None)
+def merged(sections: Iterable[Section]) -> list[Section]:
+    """Sections with the same inputs as one, with all of their names."""
+    found: list[tuple[dict[str, None], list[Input]]] = []
+    for heading, rows in sections:
+        names = next((names for names, others in found if others == rows), None)
         if names is None:
-            groups.append(({name: None}, one))
+            found.append(({heading: None}, rows))
         else:
-            names[name] = None
-    return [("; ".join(names), one) for names, one in groups]
-
-
-def alike(one: Any, other: Any) -> bool:
-    """Whether two cases are of one wall or masonry with the same effects, or two other things are equal."""
-    if type(one) is not type(other):
-        return False
-    if hasattr(one, "built"):
-        parts = ("built", "side_stop", "effects")
-        return all(getattr(one, part, None) == getattr(other, part, None) for part in parts)
-    return bool(one == other)
+            names[heading] = None
+    return [Section("; ".join(names), rows) for names, rows in found]
 
 
 def of_subject(subject: object, words: Words) -> list[Input]:
@@ -170,9 +179,9 @@ def of_corner(corner: Corner, words: Words) -> list[Input]:
 
 def _rows(values: Iterable[tuple[str, float, str]], words: Words, *, computed: bool = False) -> list[Input]:
     """Numbers with their keys and units as inputs; those that are computed have fewer digits."""
-    digits = (FOUND,) if computed else ()
-    said = ((key, words.quantity(value, unit, *digits)) for key, value, unit in values)
-    return [Input(key, words(f"in_{key}"), value, computed) for key, value in said]
+    digits, rests = (FOUND, "computed") if computed else (GIVEN, "not_given")
+    said = ((key, words.quantity(value, unit, digits)) for key, value, unit in values)
+    return [Input(key, words(f"in_{key}"), value, rests) for key, value in said]
 
 
 def of_block(block: Block, words: Words) -> list[Input]:
@@ -191,20 +200,24 @@ def of_block(block: Block, words: Words) -> list[Input]:
         rows.append(Input("plumb", words("in_plumb"), words(f"plumb_{block.plumb}")))
     if block.gable is not None:
         given = {"height": words.quantity(block.gable.height, "m"), "top": words.quantity(block.gable.top, "m")}
-        rows.append(Input("gable", words("in_gable"), words("gable", **given)))
-    for opening in block.openings:
+        kind = "gable" if block.gable.top else "gable_pointed"
+        rows.append(Input("gable", words("in_gable"), words(kind, **given)))
+    for opening, count in Counter(block.openings).items():
         name = "round_opening" if opening.round else "opening"
         given = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}
-        place = "" if opening.at is None else ", " + words("opening_at", at=words.quantity(opening.at, "m"))
-        rows.append(Input(name, words(f"in_{name}"), words("opening", **given) + place))
+        said = [words("opening", **given)]
+        said += [words("opening_at", at=words.quantity(opening.at, "m"))] if opening.at is not None else []
+        said += [words("field_number", value=count)] if count > 1 else []
+        rows.append(Input(name, words(f"in_{name}"), ", ".join(said)))
     rows += [Input("mass", words("effect_mass"), described(mass, words)) for mass in block.masses]
     return rows
 
 
 def of_case(case: Case, words: Words) -> list[Input]:
     """A wall that overturns."""
-    wall, top = case.wall, case.stop_top
+    wall, top, whole = case.wall, case.stop_top, case.side_stop is True
     stop = words("no_stop") if top is None else words("stop_up_to", top=words.quantity(top, "m"))
+    side = Input("side_stop", words("in_side_stop"), words("whole_stop") if whole else stop)
     found = (
         ("mass", wall.mass, "kg"),
         ("centroid_height", wall.centroid_height, "m"),
@@ -212,7 +225,7 @@ def of_case(case: Case, words: Words) -> list[Input]:
         ("overturning_rotation", case.overturning_rotation, "rad"),
         ("p", wall.p, "rad/s"),
     )
-    given = [*of_block(case.block, words), Input("side_stop", words("in_side_stop"), stop)]
+    given = [*of_block(case.block, words), side._replace(rests="assumed") if whole else side]
     return [*given, *_rows(found, words, computed=True), *of_effects(case.effects, words)]
 
 
@@ -224,42 +237,55 @@ def of_masonry(masonry: Masonry, words: Words) -> list[Input]:
     return [
         Input("blocks", words("in_blocks"), words("blocks_said", free=free, fixed=fixed)),
         Input("joints", words("in_joints"), words("joints_said", count=len(masonry.joints), points=points)),
-        Input("mass", words("in_mass"), words.quantity(mass, "kg", FOUND), True),
+        Input("mass", words("in_mass"), words.quantity(mass, "kg", FOUND), "computed"),
         Input("k_n", words("in_k_n"), _span(masonry.joint_stiffness, "N/m3", words)),
         Input("k_s", words("in_k_s"), _span(masonry.joint_shear, "N/m3", words)),
         Input("friction", words("in_friction"), _span(masonry.joint_friction, "", words)),
-        Input("damping", words("in_damping"), _span(masonry.retardation, "s", words)),
+        Input("damping", words("in_damping"), _span(masonry.retardation, "s", words, FOUND), "computed"),
+        *([] if masonry.pairs is None else [Input("pairs", words("in_pairs"), _of_pairs(masonry, words))]),
     ]
 
 
+def _of_pairs(masonry: Masonry, words: Words) -> str:
+    """What pairs of blocks without a joint have where they meet: that of all, or that a table has it."""
+    dry = masonry.pairs
+    if not isinstance(dry, Dry):
+        return words("pairs_listed")
+    return words("pairs_said", friction=words.number(dry.friction), xi=words.share(dry.xi))
+
+
 def of_masonry_case(case: MasonryCase, words: Words) -> list[Input]:
-    """Masonry with what acts on it."""
-    return [*of_masonry(case.masonry, words), *of_effects(case.effects, words)]
+    """Masonry with what acts on it, and what is driven."""
+    rows = [*of_masonry(case.masonry, words), *of_effects(case.effects, words, case.masonry)]
+    if case.supports:
+        blocks = words.named([support.block for support in case.supports])
+        rows.append(Input("supports", words("in_supports"), words("driven", names=blocks)))
+    if case.tilt is not None:
+        rows.append(Input("tilt", words("in_tilt"), words("driven", names=words("table_of_tilt"))))
+    return rows if case.settled else [*rows, Input("settled", words("in_settled"), words("as_drawn"))]
 
 
 def of_limit_curve(curve: LimitCurve, words: Words) -> list[Input]:
-    """Masonry whose mechanism goes on, and what moves in it."""
+    """Masonry whose mechanism goes on."""
     masonry = curve.start.masonry
-    found = [] if masonry is None else of_masonry(masonry, words)
-    moving = Input("moving", words("in_moving"), words.named(curve.start.moving), True)
-    return [*found, *_growing(curve.start, words), moving, *of_effects(curve.effects, words)]
+    if masonry is None:
+        return []
+    effects = of_effects(curve.effects, words, masonry)
+    return [*of_masonry(masonry, words), *effects, *_growing(curve.start, words)]
 
 
 def of_collapse(found: Collapse, words: Words) -> list[Input]:
     """Masonry or a wall at its limit, with the loads that grow."""
+    if found.case is not None:
+        return [*of_case(found.case, words), *_growing(found, words)]
     rows = [] if found.masonry is None else of_masonry(found.masonry, words)
-    rows += _growing(found, words)
-    return [
-        *rows,
-        Input("moving", words("in_moving"), words.named(found.moving), True),
-        *of_effects(found.effects, words),
-    ]
+    return [*rows, *of_effects(found.effects, words, found.masonry), *_growing(found, words)]
 
 
 def _growing(found: Collapse, words: Words) -> list[Input]:
     """The loads that grow, of a wall as effects and of masonry on its blocks."""
     if isinstance(found.loads, tuple):
-        effects = of_effects(found.loads, words)
+        effects = of_effects(found.loads, words, found.masonry)
         return [one._replace(name=words("in_growing_effect", name=one.name)) for one in effects]
     rows = []
     for block, load in found.loads.items():
@@ -276,67 +302,116 @@ def masonry_in(subject: Any) -> Masonry | None:
     return found if hasattr(found, "joint_stiffness") else None
 
 
-def _span(values: Array, unit: str, words: Words) -> str:
+def _span(values: Array, unit: str, words: Words, digits: int = GIVEN) -> str:
     """The lowest and the highest of values."""
     low, high = (float(end) for end in (values.min(), values.max()))
     if np.isinf(low):
         return words("sticks")
-    said = [words.quantity(value, unit) for value in (low, high)]
+    said = [words.quantity(value, unit, digits) for value in (low, high)]
     return said[0] if low == high else words("range", low=said[0], high=said[1])
 
 
-def listings(masonry: Masonry, words: Words, written: Callable[[float], str]) -> list[Listing]:
-    """The blocks of masonry with their vertices, and its joints with what each has, in SI units, as `written` writes
-    them."""
-    blocks: list[tuple[str, ...]] = []
+def listings(subject: Any, words: Words, written: Callable[[float], str]) -> list[Listing]:
+    """What takes a table of its own, in SI units, as `written` writes them: of masonry its blocks with their vertices,
+    its joints with what each has, and pairs of blocks that have something of their own where they meet; of a case what
+    is driven, over time."""
+    masonry, found = masonry_in(subject), dict[str, list[tuple[str, ...]]]()
+    if masonry is not None:
+        found = {"blocks": _block_rows(masonry, words, written), "joints": _joint_rows(masonry, written)}
+        if callable(masonry.pairs):
+            found["pairs"] = _pair_rows(masonry, written)
+    found["histories"] = _history_rows(subject, words, written)
+    return [
+        Listing(key, words(f"list_{key}"), tuple(words(f"col_{name}") for name in HEADS[key]), rows)
+        for key, rows in found.items()
+        if rows
+    ]
+
+
+def _block_rows(masonry: Masonry, words: Words, written: Callable[[float], str]) -> list[tuple[str, ...]]:
+    """A row for each part of each block."""
+    rows = list[tuple[str, ...]]()
     for name, block in zip(masonry.names, masonry.blocks, strict=True):
         for part in block.parts:
-            vertices = " ".join(f"({'; '.join(written(x) for x in vertex)})" for vertex in part.vertices)
+            corners = [[written(round(x, FINEST) + 0.0) for x in vertex] for vertex in part.vertices]
+            vertices = " ".join(f"({'; '.join(corner)})" for corner in corners)
             length = written(part.length) if hasattr(part, "length") else DASH
-            fixed = words("fixed" if block.fixed else "free")
-            blocks.append((name, written(part.density), length, fixed, vertices))
-    table, joints = masonry.table, list[tuple[str, ...]]()
+            rows.append((name, written(part.density), length, words("fixed" if block.fixed else "free"), vertices))
+    return rows
+
+
+def _joint_rows(masonry: Masonry, written: Callable[[float], str]) -> list[tuple[str, ...]]:
+    """A row for each joint."""
+    table, rows = masonry.table, list[tuple[str, ...]]()
     for i, joint in enumerate(masonry.joints):
         bond = table.bonds[i]
         numbers = (table.k_n[i], table.k_s[i], table.friction[i], table.xi[i], table.frequency[i], table.points[i])
         held = DASH if bond is None else "; ".join(written(x) for x in dataclasses.astuple(bond) if x is not None)
-        joints.append((joint.name, *(written(float(x)) for x in numbers), held))
-    heads = {
-        "blocks": ("block", "density", "length", "fixed", "vertices"),
-        "joints": ("joint", "k_n", "k_s", "friction", "xi", "frequency", "points", "bond"),
-    }
+        rows.append((joint.name, *(written(float(x)) for x in numbers), held))
+    return rows
+
+
+def _pair_rows(masonry: Masonry, written: Callable[[float], str]) -> list[tuple[str, ...]]:
+    """A row for each pair of blocks that the function of the user gives something."""
+    named = combinations(masonry.names, 2)
+    given = ((one, other, asked_pair(masonry.pairs, one, other)) for one, other in named)
     return [
-        Listing(key, words(f"list_{key}"), tuple(words(f"col_{name}") for name in heads[key]), rows)
-        for key, rows in (("blocks", blocks), ("joints", joints))
+        (one, other, *(DASH if x is None else written(x) for x in (dry.friction, dry.xi, dry.frequency)))
+        for one, other, dry in given
+        if dry is not None
     ]
 
 
-def of_effects(effects: Sequence[Effect], words: Words) -> list[Input]:
-    """The effects."""
-    told = [(name, one.told, told_name(name, one, words)) for name, one in named_effects(effects).items()]
-    return [Input(name, said, described(effect, words)) for name, effect, said in told if effect is not None]
+def _history_rows(subject: Any, words: Words, written: Callable[[float], str]) -> list[tuple[str, ...]]:
+    """A row for each time of what is driven: supports, actuators and a table that tilts."""
+    rows = []
+    for support in getattr(subject, "supports", ()):
+        rows += [(support.block, *map(written, row)) for row in zip(*support.histories, strict=True)]
+    for name, jack in getattr(subject, "actuators", {}).items():
+        rows += [(effect_name(name, words), written(t), written(d)) for t, d in zip(*jack.displacement, strict=True)]
+    if (tilt := getattr(subject, "tilt", None)) is not None:
+        rows += [(words("table_of_tilt"), written(t), written(angle)) for t, angle in zip(*tilt, strict=True)]
+    return [(*row, *[DASH] * (len(HEADS["histories"]) - len(row))) for row in rows]
 
 
-def described(effect: Told, words: Words) -> str:
+def loads_in(subjects: Sequence[object], words: Words) -> list[str]:
+    """The names of the loads on what a report is of, whose weight acts without mass."""
+    effects = [named_effects(getattr(one, "effects", ())) for one in subjects]
+    found = [name for named in effects for name, effect in named.items() if isinstance(effect, Load)]
+    return [effect_name(name, words) for name in dict.fromkeys(found)]
+
+
+def of_effects(effects: Sequence[Effect], words: Words, masonry: Masonry | None = None) -> list[Input]:
+    """The effects, on masonry with the names of their blocks."""
+    others = [effect for effect in effects if not isinstance(effect, EFFECT_KINDS)]
+    named = named_effects(effects) | {f"{effect.label}_{i}": effect for i, effect in enumerate(others)}
+    told = [(name, one.told, told_name(name, one, words)) for name, one in named.items()]
+    return [Input(name, said, described(effect, words, masonry)) for name, effect, said in told if effect is not None]
+
+
+def described(effect: Told, words: Words, masonry: Masonry | None = None) -> str:
     """An effect in words: each of its numbers with its name; its own text where the report has no words for it."""
     if not words.or_else(f"effect_{effect.label}", ""):
         return effect.said.replace("\n", " ")
     kind: Any = type(effect)  # mypy takes a class for a thing without a hash
-    units = {name: "" if one.within.whole else one.within.unit for name, one in declared(kind).items()}
-    units["strength"] = "N"
+    units = {name: "" if one.within.whole else one.within.unit for name, one in declared(kind).items()} | UNITS
+    left_out = [name for name in ("prestress", "damping") if not getattr(effect, name, 1.0)]
+    left_out += ["height", "offset"] if getattr(effect, "at", None) is not None else []
     said = []
     for field in dataclasses.fields(kind):
-        value, own = getattr(effect, field.name), f"field_{effect.label}_{field.name}"
-        key = own if own in texts() else f"field_{field.name}"
-        if value is None or value == math.inf or key not in texts():
+        value, names = getattr(effect, field.name), [f"field_{effect.label}_{field.name}", f"field_{field.name}"]
+        names = [f"field_masonry_{field.name}"] * (masonry is not None) + names
+        key = next((name for name in names if name in texts()), "")
+        if not key or value is None or value == math.inf or field.name in left_out:
             continue
-        if isinstance(value, str):
-            said.append(words(key, value=words(f"governed_{value}".replace(" ", "_"))))
+        if field.name in OF_BLOCKS:
+            said += [] if masonry is None else [words(key, value=masonry.names[value])]
+        elif isinstance(value, str):
+            said.append(words(key, value=words(f"word_{value}".replace(" ", "_"))))
         elif isinstance(value, tuple):
             said.append(words(key, value="; ".join(words.number(x) for x in value)))
         else:
-            unit = "m" if field.name in ("height", "anchor_height") else units.get(field.name, "")
-            said.append(words(key, value=words.quantity(value, unit)))
+            said.append(words(key, value=words.quantity(value, units.get(field.name, ""))))
     return ", ".join(said)
 
 
@@ -364,8 +439,7 @@ def of_demands(mechanisms: Sequence[Mechanism], words: Words) -> list[Section]:
         for demand, states in _by_demand(check.demands if check else {}):
             alone = check is not None and len(states) < len(check.demands)
             called.append((f"{name}, {', '.join(states)}" if alone else name, demand))
-    groups = grouped(called, lambda one, other: one is other or alike(one, other))
-    return [Section(names, of_demand(demand, words)) for names, demand in groups]
+    return merged(Section(name, of_demand(demand, words)) for name, demand in called)
 
 
 def _by_demand(demands: Mapping[str, Demand]) -> list[tuple[Demand, list[str]]]:
@@ -401,7 +475,11 @@ def of_demand(demand: Demand, words: Words) -> list[Input]:
         ]
     if isinstance(demand, GroundMotion):
         sizes = (("peak", demand.peak, "m/s2"), ("duration", demand.duration, "s"), ("step", demand.dt, "s"))
-        return [Input("record", words("in_record"), demand.name), *_rows(sizes, words), *of_header(demand, words)]
+        return [
+            Input("record", words("in_record"), record_name(demand, words)),
+            *_rows(sizes, words),
+            *of_header(demand, words),
+        ]
     return [Input("spectrum", words("in_spectrum"), words("own_spectrum"))]
 
 
@@ -415,17 +493,53 @@ def _of_code(spectrum: CodeSpectrum, words: Words) -> list[Input]:
     for key in ("soil", "topography"):
         if said := getattr(spectrum, key):
             rows.append(Input(key, words(f"in_{key}"), said))
-    rows.append(Input("S", words("in_S"), words.number(spectrum.S), spectrum.Tc is not None))
+    digits, rests = (GIVEN, "not_given") if spectrum.Tc is None else (BY_HAND, "computed")
+    rows.append(Input("S", words("in_S"), words.number(spectrum.S, digits), rests))
     corners = (spectrum.TB, spectrum.TC, spectrum.TD, spectrum.TE)
-    said = "; ".join(words.quantity(T, "s") for T in corners)
-    rows.append(Input("corners", words("in_corners"), said, spectrum.Tc is not None))
+    said = "; ".join(words.quantity(T, "s", digits) for T in corners)
+    rows.append(Input("corners", words("in_corners"), said, rests))
     return [*rows, Input("spectrum_damping", words("in_spectrum_damping"), words.share(spectrum.damping))]
 
 
 def of_header(motion: GroundMotion, words: Words) -> list[Input]:
     """Where a motion comes from and what was made of it, as its header has it."""
     said = [motion.header[key].replace("_", "") for key in MADE if motion.header.get(key)]
-    return [Input("origin", words("in_origin"), words.marked("; ".join(said)))] if said else []
+    if scaled := SCALED.fullmatch(motion.header.get("SCALED_TO", "")):
+        said.append(_scaled(scaled, words))
+    if modes := motion.header.get("FLOOR"):
+        said.append(words.marked(modes.replace("_", "")))
+    return [Input("origin", words("in_origin"), "; ".join(said))] if said else []
+
+
+def _scaled(scaled: re.Match[str], words: Words) -> str:
+    """To which spectrum a record was scaled, and over which periods."""
+    periods = [words.number(float(T)) for T in scaled["periods"].split(", ")]
+    over = words("periods_of", low=periods[0], high=periods[-1], count=len(periods))
+    if len(periods) <= ABREAST:
+        over = ("; " if words.mark == "," else ", ").join(periods) + " s"
+    target = scaled["target"].removesuffix(ON_A_FLOOR)
+    said = words("points_spectrum") if target == "spectrum of points" else words.marked(target.replace("m/s2", "m/s²"))
+    said = words("on_a_floor", name=said) if target != scaled["target"] else said
+    return words("scaled_to", target=said, factor=words.number(float(scaled["factor"])), periods=over)
+
+
+def record_name(motion: GroundMotion, words: Words) -> str:
+    """What a record is called in a report: its station and component, or its own name, with what was made of it."""
+    return _called(motion.name.removesuffix(REVERSED), motion.header, words)
+
+
+def _called(name: str, header: Mapping[str, str], words: Words) -> str:
+    """The name of a record of a header in words."""
+    if name.endswith(ON_A_FLOOR):
+        return words("on_a_floor", name=_called(name.removesuffix(ON_A_FLOOR), header, words))
+    if scaled := re.fullmatch(r"(.+) x ([\d.e+-]+)", name):
+        factor = words.number(float(scaled[2]), FOUND)
+        return words("scaled_record", name=_called(scaled[1], header, words), factor=factor)
+    if header.get("STATION_CODE") and header.get("STREAM"):
+        return words("station", code=header["STATION_CODE"], stream=header["STREAM"])
+    if drawn := re.fullmatch(r"synthetic ([\d.e+-]+) m/s2, seed (\d+)", name):
+        return words("artificial", peak=words.quantity(float(drawn[1]), "m/s2"), seed=drawn[2])
+    return name
 
 
 INPUTS_OF: dict[type, Callable[[Any, Words], list[Input]]] = {

@@ -12,12 +12,15 @@ from pathlib import Path
 
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from ..contacts.files import replacing
 from .texts import MINUS, Words
 
 TOKEN = re.compile(r"\d+(?:[.,]\d+)?|[^\W\d_]+|\S")
 """A number, a name or a sign of a formula."""
+BRIEF = 12
+"""Most rows of a table that a page does not part."""
 MARGIN = 60
 """Longest text in the margin of a page."""
 GREEK = {"alpha": "\u03b1"}
@@ -44,7 +47,9 @@ th { border-bottom: 1px solid #888; font-weight: 600; vertical-align: bottom }
 .right { text-align: right; font-variant-numeric: tabular-nums }
 td.right, table.runs td { white-space: nowrap }
 thead { display: table-header-group }
-tr, figure { break-inside: avoid }
+tr, figure, .brief, .whole { break-inside: avoid }
+h2 + p, p.head { break-after: avoid }
+td.short { white-space: nowrap } td.all { text-align: center }
 table.block td:nth-child(odd) { width: 8em; color: #666 }
 table.inputs th:first-child { width: 30% } table.inputs th:last-child { width: 26% }
 table.block td { height: 1.3em }
@@ -56,7 +61,6 @@ figure img { max-width: 100%; height: auto }
 figcaption { font-size: .85em; color: #444 }
 math { font-size: 1.15em; math-style: normal }
 ul { margin: .3em 0; padding-left: 1.3em }
-.page { break-before: page }
 .sign { height: 4.5em; border: 1px solid #888; margin: .5em 0 }
 @media print { body { max-width: none; margin: 0; padding: 0; font-size: 9.3pt } .wide { overflow: visible } }
 """
@@ -117,7 +121,8 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence
 
     head = [element("thead", line("th", columns))] if columns else []
     body = element("tbody", *(line("td", row) for row in rows))
-    whole = element("table", *head, body, **({"kind": kind} if kind else {}))
+    kinds = " ".join(filter(None, (kind, "brief" * (len(rows) <= BRIEF))))
+    whole = element("table", *head, body, **({"kind": kinds} if kinds else {}))
     return element("div", whole, kind="wide")
 
 
@@ -150,12 +155,20 @@ def _item(tokens: list[str]) -> Markup:
     return element("mn" if token[0].isdigit() else "mi" if token[0].isalpha() else "mo", GREEK.get(token, token))
 
 
-def picture(figure: Figure, caption: str, words: Words | None = None) -> Markup:
-    """A figure inside the page, with the decimal mark of a language; as it is without one."""
-    if words is not None and words.mark != ".":
+def picture(figure: Figure, caption: str, words: Words, *, own: bool = False) -> Markup:
+    """A figure inside the page, with what plot functions have printed in the language of the report, and with its
+    decimal mark. One of the user, `own`, keeps its points, its texts beside, and is left as it was."""
+    texts = figure.findobj(Text)
+    was = [text.get_text() for text in texts]
+    for text, said in zip(texts, was, strict=True):
+        text.set_text(words.drawn(said))
+    if words.mark != "." and not own:
         _marked(figure, words)
     file = BytesIO()
     figure.savefig(file, format="png", dpi=170, metadata={"Software": None})
+    if own:
+        for text, said in zip(texts, was, strict=True):
+            text.set_text(said)
     data = base64.b64encode(file.getvalue()).decode("ascii")
     image = Markup(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{data}">')
     return element("figure", image, element("figcaption", caption))

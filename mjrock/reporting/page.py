@@ -24,12 +24,13 @@ from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code import code_of
 from ..study.loading.code_check import signals_of
+from ..study.loading.design import Design
 from ..study.loading.load_check import Borne
 from . import inputs, subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
-from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, histories, strip
+from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strip
 from .subject import Reported, reported
-from .texts import DASH, FOUND, MINUS, Words
+from .texts import DASH, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
 
 HEADS = ("project", "client", "author", "date", "place")
@@ -77,8 +78,8 @@ def report(
             the mortar 800 MPa, 30 mm"}.
         notes: the question, the building, who asked.
         sections: further sections, by their headings: each a text, a figure, a result of `collapse_multiplier`,
-            `limit_curve`, `push` or `pushover`, one that has a table, as those of `sensitivity` and `compare`, a
-            mapping of names to `Fragility` curves, or some of these.
+            `limit_curve`, `push`, `pushover` or `design`, one that has a table, as those of `sensitivity` and
+            `compare`, a mapping of names to `Fragility` curves, or some of these.
 
     Returns:
         The path that was written.
@@ -101,9 +102,10 @@ def report(
     runs = required_runs(Asked(case, responses, labels, not (checks or sections)), whole, words)
     mechanisms = required_checks(checks, words(f"kind_{whole.KIND}"))
     parts_of = inputs.subjects(words(f"kind_{whole.KIND}"), case, mechanisms, runs)
+    standing = inputs.merged(inputs.Section(name, inputs.of_subject(one, words)) for name, one in parts_of)
     given = {
         words("seismic_action"): inputs.of_demands(mechanisms, words),
-        words("what_stands"): [inputs.Section(name, inputs.of_subject(one, words)) for name, one in parts_of],
+        words("what_stands"): standing,
         words("contacts"): of_impacts(case, e, contacts, words),
     }
     keys = [row.key for sections in given.values() for section in sections for row in section.rows]
@@ -118,7 +120,7 @@ def report(
         *checked(mechanisms, words),
         *shaken(whole, runs, mechanisms, words),
         *[part for name, pieces in required_sections(sections).items() for part in section(name, pieces, words)],
-        *judged(whole, runs, mechanisms, words),
+        *judged(whole, runs, mechanisms, words, inputs.loads_in([one for _, one in parts_of], words)),
         *appendix(given, rests, words),
         *(part for one in lists for part in listed_blocks(one, words)),
         *every_run(whole, runs, words),
@@ -186,19 +188,10 @@ def required_runs(asked: Asked, whole: Reported, words: Words) -> list[Run]:
 
 
 def named_records(motions: Sequence[GroundMotion | None], words: Words) -> list[str]:
-    """What records are called: station, component and factor where their headers have them and no two are alike."""
+    """What records are called: in words where no two are alike then, otherwise as they are."""
     own = [DASH if motion is None else motion.name.removesuffix(REVERSED) for motion in motions]
-    told = {}
-    for motion, name in zip(motions, own, strict=True):
-        base, _, factor = name.rpartition(" x ")
-        if motion is not None and re.fullmatch(r"[\d.e+-]+", factor):
-            header, number = motion.header, words.number(float(factor), FOUND)
-            if header.get("STATION_CODE") and header.get("STREAM"):
-                base = words("station", code=header["STATION_CODE"], stream=header["STREAM"])
-            told[name] = words("scaled_record", name=base, factor=number)
-    if len(set(told.values())) < len(told):
-        return own
-    return [told.get(name, name) for name in own]
+    called = {name: inputs.record_name(motion, words) for name, motion in zip(own, motions, strict=True) if motion}
+    return own if len(set(called.values())) < len(called) else [called.get(name, name) for name in own]
 
 
 def in_words(name: str, solver: str, words: Words) -> str:
@@ -286,7 +279,7 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
         return []
     limits, limit = {}, whole.limit()
     if limit is not None:
-        limits["d₀"] = limit
+        limits[words("limit_d_0")] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     solved = subject.solved_with([run.response for run in runs], words)
@@ -300,8 +293,10 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
     return parts if end is None else [*parts, picture(end, words("ends_said"), words)]
 
 
-def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """What governs, what the results do not say, and what the code asks to be said of a program."""
+def judged(
+    whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, loads: Sequence[str]
+) -> list[Markup]:
+    """What governs, what the results do not say, also of the loads, and what the code asks to be said of a program."""
     parts = []
     if mechanisms:
         motions = [(run.response.case.motion, run.motion) for run in runs]
@@ -309,7 +304,9 @@ def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
         parts += [element("h2", words("governing")), verdicts.governing(verdicts.ranked(mechanisms), records, words)]
     if broken := subject.broken_ties(runs, words):
         parts.append(listed(broken))
-    parts += [element("h2", words("limits")), listed([*verdicts.limits(mechanisms, words), *whole.limits(runs, words)])]
+    limits = [*verdicts.limits(mechanisms, words), *whole.limits(runs, words)]
+    limits += [words("limit_load", names=words.named(loads))] if loads else []
+    parts += [element("h2", words("limits")), listed(limits)]
     solvers = list(dict.fromkeys(run.response.solver for run in runs))
     used = [words("kinematic_analysis")] * any(mechanism.kinematic for mechanism in mechanisms)
     used += dict.fromkeys(words(one.what) for each in mechanisms for check in each.loads for one in check.verdicts)
@@ -319,7 +316,8 @@ def judged(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
     parts += [element("h2", heading), table((), subject.code_chapter(used, words), kind="block")]
     if by_hand := whole.by_hand(words):
         parts += [element("p", words("hand")), table((), by_hand, right=(1,))]
-    return [*parts, element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))]
+    judgement = element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))
+    return [*parts, element("div", *judgement, kind="whole")]
 
 
 def of_borne(name: str, result: Borne, words: Words) -> list[Markup]:
@@ -334,9 +332,14 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
     parts = [element("h2", name)]
     for piece in pieces if isinstance(pieces, list | tuple) else [pieces]:
         if isinstance(piece, Figure):
-            parts.append(picture(piece, name))
+            parts.append(picture(piece, name, words, own=True))
         elif isinstance(piece, str):
             parts.append(element("p", piece))
+        elif isinstance(piece, Design):
+            parts += [
+                picture(design_drawn(piece, words), words("design_said"), words),
+                *verdicts.designed(piece, words),
+            ]
         elif isinstance(piece, Borne):
             parts += of_borne(name, piece, words)
         elif isinstance(piece, Fragility):
@@ -382,27 +385,30 @@ def of_impacts(case: AnyCase, e: object, contacts: object, words: Words) -> list
 
 
 class Listed(NamedTuple):
-    """The blocks or joints of masonry, and the file beside the page that has them where they are many."""
+    """A table of inputs, and the file beside the page that has it where it is long."""
 
     listing: inputs.Listing
     file: Path | None
 
 
 def lists_of(subjects: Sequence[object], path: Path, words: Words) -> list[Listed]:
-    """Blocks and joints of each masonry, in the page or in a file beside it."""
-    built = [masonry for one in subjects if (masonry := inputs.masonry_in(one)) is not None]
-    found = []
-    for i, masonry in enumerate(one for n, one in enumerate(built) if one not in built[:n]):
-        many = max(len(masonry.blocks), len(masonry.joints)) > inputs.LISTED
-        for one in inputs.listings(masonry, words, "{:.12g}".format if many else words.number):
-            name = f"{path.stem}_{one.key}{f'_{i + 1}' if i else ''}.csv"
-            found.append(Listed(one, path.with_name(name) if many else None))
+    """The tables of what a report is of, each once, in the page or in a file beside it."""
+    found: list[Listed] = []
+    for one_of in subjects:
+        both = (inputs.listings(one_of, words, written) for written in (words.number, "{:.12g}".format))
+        for short, exact in zip(*both, strict=True):
+            one = exact if len(exact.rows) > inputs.LISTED else short
+            if any(other.listing == one for other in found):
+                continue
+            number = 1 + sum(other.listing.key == one.key for other in found)
+            name = f"{path.stem}_{one.key}{f'_{number}' if number > 1 else ''}.csv"
+            found.append(Listed(one, path.with_name(name) if one is exact else None))
     return found
 
 
 def listed_blocks(one: Listed, words: Words) -> list[Markup]:
-    """Blocks or joints as a table, or the name of the file that has them."""
-    heading = element("p", element("b", one.listing.heading))
+    """A table of inputs, or the name of the file that has it."""
+    heading = element("p", element("b", one.listing.heading), kind="head")
     if one.file is not None:
         return [heading, element("p", words("in_a_file", count=len(one.listing.rows), file=one.file.name))]
     return [heading, table(one.listing.columns, one.listing.rows, kind="runs")]
@@ -410,43 +416,58 @@ def listed_blocks(one: Listed, words: Words) -> list[Markup]:
 
 def appendix(given: Mapping[str, Sequence[inputs.Section]], rests: Mapping[str, str], words: Words) -> list[Markup]:
     """The inputs and what they rest on."""
-    parts = [element("h2", words("inputs"), kind="page")]
+    parts = [element("h2", words("inputs"))]
     for heading, sections in given.items():
         for some in inputs.beside([section for section in sections if section.rows]):
             cells = []
             for row in some.rows:
                 one = next(cell for cell in row if cell is not None)
-                rest = rests.get(one.key, words("computed" if one.computed else "not_given"))
-                cells.append((one.name, *(DASH if cell is None else cell.value for cell in row), rest))
+                rest = rests[one.key] if one.key in rests else element("td", words(one.rests), kind="short")
+                cells.append((one.name, *alike([DASH if cell is None else cell.value for cell in row]), rest))
             names = some.names if any(some.names) else [words("input_value")]
             kind = "inputs" if len(names) == 1 else ""
-            parts.append(element("p", element("b", heading)))
+            parts.append(element("p", element("b", heading), kind="head"))
             parts.append(table([words("input_name"), *names, words("input_basis")], cells, kind=kind))
     return parts
 
 
+def alike(values: Sequence[str]) -> Sequence[str]:
+    """The cells of a row, or one that spans them all where they are alike."""
+    if len(values) == 1 or len(set(values)) > 1:
+        return values
+    return [element("td", values[0], colspan=str(len(values)), kind="all")]
+
+
 def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup]:
-    """The records, every run, and the versions of the programs."""
-    responses = [run.response for run in runs]
-    versions = [element("h2", words("versions")), table((), subject.versions(words), kind="block")]
+    """The records, and every run."""
     if not runs:
-        return versions
+        return []
     parts = []
-    if motions := subject.of_motions(responses, words):
+    grounds = [run.response.case.grounds for run in runs]
+    motions = [motion for ground in grounds for motion in ground.values()]
+    called = dict(
+        zip((motion.name.removesuffix(REVERSED) for motion in motions), named_records(motions, words), strict=True)
+    )
+    if motions:
         keys = ("name", "direction", "peak", "peak_g", "duration", "step", "origin")
         heads = [words(f"motion_{key}") for key in keys]
-        parts += [element("h2", words("motions")), table(heads, motions, right=(2, 3, 4, 5))]
+        told = subject.of_motions(grounds, called, words)
+        parts += [element("h2", words("motions")), table(heads, told, right=(2, 3, 4, 5))]
+    beside = [name for name in ("vertical", "transverse") if any(name in ground for ground in grounds)]
     variants, ties = any(run.variant for run in runs), any(run.response.ties for run in runs)
-    columns = ["variant"] * variants + ["run", "polarity", *whole.COLUMNS] + ["force", "drawn", "broke"] * ties
-    rows = []
-    for run in runs:
-        own = [run.variant] * variants + [run.label, MINUS if run.turned else "+"]
+    columns = ["variant"] * variants + ["run", *beside, "polarity", *whole.COLUMNS] + ["force", "drawn", "broke"] * ties
+    rows = list[list[str]]()
+    for run, ground in zip(runs, grounds, strict=True):
+        others = [called[ground[name].name.removesuffix(REVERSED)] if name in ground else DASH for name in beside]
+        own = [run.variant] * variants + [run.label, *others, MINUS if run.turned else "+"]
         rows.append([*own, *whole.result(run.response, words), *(subject.tied(run.response, words) if ties else [])])
     heads = [words(f"run_{key}") for key in columns]
-    left = {columns.index(name) for name in ("variant", "run", "polarity", "outcome", "fallen") if name in columns}
+    left = {
+        columns.index(name) for name in ("variant", "run", *beside, "polarity", "outcome", "fallen") if name in columns
+    }
     right = sorted(set(range(len(columns))) - left)
     parts += [element("h2", words("every_run")), table(heads, rows, right=right, kind="runs")]
     if forces := subject.forces_kept(runs, words):
         heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
         parts.append(table(heads, forces, right=(1, 2)))
-    return [*parts, *versions]
+    return parts

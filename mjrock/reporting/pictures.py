@@ -11,10 +11,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.transforms import Bbox
 
 from ..plotting.bodies import Bodies
-from ..plotting.masonry import THICK, mechanism
-from ..plotting.style import OWN, Look, figure_of, legend_below, several
+from ..plotting.masonry import mechanism
+from ..plotting.studies import design
+from ..plotting.style import OWN, Look, figure_of, legend_below, several, width_of
 from ..plotting.wall import elevation, section
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.wall.case import Case
@@ -23,11 +25,12 @@ from ..quantities import Array
 from ..result.bodies import Moving
 from ..result.response import Response
 from ..study.loading.code_check import MechanismCheck
+from ..study.loading.design import Design
 from ..study.loading.limit_analysis import LimitCurve
 from ..study.loading.load_check import Borne
 from ..study.loading.pushover import PushoverCurve
-from .texts import FOUND, Words
-from .verdicts import Mechanism, told_name
+from .texts import DASH, Words
+from .verdicts import Mechanism, condition, told_name
 
 WIDE = 7.0
 """Width of a picture [inch]."""
@@ -35,8 +38,8 @@ SMALL = 8.0
 """Size of the least type [pt]."""
 TALL = 2.9
 """Most height of the drawing of a wall [inch]."""
-BELOW, ABOVE, AT_SIDES, LEAST = 0.36, 0.22, 1.5, 1.2
-"""Room below, above and beside a drawing, and least height of a wall in it [inch]."""
+BELOW, ABOVE, BEFORE, AWAY, LEAST = 0.36, 0.36, 0.45, 0.36, 1.2
+"""Room below, above and before a drawing, from a wall to names outside, and least height of a wall in it [inch]."""
 LINE = 10.0
 """Height of a line of text [pt]."""
 PANELS = 12
@@ -45,8 +48,10 @@ FAR = 2.0
 """A limit that is farther than the motion by this factor would flatten it."""
 NAMED = 5
 """Most runs of one record whose lines differ."""
-NEAR_THE_AXIS = 0.2
-"""Height over that of a diagram below which a label would lie on its axis [-]."""
+PLACES = (((4, 4), "left"), ((-4, -11), "right"), ((-4, 4), "right"), ((4, -11), "left"), ((0, 14), "center"))
+"""Where a name may stand beside its point [pt], and how it is aligned."""
+DOT = 5.0
+"""Half of the room that a point takes in a diagram [pixels]."""
 OPENED = 0.06
 """Rotation at which the mechanism is drawn [rad]."""
 HOLDS, FAILS = "#0b7a4b", "#b3261e"
@@ -55,6 +60,8 @@ HOLDS, FAILS = "#0b7a4b", "#b3261e"
 
 LABEL: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
 """How the labels of a drawing are written."""
+UNDER: Look = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}
+"""What lies under them."""
 
 
 class Run(NamedTuple):
@@ -111,9 +118,11 @@ def wall_drawn(case: Case, words: Words) -> Drawing:
     elevation(right, case, (0.0, high))
     opened = Bodies.of_moving(Moving(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None]))
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
-    scale, one_scale = _placed(left, right, high)
-    left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, -11), color=FAILS, **LABEL)
-    _named_effects(left, case, scale, words)
+    named = _names(case, words)
+    outside = max([width_of(figure, words("hinge"), SMALL), *(one.width for one in named if not one.inside)])
+    scale, one_scale = _placed(left, right, high, max(1.05, AWAY + outside))
+    left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, 3), color=FAILS, **LABEL).set_bbox(UNDER)
+    _write_names(left, case, scale, named)
     for ax, title in ((left, "section"), (right, "elevation")):
         ax.axis("off")
         ax.set_title("")  # that of the drawing, in English and in the middle
@@ -123,25 +132,25 @@ def wall_drawn(case: Case, words: Words) -> Drawing:
     return Drawing(figure, one_scale)
 
 
-def _placed(left: Axes, right: Axes, high: float) -> tuple[float, bool]:
+def _placed(left: Axes, right: Axes, high: float, between: float) -> tuple[float, bool]:
     """Place section and elevation side by side up to a height [m] in one scale, which is returned [inch/m].
 
-    Where the elevation is so long that the section would be too small to read, each has a scale of its own, and the
-    second value is False.
+    Between them is room for names [inch]. Where the elevation is so long that the section would be too small to read,
+    each has a scale of its own, and the second value is False.
     """
-    figure = figure_of(left)
+    figure, beside = figure_of(left), BEFORE + between
     wide, long = (float(np.ptp(ax.get_xlim())) for ax in (left, right))
-    scale = min((TALL - BELOW - ABOVE) / high, (WIDE - AT_SIDES) / (wide + long))
+    scale = min((TALL - BELOW - ABOVE) / high, (WIDE - beside) / (wide + long))
     one_scale = scale * high >= LEAST
     if not one_scale:
         scale = (TALL - BELOW - ABOVE) / high
     tall, scales = scale * high + BELOW + ABOVE, (scale, scale)
     if not one_scale:
-        scales = scale, (WIDE - AT_SIDES - scale * wide) / long
+        scales = scale, (WIDE - beside - scale * wide) / long
     figure.set_size_inches(WIDE, tall)
-    starts = 0.3 * AT_SIDES, WIDE - scales[1] * long
+    starts = BEFORE, WIDE - scales[1] * long
     if one_scale:  # in the middle of what is left
-        starts = starts[0], 0.5 * (starts[1] + 0.7 * AT_SIDES + scale * wide)
+        starts = starts[0], 0.5 * (starts[1] + beside + scale * wide)
     for ax, start, own, span in zip((left, right), starts, scales, (wide, long), strict=True):
         low = BELOW / own
         ax.set_ylim(-low, high)
@@ -149,23 +158,47 @@ def _placed(left: Axes, right: Axes, high: float) -> tuple[float, bool]:
     return scale, one_scale
 
 
-def _named_effects(ax: Axes, case: Case, scale: float, words: Words) -> None:
-    """Write the names of the effects, each on a line of its own; `scale` is that of the section [inch/m]."""
-    lines: dict[bool, list[float]] = {True: [], False: []}
+class Name(NamedTuple):
+    """The name of an effect in a drawing.
+
+    Args:
+        text: in words.
+        place: height and inner face of the wall there, or of the outline of wedges their left end [m].
+        inside: whether it stands before the inner face.
+        width: of the text [inch].
+    """
+
+    text: str
+    place: tuple[float, float]
+    inside: bool
+    width: float
+
+
+def _names(case: Case, words: Words) -> list[Name]:
+    """The names of the effects with their heights."""
+    figure, found = Figure(), []
     for name, effect in case.named.items():
         if effect.told is None:
             continue
+        said, z = words.marked(f"{told_name(name, effect, words)}, {effect.height:.4g} m"), effect.height
         inside = effect.on_face or len(effect.outline) > 0
-        x, beside = (ax.get_xlim()[0], (2, 3)) if inside else (case.block.b, (26, -10))
-        said, z = f"{told_name(name, effect, words)}, {effect.height:.4g} m", effect.height
         if len(effect.outline):  # below the crack of wedges there is room
-            z, beside, said = 0.15 * z, (2, 0), fill(said, 12)
-        level = 72 * scale * z + beside[1]
+            z, said = 0.15 * z, fill(said, 12)
+        found.append(Name(said, (case.block.inner_face(z), z), inside, width_of(figure, said, SMALL)))
+    return found
+
+
+def _write_names(ax: Axes, case: Case, scale: float, names: Sequence[Name]) -> None:
+    """Write the names of the effects, each on a line of its own; `scale` is that of the section [inch/m]."""
+    lines: dict[bool, list[float]] = {True: [], False: []}
+    for text, (face, z), inside, _ in names:
+        level = 72 * scale * z + (3 if inside else -10)
         while any(abs(level - other) < LINE for other in lines[inside]):
             level -= LINE
         lines[inside].append(level)
-        note = ax.annotate(said, (x, z), (beside[0], level - 72 * scale * z), **LABEL)
-        note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
+        x, beside = (face, -3) if inside else (case.block.b, 72 * AWAY)
+        note = ax.annotate(text, (x, z), (beside, level - 72 * scale * z), ha="right" if inside else "left", **LABEL)
+        note.set_bbox(UNDER)
 
 
 def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | None:
@@ -193,6 +226,7 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
     ax.plot(check.d, check.a, color="#12406b", linewidth=1.8)
     asked = [(2 * math.pi / state.period) ** 2 * state.demand for state in check.states.values()]
     top = 1.15 * max(float(check.a.max()), *asked)
+    said: list[tuple[str, float, float]] = []
     for name, state in check.states.items():
         held = float(np.interp(state.capacity, check.d, check.a))
         stiff = (2 * math.pi / state.period) ** 2
@@ -201,12 +235,36 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
         colour = HOLDS if state.ratio >= 1 else FAILS
         ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
         ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
-        below = (-4, -11) if held > NEAR_THE_AXIS * top else (-16, 4)  # the axis is near the curve
-        for d, a, beside in ((state.capacity, held, below), (state.demand, stiff * state.demand, (4, 4))):
-            ax.annotate(name, (d, a), beside, textcoords="offset points", fontsize=SMALL, zorder=6)
+        said += [(name, state.capacity, held), (name, state.demand, stiff * state.demand)]
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
-    ax.set(xlim=(0, 1.05 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
-    _small(ax)
+    ax.set(xlim=(0, 1.1 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
+    _write_beside(ax, [*said, ("d₀", check.d_0, 0.0)])
+    small(ax)
+
+
+def _write_beside(ax: Axes, named: Sequence[tuple[str, float, float]]) -> None:
+    """Write names beside points of a diagram, each where it lies on no other one and on no point if there is such a
+    place."""
+    figure = figure_of(ax)
+    figure.draw_without_rendering()
+    dots = ax.transData.transform([point for _, *point in named])
+    taken = [Bbox.from_extents(*(dot - DOT), *(dot + DOT)) for dot in dots]
+    for i, (name, d, a) in enumerate(named):
+        tried = []
+        for beside, align in PLACES:
+            note = ax.annotate(name, (d, a), beside, ha=align, **LABEL)
+            box = note.get_window_extent()
+            hit = sum(box.overlaps(other) for other in [*taken[:i], *taken[i + 1 :]])
+            tried.append(
+                (hit + 2 * (not ax.bbox.contains(box.x1, box.y1) or not ax.bbox.contains(box.x0, box.y0)), note, box)
+            )
+            note.set_visible(False)
+        _, note, box = min(tried, key=lambda one: one[0])
+        note.set_visible(True)
+        taken.append(box)
+        for _, other, _ in tried:
+            if other is not note:
+                other.remove()
 
 
 def borne_drawn(result: Borne, words: Words) -> Figure | None:
@@ -216,10 +274,7 @@ def borne_drawn(result: Borne, words: Words) -> Figure | None:
     figure = Figure(figsize=(WIDE, 2.6), layout="constrained")
     if isinstance(result, Collapse):
         space = result.masonry is not None and result.masonry.in_space
-        ax = mechanism(figure.add_subplot(projection="3d" if space else None), result)
-        if result.forces is not None and not space:  # the scale that the drawing writes in English
-            largest = words.quantity(float(np.hypot(result.forces.normal, result.forces.shear).max()), "N", FOUND)
-            ax.set_xlabel(f"$x$ [m]\n{words('thrust_scale', width=words.number(THICK), force=largest)}")
+        small(mechanism(figure.add_subplot(projection="3d" if space else None), result))
         return figure
     ax = figure.subplots()
     if isinstance(result, PushoverCurve):
@@ -232,7 +287,21 @@ def borne_drawn(result: Borne, words: Words) -> Figure | None:
         x, labels = 1e3 * result.displacement, ("axis_moved", "axis_force" if force else "axis_multiplier")
     ax.plot(x, y, color="#12406b", linewidth=1.8)
     ax.set(xlabel=words(labels[0]), ylabel=words(labels[1]), ylim=(min(0.0, float(y.min())), None))
-    _small(ax)
+    small(ax)
+    return figure
+
+
+def design_drawn(found: Design, words: Words) -> Figure:
+    """Capacity over demand of every condition for each value that was tried."""
+    figure = Figure(figsize=(WIDE, 3.0), layout="constrained")
+    ax = design(figure.subplots(), found)
+    named = {one.said: condition(one, words) for trial in found.trials for one in trial.conditions}
+    for line in ax.get_lines():
+        line.set_label(named.get(str(line.get_label()), line.get_label()))
+    ax.set_xticks(ax.get_xticks(), [words.marked(label.get_text()) for label in ax.get_xticklabels()])
+    ax.set_title("")
+    ax.legend(fontsize=SMALL)
+    small(ax)
     return figure
 
 
@@ -251,12 +320,16 @@ def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str,
     variants = list(dict.fromkeys(run.variant for run in runs))
     figure = Figure(figsize=(WIDE, min(8.5, 1.5 + 0.24 * len(rows))), layout="constrained")
     ax = figure.subplots()
-    known = [run.largest for run in runs if math.isfinite(run.largest)]
+    known, alone = [run.largest for run in runs if math.isfinite(run.largest)], not any(run.turned for run in runs)
     top = 1.08 * max([*known, *(limit for _, limit in limits), 1e-6])
     for run in runs:
         order = variants.index(run.variant)
         colour = OWN[order % len(OWN)]["color"]
-        y = rows.index(run.label) + 0.22 * (order - 0.5 * (len(variants) - 1))
+        y = (
+            rows.index(run.label)
+            + 0.22 * (order - 0.5 * (len(variants) - 1))
+            + (0.0 if alone else 0.09 * (-1) ** (not run.turned))
+        )
         x = 1e3 * (run.largest if math.isfinite(run.largest) else 1.06 * top)
         look = {"marker": "o" if math.isfinite(run.largest) else "X", "color": colour}
         ax.plot(x, y, linestyle="", markersize=5.5, markerfacecolor="white" if run.turned else colour, **look)
@@ -265,15 +338,18 @@ def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str,
     ax.text(1.06e3 * top, 1.01, beyond, **above)
     for said, limit in limits:
         ax.axvline(1e3 * limit, color="0.35", linewidth=0.9, linestyle="--", zorder=1)
-        ax.text(1e3 * limit, 1.01, said, **above)
+        side = "right" if limit == max(one for _, one in limits) else "center"
+        ax.text(1e3 * limit, 1.01, said, **(above | {"ha": side}))
     ax.set_yticks(range(len(rows)), labels=rows)
     ax.set(xlim=(0, 1.12e3 * top), ylim=(len(rows) - 0.4, -0.6), xlabel=words("axis_largest"))
     ax.grid(axis="y", color="0.92")
     looks = {one: {"color": OWN[i % len(OWN)]["color"]} for i, one in enumerate(variants) if one}
-    looks |= {words("recorded"): {"color": "0.3"}, words("reversed"): {"color": "0.3", "markerfacecolor": "white"}}
+    if not alone:
+        looks |= {words("recorded"): {"color": "0.3"}, words("reversed"): {"color": "0.3", "markerfacecolor": "white"}}
     handles = [Line2D([], [], marker="o", linestyle="", **look) for look in looks.values()]
-    legend_below(figure, handles, list(looks), 5, fontsize=SMALL)
-    _small(ax)
+    if looks:
+        legend_below(figure, handles, list(looks), 5, fontsize=SMALL)
+    small(ax)
     return figure
 
 
@@ -305,13 +381,13 @@ def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, 
                 style = OWN[lines.index(run.line) % len(OWN)] if told else {"color": "0.4"}
                 dash = ":" if run.turned else "-"
                 ax.plot(run.response.t, 1e3 * path, color=style["color"], linestyle=dash, linewidth=0.9)
-                name = run.motion
+                name = run.line if run.motion == DASH else run.motion
         if limit is not None:
             ax.axhline(1e3 * limit, color="0.4", linewidth=0.7, linestyle="--")
-        low = min(float(path.min()) for path in moved)
+        low = min(0.0, *(float(path.min()) for path in moved))
         ax.set(ylim=(max(-top, 1.05e3 * low - 0.03 * top), top), xlim=(0, None))
         ax.set_title(name, fontsize=SMALL, pad=2)
-        _small(ax)
+        small(ax)
     for ax in axes[-1]:
         ax.set_xlabel(words("axis_t"), fontsize=SMALL)
     figure.supylabel(words("axis_moved"), fontsize=SMALL)
@@ -321,7 +397,7 @@ def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, 
     return figure
 
 
-def _small(ax: Axes) -> None:
+def small(ax: Axes) -> None:
     """Type of small panels."""
     ax.tick_params(labelsize=SMALL)
     for axis in (ax.xaxis, ax.yaxis):

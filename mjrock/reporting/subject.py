@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import fill
 from typing import Any, ClassVar, Protocol
@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 
 from .._version import __version__
 from ..plotting.masonry import blocks, laden
+from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
@@ -35,15 +36,17 @@ from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from .inputs import of_header
 from .markup import Markup, element, table
-from .pictures import SMALL, WIDE, Run, by_variant, wall_drawn
-from .texts import DASH, FOUND, GIVEN, Words
-from .verdicts import REVERSED, effect_name
+from .pictures import SMALL, WIDE, Run, by_variant, small, wall_drawn
+from .texts import DASH, FOUND, GIVEN, Words, effect_name
+from .verdicts import REVERSED
 
 TITLE = 48
 """Longest line of a title of half a page [characters]."""
+MOST, BESIDE = 3.6, 0.6
+"""Most height of a picture of blocks, and that of its title and its axis [inch]."""
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
-ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", GIVEN), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
+ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", FOUND), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
 """Statistics of runs that a report names, with their units and their digits."""
 
 
@@ -111,7 +114,7 @@ class ReportedWall(Reported):
         """How it ended, its largest displacement, that over the limit, impacts."""
         largest = self.largest(response)
         if math.isinf(largest):
-            return [words("overturned"), DASH, DASH, str(len(response.impacts))]
+            return [words("outcome_overturned"), DASH, DASH, str(len(response.impacts))]
         limit = self.limit()
         share = words.number(largest / limit, FOUND) if limit else DASH
         said = words.quantity(largest, "m", FOUND), share, str(len(response.impacts))
@@ -214,25 +217,37 @@ class ReportedMasonry(Reported):
         if not masonry.in_space:
             growing = [one.loads for one in borne if isinstance(one, Collapse) and one.masonry == masonry]
             laden(figure.axes[0], masonry, self.case.effects, *growing[:1])
+            sized(figure, 1, MOST)
         return figure, words("drawing_masonry")
 
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
         """The blocks as the runs with the largest motion end."""
         worst = sorted(runs, key=lambda run: -run.largest)[:ENDS]
         ends = [words.quantity(float(run.response.t[-1]), "s", FOUND) for run in worst]
-        said = [words("at_time", run=run.label, t=t) for run, t in zip(worst, ends, strict=True)]
+        names = [f"{run.label} ({words('reversed')})" if run.turned else run.label for run in worst]
+        said = [words("at_time", run=name, t=t) for name, t in zip(names, ends, strict=True)]
         return self._drawn([(run.response, text) for run, text in zip(worst, said, strict=True)])
 
     def _drawn(self, pieces: Sequence[tuple[Masonry | Response, str]]) -> Figure:
         """Masonry at rest, or as responses of it end, in panels with titles."""
         columns = min(2, len(pieces))
         rows = -(-len(pieces) // columns)
-        figure = Figure(figsize=(WIDE, rows * (3.6 if columns == 1 else 2.6)), layout="constrained")
+        figure = Figure(figsize=(WIDE, rows * MOST), layout="constrained")
         for i, (piece, title) in enumerate(pieces):
             ax = figure.add_subplot(rows, columns, i + 1, projection="3d" if self.case.in_space else None)
             blocks(ax, piece)
             ax.set_title(fill(title, TITLE), fontsize=SMALL)
+            small(ax)
+        if not self.case.in_space:
+            sized(figure, columns, MOST if columns == 1 else 2.6)
         return figure
+
+
+def sized(figure: Figure, columns: int, most: float) -> None:
+    """Make a figure of panels in the plane no higher than what is drawn in them, and a row up to a height [inch]."""
+    sides = [np.ptp(ax.get_ylim()) / np.ptp(ax.get_xlim()) for ax in figure.axes]
+    rows = -(-len(sides) // columns)
+    figure.set_size_inches(WIDE, rows * min(most, float(max(sides)) * WIDE / columns + BESIDE))
 
 
 def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
@@ -242,9 +257,11 @@ def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
         return words.quantity(d, "m", FOUND) if math.isfinite(d) else DASH
 
     if isinstance(result, Collapse):
-        return [("borne_factor", words.number(result.multiplier, FOUND)), ("in_moving", words.named(result.moving))]
+        moving = words.named(result.moving if result.case is None else [words("kind_wall")])
+        return [("borne_factor", words.number(result.multiplier, FOUND)), ("in_moving", moving)]
     if isinstance(result, PushoverCurve):
-        start, peak, end = (words.number(value, FOUND) for value in (result.start, result.peak, result.end))
+        start, peak = (words.number(value, FOUND) for value in (result.start, result.peak))
+        end = words.quantity(result.end, "rad", FOUND)
         return [("borne_start", start), ("borne_peak", peak), ("borne_end", end)]
     if isinstance(result, Push):
         unit = "N" if result.unit == "N" else ""
@@ -295,14 +312,22 @@ def reported(case: AnyCase) -> Reported:
     return ReportedMasonry(case) if isinstance(case, MasonryCase) else ReportedWall(case)
 
 
-def of_motions(responses: Sequence[Response], words: Words) -> list[tuple[str, ...]]:
-    """The ground motions of the responses, each once, in one polarity."""
+def of_motions(
+    grounds: Sequence[Mapping[str, GroundMotion]], called: Mapping[str, str], words: Words
+) -> list[tuple[str, ...]]:
+    """The ground motions of runs, each once, in one polarity.
+
+    Args:
+        grounds: of each run by their directions.
+        called: what records are called in the report, by their names.
+        words: of the report.
+    """
     rows: dict[tuple[str, str], tuple[str, ...]] = {}
-    for response in responses:
-        for direction, motion in response.case.grounds.items():
+    for ground in grounds:
+        for direction, motion in ground.items():
             peak = float(abs(motion.accel).max())
             sizes = words.quantity(peak, "m/s2", FOUND), words.quantity(peak / GRAVITY, "g", FOUND)
-            name = motion.name.removesuffix(REVERSED)
+            name = called[motion.name.removesuffix(REVERSED)]
             times = words.quantity(motion.duration, "s"), words.quantity(motion.dt, "s")
             origin = "".join(row.value for row in of_header(motion, words)) or DASH
             rows.setdefault((direction, name), (name, words(f"ground_{direction}"), *sizes, *times, origin))
@@ -313,15 +338,23 @@ def solved_with(responses: Sequence[Response], words: Words) -> list[str]:
     """How the responses were solved, a sentence for each solver."""
     said = []
     for solver in dict.fromkeys(response.solver for response in responses):
-        own = [response.stats for response in responses if response.solver == solver]
-        asked = []
-        for name, shown in ASKED.items():
-            if values := [stats[name] for stats in own if stats.get(name)]:
-                low, high = (words.quantity(value, *shown) for value in (min(values), max(values)))
-                asked.append(words(f"solved_{name}", value=low if low == high else words("range", low=low, high=high)))
+        own = [response for response in responses if response.solver == solver]
+        given = [("duration", [response.case.duration for response in own], ("s", GIVEN))]
+        given += [
+            (name, [run.stats[name] for run in own if run.stats.get(name)], shown) for name, shown in ASKED.items()
+        ]
+        asked = [
+            words(f"solved_{name}", value=_range(values, *shown, words)) for name, values, shown in given if values
+        ]
         solved = words.or_else(f"solver_{solver}", solver)
         said.append(words("solved", solver=solved, count=len(own), how=", ".join(asked)))
     return said
+
+
+def _range(values: Sequence[float], unit: str, digits: int, words: Words) -> str:
+    """The lowest and the highest of values."""
+    low, high = (words.quantity(value, unit, digits) for value in (min(values), max(values)))
+    return low if low == high else words("range", low=low, high=high)
 
 
 def of_fragility(fits: dict[str, Fragility], words: Words) -> Markup:
@@ -337,8 +370,9 @@ def of_fragility(fits: dict[str, Fragility], words: Words) -> Markup:
     return element("div", table(heads, rows, right=(3, 4)), element("p", words("fragility_note")))
 
 
-def versions(words: Words) -> list[tuple[str, ...]]:
-    """Versions of what has computed this, and what was drawn by chance."""
+def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
+    """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer, with the analyses used, versions
+    of what has computed this, and what was drawn by chance."""
     made = {
         "mjrock": __version__,
         "MuJoCo": mujoco.__version__,
@@ -347,14 +381,7 @@ def versions(words: Words) -> list[tuple[str, ...]]:
         "matplotlib": matplotlib.__version__,
         "Python": platform.python_version(),
     }
-    return [
-        (words("versions"), ", ".join(f"{name} {version}" for name, version in made.items())),
-        (words("seed"), words("seed_said")),
-    ]
-
-
-def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
-    """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer, with the analyses used."""
     keys = "origin", "basis", "field", "validation", "results"
     said = [(words(f"ntc_{key}"), words(f"ntc_{key}_said", version=__version__)) for key in keys]
-    return [(words("ntc_kind"), "; ".join(used)), *said]
+    versions = words("versions"), ", ".join(f"{name} {version}" for name, version in made.items())
+    return [(words("ntc_kind"), "; ".join(used)), *said, versions, (words("seed"), words("seed_said"))]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import string
 import tomllib
 from collections.abc import Sequence
 from decimal import Decimal
@@ -33,8 +35,10 @@ POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits of a power."""
 DASH, MINUS = "\u2013", "\u2212"
 """What stands where there is no value, and the sign of a negative one."""
-GIVEN, FOUND = 7, 3
-"""Digits of what was given, and of what was found."""
+GIVEN, FOUND, BY_HAND = 7, 3, 4
+"""Digits of what was given, of what was found, and of what follows from inputs and a check by hand starts from."""
+FINEST = 9
+"""Decimals of a length [m]: what lies below a nanometre is rounding."""
 SHARED = 4
 """Digits of a share."""
 
@@ -43,6 +47,18 @@ SHARED = 4
 def texts() -> dict[str, dict[str, str]]:
     """Every text by its key and its language."""
     return tomllib.loads(FILE.read_text(encoding="utf-8"))
+
+
+@cache
+def drawn_patterns() -> list[tuple[re.Pattern[str], str]]:
+    """What plot functions print, in English and with groups for the values, and its key: every text of a key that
+    begins with `drawn_`, and the names of solvers."""
+    found = []
+    for key in (key for key in texts() if key.startswith(("drawn_", "short_"))):
+        parts = ((re.escape(said), name) for said, name, *_ in string.Formatter().parse(texts()[key]["en"]))
+        pattern = "".join(said if name is None else f"{said}(?P<{name}>.+?)" for said, name in parts)
+        found.append((re.compile(pattern), key))
+    return found
 
 
 def languages() -> list[str]:
@@ -73,6 +89,20 @@ class Words:
         """The text of a key, or another one where there is none."""
         return self(key) if key in texts() else other
 
+    def drawn(self, text: str) -> str:
+        """The text of a picture in this language, line by line where a plot function has printed it; else as it is."""
+        return "\n".join(self._drawn_line(line) for line in text.split("\n"))
+
+    def _drawn_line(self, line: str) -> str:
+        line = re.sub(r"[a-z_]+_\d+", lambda name: effect_name(name[0], self), line)
+        for pattern, key in drawn_patterns():
+            if found := pattern.fullmatch(line):
+                values = {
+                    name: re.sub(r"(?<=\d)\.(?=\d)", self.mark, value) for name, value in found.groupdict().items()
+                }
+                return self(key, **values)
+        return line
+
     def marked(self, text: str) -> str:
         """Numbers of a text with the decimal mark of the language."""
         return text.replace(".", self.mark)
@@ -95,6 +125,7 @@ class Words:
 
     def quantity(self, value: float, unit: str, digits: int = GIVEN) -> str:
         """A number with its unit and the prefix that suits it."""
+        value = round(value, FINEST) + 0.0 if unit == "m" and math.isfinite(value) else value
         scales = SCALES.get(unit, ((0.0, 1.0, unit),))
         suits = (scale for scale in scales if (abs(value) >= scale[0] if value else scale[1] == 1))
         _, factor, name = next(suits, scales[-1])
@@ -108,3 +139,10 @@ class Words:
     def share(self, value: float) -> str:
         """A share in per cent."""
         return f"{self.number(100 * value, SHARED)}\u00a0%"
+
+
+def effect_name(name: str, words: Words) -> str:
+    """An effect, such as the second of the ties, in words; a limit state as it is."""
+    kind, _, number = name.rpartition("_")
+    known = words.or_else(f"effect_{kind}", "")
+    return f"{known} {int(number) + 1}" if known and number.isdigit() else name

@@ -10,11 +10,12 @@ import numpy as np
 
 from ..problem.wall.effect import Effect
 from ..quantities import require_kind, require_text, shown
-from ..study.loading.code import Code
+from ..study.loading.code import OF_MECHANISM, Code
 from ..study.loading.code_check import DynamicCheck, MechanismCheck, Step, Verdict
+from ..study.loading.design import Condition, Design
 from ..study.loading.load_check import Borne, LoadCheck, load_check
 from .markup import Markup, element, formula, table
-from .texts import DASH, FOUND, GIVEN, Words
+from .texts import DASH, FOUND, GIVEN, Words, effect_name
 
 Check = MechanismCheck | DynamicCheck | LoadCheck
 REVERSED = ", reversed"
@@ -174,11 +175,13 @@ def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
     refused = "; ".join(_of(verdict, words) for verdict in verdicts if not verdict.holds)
     numbers = {"ratio": words.ratio(least.ratio), "check": _of(least, words)}
     end = words("lead_ratio", held=mechanism.held, count=len(verdicts), **numbers)
-    return Sentence(kind, f"{words(key, name=mechanism.name)} {words(f'lead_{kind}', refused=refused)}", end)
+    start = f"{words(key, name=mechanism.name)} {words(f'lead_{kind}', refused=refused)}"
+    return Sentence(kind, start[:1].upper() + start[1:], end)
 
 
 def _sentence(mechanism: Mechanism, key: str, words: Words, now: bool) -> Markup:
     """The sentence on a mechanism, as it is now where that is said, as a paragraph."""
+    now = now and words("as_it_is") not in mechanism.name.casefold()
     kind, start, end = sentence_of(mechanism, f"{key}_now" if now else key, words)
     return element("p", element("span", words(kind), kind=kind), " ", element("b", start), f" {end}")
 
@@ -193,11 +196,11 @@ def conditions(verdict: Verdict, words: Words) -> list[str]:
 
     def amount(value: float) -> str:
         fell = math.isinf(value) and value == verdict.demand
-        return words("overturned") if fell else words.quantity(value, verdict.unit, FOUND)
+        return words("fell") if fell else words.quantity(value, verdict.unit, FOUND)
 
     numbers = amount(verdict.demand), amount(verdict.capacity), words.ratio(verdict.ratio)
     held = words("holds" if verdict.holds else "fails")
-    return [words(verdict.what), verdict.limit_state, *numbers, held, verdict.clause]
+    return [words(verdict.what), verdict.limit_state or DASH, *numbers, held, verdict.clause or DASH]
 
 
 def _conditions(verdict: Verdict, words: Words) -> list[str]:
@@ -224,7 +227,7 @@ def governing(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words
         if runs:
             run = max(runs, key=lambda one: one.d)
             name = run.name.removesuffix(REVERSED)
-            d = words("overturned") if math.isinf(run.d) else words.quantity(run.d, "m", FOUND)
+            d = words("fell") if math.isinf(run.d) else words.quantity(run.d, "m", FOUND)
             worst = [records.get(name, name) + (f" ({words('reversed')})" if name != run.name else ""), d]
         rows.append((mechanism.name, words.ratio(least.ratio), _of(least, words), *worst * shaken))
     columns = ["verdict_mechanism", "least_ratio", "verdict_check", *["worst_record", "run_largest"] * shaken]
@@ -250,13 +253,16 @@ def kinematic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Marku
         for some in (own[start : start + ABREAST] for start in range(0, len(own), ABREAST)):
             checks = [check for _, check in some]
             rows = [_step(step, checks, words) for step in _all_steps(checks)]
+            if any(check.moving for check in checks):
+                rows.insert(0, [words("in_moving"), "", *(words.named(check.moving) or DASH for check in checks), DASH])
             heads = [words("step"), words("formula"), *(name for name, _ in some), words("verdict_clause")]
             made.append(table(heads, rows, right=range(2, 2 + len(some))))
     return made
 
 
 def _all_steps(checks: Sequence[MechanismCheck]) -> list[Step]:
-    """The steps of several checks, each once: one that the first has not follows the one that stands before it."""
+    """The steps of several checks, each once, those of the mechanism in the order of a check: one of a limit state that
+    the first has not follows the one that stands before it."""
     merged: list[Step] = []
     for check in checks:
         at = 0
@@ -265,7 +271,8 @@ def _all_steps(checks: Sequence[MechanismCheck]) -> list[Step]:
             if not same:
                 merged.insert(at, step)
             at = 1 + (same[0] if same else at)
-    return merged
+    order = {key: i for i, key in enumerate(OF_MECHANISM)}
+    return sorted(merged, key=lambda step: order.get(step.key, len(order)))
 
 
 def _step(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[str]:
@@ -276,7 +283,7 @@ def _step(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[st
     for check in checks:
         found = [one for one in check.steps if (one.key, one.of) == (step.key, step.of)]
         cells.append(_value(found[0], check, words) if found else DASH)
-    return [code.step(step.key, of).text[words.language], formula(shape), *cells, step.clause]
+    return [code.step(step.key, of).text[words.language], formula(shape), *cells, step.clause or DASH]
 
 
 def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
@@ -286,13 +293,6 @@ def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
     counts = step.key != "ratio" or not check.is_of_start(step.of)
     kind = f"right {'holds' if step.value >= 1 else 'fails'}" if counts else "right"
     return element("td", words.ratio(step.value), kind=kind)
-
-
-def effect_name(name: str, words: Words) -> str:
-    """An effect, such as the second of the ties, in words; a limit state as it is."""
-    kind, _, number = name.rpartition("_")
-    known = words.or_else(f"effect_{kind}", "")
-    return f"{known} {int(number) + 1}" if known and number.isdigit() else name
 
 
 def told_name(name: str, effect: Effect, words: Words) -> str:
@@ -307,7 +307,8 @@ def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]
     made = []
     for start in range(0, len(given), ABREAST):
         columns = [_dynamic(check, words) for _, check in given[start : start + ABREAST]]
-        rows = [[words(f"dynamic_{key}"), *(column[key] for column in columns)] for key in columns[0]]
+        told = [key for key in columns[0] if any(column[key] != DASH for column in columns)]
+        rows = [[words(f"dynamic_{key}"), *(column[key] for column in columns)] for key in told]
         heads = [words("step"), *(name for name, _ in given[start : start + ABREAST])]
         made.append(table(heads, rows))
     return made
@@ -317,7 +318,7 @@ def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
     """What a check by dynamic runs found, by its key."""
 
     def length(d: float) -> str:
-        return words("overturned") if math.isinf(d) else words.quantity(d, "m", FOUND)
+        return words("fell") if math.isinf(d) else words.quantity(d, "m", FOUND)
 
     e = DASH
     if check.restitution:

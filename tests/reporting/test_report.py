@@ -18,7 +18,7 @@ from PIL import Image
 import mjrock as mr
 from mjrock.quantities import ratio_said, share_said
 from mjrock.reporting.markup import formula
-from mjrock.reporting.texts import FOUND, Words, languages, texts
+from mjrock.reporting.texts import DASH, FOUND, Words, languages, texts
 from mjrock.study.loading.code_check import LimitState, RunMaximum, Verdict, verdict_rows
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)])
@@ -119,6 +119,7 @@ def test_every_text_is_used():
     code = "".join(path.read_text() for path in (*package.glob("reporting/*.py"), *package.glob("study/loading/*.py")))
     built = re.findall(r'f"([a-z0-9]+_)\{', code)
     assert {"in_", "run_", "field_"} <= set(built)
+    built.append("drawn_")  # what plot functions print, see test_texts_of_pictures.py
     assert [
         key
         for key in texts()
@@ -343,7 +344,9 @@ def test_the_dynamic_verdict_of_masonry_stands_on_its_first_page(tmp_path):
     text = page_of(tmp_path, runs[0].case, runs, checks=check)
     first = read(text[: text.index("The check by dynamic runs")])
     assert first.count("HOLDS") == 3  # both conditions, and the answer
-    assert text.count(f"<td>{pulses[0].name}</td>") == 4  # both polarities, the record and what governs
+    assert (
+        text.count("<td>artificial, 0.5 m/s², seed 1</td>".replace(" m/s", "\u00a0m/s")) == 4
+    )  # both polarities, the record and what governs
     assert "The kinematic check" not in read(text)
     assert "largest reaction" not in text  # these runs kept no forces
     assert "The check by dynamic runs" in read(text)
@@ -468,3 +471,44 @@ def test_masonry_is_not_of_the_wall(tmp_path):
     answer = mr.simulate(mr.MasonryCase(column, 0.05))
     with pytest.raises(ValueError, match=r"responses\[0\] is of masonry, and the case of <Block 0.6 x 4.2 m"):
         mr.report(CASE, answer, tmp_path / "a.html")
+
+
+def test_a_design_is_a_table_in_the_language_of_the_report(tmp_path):
+    build = {0.3: None, 0.5: mr.Block.from_size(0.5, 4.0), 0.8: mr.Block.from_size(0.8, 4.0)}
+
+    def case_of(thickness):
+        if build[thickness] is None:
+            raise ValueError("too thin")
+        return mr.Case(build[thickness], 0.0, 1.0)
+
+    found = mr.design(case_of, list(build), SITE, method="linear")
+    text = page_of(tmp_path, CASE, answer(), sections={"Scelta": found}, language="it")
+    part = text[text.index("<h2>Scelta") :]
+    rows = [re.sub(r"<[^>]+>", "|", row).strip("|") for row in re.findall(r"<tr>(.*?)</tr>", part)[:4]]
+    assert rows[0].split("||") == ["valore", "rapporto", "esito", "verifica", "punto"]
+    assert rows[1].split("||") == ["0,3", DASH, DASH, "too thin", DASH]
+    ratio = Words("it").ratio(found.trials[2].ratio)
+    assert rows[3].split("||")[:2] == ["0,8", ratio]
+    assert "cinematica lineare, SLV" in rows[3]
+    sentence = read(text)
+    assert ("0,8 è il primo di 3 valori" if found.chosen else "Nessuno dei 3 valori è verificato") in sentence
+
+
+def test_no_cell_of_the_answer_is_empty_and_no_name_is_said_twice(tmp_path):
+    load = mr.load_check(mr.collapse_multiplier(CASE, None, loads=[mr.Thrust(2.0, 3e3)]))
+    given = {"stato di fatto": mr.mechanism_check(mr.Case(WALL, 0.0, 1.0), SITE), "vento": load, "con catena": CHECK}
+    text = page_of(tmp_path, CASE, answer(), checks=given, language="it")
+    first = text[: text.index("<h2>La verifica cinematica")]
+    assert "<td></td>" not in first[first.index("<thead>") :]
+    assert "stato di fatto, stato di fatto" not in read(first).lower()
+    assert "fatto governa stato di fatto" not in read(first)
+
+
+@pytest.mark.slow
+def test_no_page_of_a_pdf_has_one_row(tmp_path):
+    """Versions and the record that is lacking stood alone on a page before."""
+    weasyprint = pytest.importorskip("weasyprint", reason="the extra pdf is not installed: pip install weasyprint")
+    page = weasyprint.HTML(mr.report(CASE, variants(), tmp_path / "a.html", checks=checks(), language="it")).render()
+    for one in page.pages[1:]:
+        lines = [box for box in one._page_box.descendants() if type(box).__name__ == "LineBox"]
+        assert len(lines) > 8
