@@ -24,13 +24,13 @@ from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect, Told
-from ..problem.wall.effects import EFFECT_KINDS, Load, named_effects
+from ..problem.wall.effects import constant_forces_of, named_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import GRAVITY, Array, declared
 from ..study.loading.code_check import Demand
 from ..study.loading.limit_analysis import LimitCurve
 from .pictures import Run, by_variant
-from .texts import BY_HAND, DASH, FINEST, FOUND, GIVEN, Words, effect_name, texts
+from .texts import BY_HAND, DASH, FOUND, GIVEN, LENGTH_DECIMALS, Words, effect_name, texts
 from .verdicts import REVERSED, Mechanism, told_name
 
 LISTED = 60
@@ -333,7 +333,7 @@ def _block_rows(masonry: Masonry, words: Words, written: Callable[[float], str])
     rows = list[tuple[str, ...]]()
     for name, block in zip(masonry.names, masonry.blocks, strict=True):
         for part in block.parts:
-            corners = [[written(round(x, FINEST) + 0.0) for x in vertex] for vertex in part.vertices]
+            corners = [[written(round(x, LENGTH_DECIMALS) + 0.0) for x in vertex] for vertex in part.vertices]
             vertices = " ".join(f"({'; '.join(corner)})" for corner in corners)
             length = written(part.length) if hasattr(part, "length") else DASH
             rows.append((name, written(part.density), length, words("fixed" if block.fixed else "free"), vertices))
@@ -376,15 +376,21 @@ def _history_rows(subject: Any, words: Words, written: Callable[[float], str]) -
 
 def loads_in(subjects: Sequence[object], words: Words) -> list[str]:
     """The names of the loads on what a report is of, whose weight acts without mass."""
-    effects = [named_effects(getattr(one, "effects", ())) for one in subjects]
-    found = [name for named in effects for name, effect in named.items() if isinstance(effect, Load)]
-    return [effect_name(name, words) for name in dict.fromkeys(found)]
+    found = [constant_forces_of(getattr(one, "effects", ())) for one in subjects]
+    loads = {
+        told_name(name, effect, words): None
+        for named in found
+        for name, (effect, force) in named.items()
+        if not any(force[:2]) and force[2] < 0 and effect.told is not None
+    }
+    return list(loads)
 
 
 def of_effects(effects: Sequence[Effect], words: Words, masonry: Masonry | None = None) -> list[Input]:
     """The effects, on masonry with the names of their blocks."""
-    others = [effect for effect in effects if not isinstance(effect, EFFECT_KINDS)]
-    named = named_effects(effects) | {f"{effect.label}_{i}": effect for i, effect in enumerate(others)}
+    named = named_effects(effects)
+    others = [effect for effect in effects if effect not in named.values()]
+    named |= {f"{effect.label}_{i}": effect for i, effect in enumerate(others)}
     told = [(name, one.told, told_name(name, one, words)) for name, one in named.items()]
     return [Input(name, said, described(effect, words, masonry)) for name, effect, said in told if effect is not None]
 

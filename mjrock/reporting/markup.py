@@ -48,6 +48,7 @@ th { border-bottom: 1px solid #888; font-weight: 600; vertical-align: bottom }
 td.right, table.runs td { white-space: nowrap }
 thead { display: table-header-group }
 tr, figure, .brief, .whole { break-inside: avoid }
+tbody tr:nth-child(-n+2) { break-after: avoid } tbody tr:nth-last-child(-n+2) { break-before: avoid }
 h2 + p, p.head { break-after: avoid }
 td.short { white-space: nowrap } td.all { text-align: center }
 table.block td:nth-child(odd) { width: 8em; color: #666 }

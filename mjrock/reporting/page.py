@@ -315,7 +315,7 @@ def judged(
     heading = "; ".join(verdicts.sentences(codes, "program", words)) or words("program")
     parts += [element("h2", heading), table((), subject.code_chapter(used, words), kind="block")]
     if by_hand := whole.by_hand(words):
-        parts += [element("p", words("hand")), table((), by_hand, right=(1,))]
+        parts += [element("p", words("hand"), kind="head"), table((), by_hand, right=(1,))]
     judgement = element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))
     return [*parts, element("div", *judgement, kind="whole")]
 
@@ -324,7 +324,7 @@ def of_borne(name: str, result: Borne, words: Words) -> list[Markup]:
     """What a static answer bears: its picture and its numbers."""
     figure = borne_drawn(result, words)
     rows = [(words(key), value) for key, value in subject.of_borne(result, words)]
-    return [*([] if figure is None else [picture(figure, name, words)]), table((), rows, kind="block")]
+    return [*([] if figure is None else [picture(figure, name, words)]), table((), rows)]
 
 
 def section(name: str, pieces: object, words: Words) -> list[Markup]:

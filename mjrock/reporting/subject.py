@@ -42,7 +42,7 @@ from .verdicts import REVERSED
 
 TITLE = 48
 """Longest line of a title of half a page [characters]."""
-MOST, BESIDE = 3.6, 0.6
+TALLEST_BLOCKS, OVER_BLOCKS = 3.6, 0.6
 """Most height of a picture of blocks, and that of its title and its axis [inch]."""
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
@@ -217,7 +217,7 @@ class ReportedMasonry(Reported):
         if not masonry.in_space:
             growing = [one.loads for one in borne if isinstance(one, Collapse) and one.masonry == masonry]
             laden(figure.axes[0], masonry, self.case.effects, *growing[:1])
-            sized(figure, 1, MOST)
+            sized(figure, 1, TALLEST_BLOCKS)
         return figure, words("drawing_masonry")
 
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
@@ -232,14 +232,14 @@ class ReportedMasonry(Reported):
         """Masonry at rest, or as responses of it end, in panels with titles."""
         columns = min(2, len(pieces))
         rows = -(-len(pieces) // columns)
-        figure = Figure(figsize=(WIDE, rows * MOST), layout="constrained")
+        figure = Figure(figsize=(WIDE, rows * TALLEST_BLOCKS), layout="constrained")
         for i, (piece, title) in enumerate(pieces):
             ax = figure.add_subplot(rows, columns, i + 1, projection="3d" if self.case.in_space else None)
             blocks(ax, piece)
             ax.set_title(fill(title, TITLE), fontsize=SMALL)
             small(ax)
         if not self.case.in_space:
-            sized(figure, columns, MOST if columns == 1 else 2.6)
+            sized(figure, columns, TALLEST_BLOCKS if columns == 1 else 2.6)
         return figure
 
 
@@ -247,7 +247,7 @@ def sized(figure: Figure, columns: int, most: float) -> None:
     """Make a figure of panels in the plane no higher than what is drawn in them, and a row up to a height [inch]."""
     sides = [np.ptp(ax.get_ylim()) / np.ptp(ax.get_xlim()) for ax in figure.axes]
     rows = -(-len(sides) // columns)
-    figure.set_size_inches(WIDE, rows * min(most, float(max(sides)) * WIDE / columns + BESIDE))
+    figure.set_size_inches(WIDE, rows * min(most, float(max(sides)) * WIDE / columns + OVER_BLOCKS))
 
 
 def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
@@ -265,10 +265,11 @@ def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
         return [("borne_start", start), ("borne_peak", peak), ("borne_end", end)]
     if isinstance(result, Push):
         unit = "N" if result.unit == "N" else ""
-        return [("borne_peak", words.quantity(result.peak, unit, FOUND)), ("step_end", length(result.d_0))]
+        end = "step_end" if unit else "centroid_end"
+        return [("borne_peak", words.quantity(result.peak, unit, FOUND)), (end, length(result.d_0))]
     start = words.number(float(result.multiplier[0]), FOUND)
     moving = words.named(result.start.moving)
-    return [("borne_start", start), ("step_end", length(result.d_0)), ("in_moving", moving)]
+    return [("borne_start", start), ("centroid_end", length(result.d_0)), ("in_moving", moving)]
 
 
 def tied(response: Response, words: Words) -> list[str]:

@@ -37,7 +37,7 @@ DASH, MINUS = "\u2013", "\u2212"
 """What stands where there is no value, and the sign of a negative one."""
 GIVEN, FOUND, BY_HAND = 7, 3, 4
 """Digits of what was given, of what was found, and of what follows from inputs and a check by hand starts from."""
-FINEST = 9
+LENGTH_DECIMALS = 9
 """Decimals of a length [m]: what lies below a nanometre is rounding."""
 SHARED = 4
 """Digits of a share."""
@@ -125,7 +125,7 @@ class Words:
 
     def quantity(self, value: float, unit: str, digits: int = GIVEN) -> str:
         """A number with its unit and the prefix that suits it."""
-        value = round(value, FINEST) + 0.0 if unit == "m" and math.isfinite(value) else value
+        value = round(value, LENGTH_DECIMALS) + 0.0 if unit == "m" and math.isfinite(value) else value
         scales = SCALES.get(unit, ((0.0, 1.0, unit),))
         suits = (scale for scale in scales if (abs(value) >= scale[0] if value else scale[1] == 1))
         _, factor, name = next(suits, scales[-1])
