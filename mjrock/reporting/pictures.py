@@ -38,7 +38,7 @@ SMALL = 8.0
 """Size of the least type [pt]."""
 TALL = 2.9
 """Most height of the drawing of a wall [inch]."""
-BELOW, ABOVE, BEFORE, AWAY, LEAST = 0.36, 0.36, 0.45, 0.36, 1.0
+BELOW, ABOVE, BEFORE, AWAY, LEAST = 0.36, 0.36, 0.45, 0.36, 1.05
 """Room below, above and before a drawing, from a wall to names outside, and least height of a wall in it [inch]."""
 LINE = 10.0
 """Height of a line of text [pt]."""
