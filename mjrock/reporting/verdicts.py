@@ -176,7 +176,7 @@ def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
     numbers = {"ratio": words.ratio(least.ratio), "check": _of(least, words)}
     end = words("lead_ratio", held=mechanism.held, count=len(verdicts), **numbers)
     start = f"{words(key, name=mechanism.name)} {words(f'lead_{kind}', refused=refused)}"
-    return Sentence(kind, start[:1].upper() + start[1:], end)
+    return Sentence(kind, start, end)
 
 
 def _sentence(mechanism: Mechanism, key: str, words: Words, now: bool) -> Markup:
@@ -208,6 +208,39 @@ def _conditions(verdict: Verdict, words: Words) -> list[str]:
     what, state, *numbers, held, clause = conditions(verdict, words)
     kind = "holds" if verdict.holds else "fails"
     return [what, state, *(element("td", one, kind="right") for one in numbers), element("td", held, kind=kind), clause]
+
+
+def designed(found: Design, words: Words) -> list[Markup]:
+    """Each value that was tried with its least ratio and the condition that it is of, and the result in a sentence."""
+    rows = []
+    for trial in found.trials:
+        if trial.governs is None:
+            rows.append([words.marked(trial.label), DASH, DASH, trial.refused, DASH])
+            continue
+        kind, verdict = "holds" if trial.holds else "fails", trial.governs.verdict
+        cells = words.ratio(trial.ratio), element("td", words(kind), kind=kind), condition(trial.governs, words)
+        rows.append([words.marked(trial.label), *cells, verdict.clause or DASH])
+    heads = [words(f"verdict_{key}") for key in ("value", "ratio", "verdict", "check", "clause")]
+    return [table(heads, rows, right=(1,)), element("p", design_sentence(found, words))]
+
+
+def condition(one: Condition, words: Words) -> str:
+    """A condition of a design in words, with its mechanism where it has a name."""
+    return ": ".join(filter(None, (one.mechanism, _of(one.verdict, words))))
+
+
+def design_sentence(found: Design, words: Words) -> str:
+    """The result of a design in one sentence."""
+    count, method = len(found.trials), found.trials[0].method
+    every = words("every_method", method=words(f"method_{method}")) if method else words("every_condition")
+    if len(found.trials) > 1 and found.trials[0].holds:
+        held = sum(trial.holds for trial in found.trials)
+        least = {"name": words.marked(found.least.label), "ratio": words.ratio(found.least.ratio)}
+        return words("design_held", held=held, count=count, **least)
+    if found.chosen is not None:
+        return words("design_chosen", name=words.marked(found.chosen.label), count=count, every=every)
+    best = found.nearest
+    return words("design_none", name=words.marked(best.label), count=count, ratio=words.ratio(best.ratio))
 
 
 def governing(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words: Words) -> Markup:
