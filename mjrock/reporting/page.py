@@ -30,7 +30,7 @@ from . import inputs, subject, verdicts
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strip
 from .subject import Reported, reported
-from .texts import DASH, MINUS, Words
+from .texts import DASH, FOUND, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
 
 HEADS = ("project", "client", "author", "date", "place")
@@ -262,7 +262,10 @@ def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
         codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
         parts += [element("h2", words("checks"))]
         parts += [element("p", said) for said in verdicts.sentences(codes, "kinematic", words)]
-        parts += [*verdicts.kinematic_steps(mechanisms, words), picture(figure, words("curves_said"), words)]
+        parts += verdicts.kinematic_steps(mechanisms, words)
+        cut = [(one.name, one.kinematic.d_0) for one in mechanisms if one.kinematic and one.kinematic.ended]
+        parts += [element("p", words("curve_cut", name=name, d=words.quantity(d, "m", FOUND))) for name, d in cut]
+        parts.append(picture(figure, words("curves_said"), words))
     if loaded := [(one.name, check.result) for one in mechanisms for check in one.loads]:
         parts.append(element("h2", words("loaded")))
         parts += [part for name, result in loaded for part in of_borne(name, result, words)]

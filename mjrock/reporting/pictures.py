@@ -29,7 +29,7 @@ from ..study.loading.design import Design
 from ..study.loading.limit_analysis import LimitCurve
 from ..study.loading.load_check import Borne
 from ..study.loading.pushover import PushoverCurve
-from .texts import DASH, Words
+from .texts import DASH, Words, effect_name
 from .verdicts import Mechanism, condition, told_name
 
 WIDE = 7.0
@@ -54,8 +54,8 @@ DOT = 5.0
 """Half of the room that a point takes in a diagram [pixels]."""
 OPENED = 0.06
 """Rotation at which the mechanism is drawn [rad]."""
-HOLDS, FAILS = "#0b7a4b", "#b3261e"
-"""Colours of what holds and of what fails, which differ in lightness too."""
+HOLDS, FAILS, TIE = "#0b7a4b", "#b3261e", "0.2"
+"""Colours of what holds and of what fails, which differ in lightness too, and of where ties yield and break."""
 
 
 LABEL: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
@@ -286,7 +286,15 @@ def borne_drawn(result: Borne, words: Words) -> Figure | None:
         y = (1e-3 if force else 1.0) * result.force
         x, labels = 1e3 * result.displacement, ("axis_moved", "axis_force" if force else "axis_multiplier")
     ax.plot(x, y, color="#12406b", linewidth=1.8)
-    ax.set(xlabel=words(labels[0]), ylabel=words(labels[1]), ylim=(min(0.0, float(y.min())), None))
+    if isinstance(result, PushoverCurve | LimitCurve):
+        scale = 1e3 if isinstance(result, LimitCurve) else 1.0
+        for of, key, marker in zip(result.ties, ("tie_yields", "tie_breaks"), "sX", strict=True):
+            for tie, at in of.items():
+                held = float(np.interp(scale * at, x, y))
+                ax.plot(scale * at, held, marker, color=TIE, markersize=6, zorder=5)
+                said = words(key, name=effect_name(tie, words))
+                ax.annotate(said, (scale * at, held), (6, 4), **LABEL)
+    ax.set(xlabel=words(labels[0]), ylabel=words(labels[1]), ylim=(min(0.0, float(y.min())), 1.15 * float(y.max())))
     small(ax)
     return figure
 

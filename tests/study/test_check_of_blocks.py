@@ -70,6 +70,67 @@ def test_ties_are_slack_in_alpha_0_and_at_their_strength_in_alpha_tied():
     assert found.linear_ratio == pytest.approx(2 * found.alpha_tied * G / 1.35 / found.peak)
 
 
+TIED = mr.Block.from_size(0.6, 4.0, 1.0, 1800.0)
+SOFT = {"height": 3.5, "stiffness": 1e6, "strength": 10e3, "length": 5.0}
+
+
+def test_the_curve_and_its_table_say_where_ties_yield_and_break():
+    """By the turn at which the tie is as long, from the geometry of a block about its toe."""
+    tie = mr.Tie(**SOFT, ultimate=0.1, block="block_0")
+    curve = mr.limit_curve(mr.Masonry.stack([TIED], friction=0.7), 1, effects=tie)
+
+    def gone(elongation):
+        def longer(turn):
+            x, z = 0.6 - 0.6 * math.cos(turn) + 3.5 * math.sin(turn), 3.5 * math.cos(turn) + 0.6 * math.sin(turn) - 3.5
+            return math.hypot(5.0 + x, z) - 5.0 - elongation
+
+        turn = brentq(longer, 0.0, 0.3)
+        return 0.3 * (1 - math.cos(turn)) + 2.0 * math.sin(turn)
+
+    yielding, breaking = curve.ties
+    assert yielding == {"tie_0": pytest.approx(gone(0.01), rel=1e-3)}
+    assert breaking == {"tie_0": pytest.approx(gone(0.11), rel=1e-3)}
+    drop = np.diff(curve.multiplier).argmin()  # the tie falls out between two poses
+    assert curve.displacement[drop] < breaking["tie_0"] < curve.displacement[drop + 1]
+    assert -np.diff(curve.multiplier)[drop] > 0.9 * 10e3 * 3.5 / (TIED.weight * 2.0)
+    found = mr.mechanism_check(curve, SLV)
+    wall = mr.mechanism_check(mr.Case(TIED, 0.0, 1.0, effects=mr.Tie(**SOFT, ultimate=0.1)), SLV)
+    for name in ("yielding", "breaking"):
+        assert getattr(found, name)["tie_0"] == pytest.approx(getattr(wall, name)["tie_0"], rel=1e-3)
+    assert found.table().splitlines()[1:] == wall.table().splitlines()
+    assert "without tie_0, broken" in found.table()
+
+
+def test_ties_that_never_break_are_warned_of_as_those_of_a_wall():
+    """4 kN at 3.5 m hold a wall of 42 kN at a turn at which it would fall without them."""
+    tie = mr.Tie(3.5, 1e6, strength=4e3, length=5.0, block="block_0")
+    with pytest.warns(mr.Implausible, match=r"d_SLC = .* curve without ties has ended: tie_0 \(ultimate = None\)"):
+        mr.mechanism_check(mr.limit_curve(mr.Masonry.stack([TIED], friction=0.7), 1, effects=tie, poses=20), SLV)
+    with pytest.warns(mr.Implausible, match=r"d_SLC = .* at which the curve without ties ends: tie_0"):
+        mr.mechanism_check(mr.Case(TIED, 0.0, 1.0, effects=mr.Tie(3.5, 1e6, strength=4e3, length=5.0)), SLV)
+
+
+def test_a_curve_that_ends_early_is_checked_up_to_its_end():
+    """An arch, in which a further joint opens: shares of the displacement up to there, and the period of the curve."""
+    curve = mr.limit_curve(mr.Masonry.arch(radius=5.0, thickness=0.9), 1)
+    assert curve.ended == "another joint begins to open"
+    with pytest.warns(mr.Implausible, match=r"case ends at d = .* another joint begins to open; the check takes that"):
+        check = mr.mechanism_check(curve, SLV)
+    masonry = curve.start.masonry
+    rows = [masonry.free.index(masonry.names.index(name)) for name in check.moving]
+    mass = np.array([masonry.blocks[masonry.free[row]].mass for row in rows])
+    end = mass @ curve.pose[-1][rows, 0] / mass.sum() / check.participation
+    assert check.d_0 == pytest.approx(end, rel=1e-12)
+    capacity = 0.4 * end
+    held = np.interp(capacity, check.d, curve.multiplier) * G / (check.participation * 1.35)
+    slv = check.states["SLV"]
+    assert (slv.capacity, slv.period) == pytest.approx((capacity, 1.68 * math.pi * math.sqrt(capacity / held)))
+    assert check.table().splitlines()[1].split("  ")[-1].strip() == "another joint begins to open"
+    shaken = mr.MasonryCase(masonry, 0.02, motion=mr.GroundMotion([0.0, -0.1, 0.0], 0.01))
+    with pytest.raises(ValueError, match="ends where something is borne; give it up to where nothing is, or take the"):
+        mr.dynamic_check([mr.solve_explicit(shaken)], curve=curve)
+
+
 def belfry():
     left = box(0, 0.9, 0, 4.5, name="left", length=2.0, density=1800.0)
     right = box(4.1, 5, 0, 4.5, name="right", length=2.0, density=1800.0)
@@ -137,7 +198,10 @@ def test_runs_are_judged_by_the_block_that_moves():
 @pytest.mark.parametrize(
     ("make", "complaint"),
     [
-        (lambda: mr.limit_curve(mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)], friction=0.1), 1), "slide"),
+        (
+            lambda: mr.limit_curve(mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)], friction=0.1), 1),
+            r"slide> ends as it begins. Of it the linear check alone .* alpha_0 = 0.1 and e\* = 1; .* curve=push",
+        ),
         (lambda: mr.limit_curve(mr.Masonry.stack([mr.Block.from_size(0.6, 3.0)]), 1, to=0.05), "leave out to"),
         (lambda: mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)]), r"take mr.limit_curve\(masonry, direction\)"),
     ],

@@ -28,6 +28,7 @@ from ...problem.masonry.masonry import Masonry
 from ...problem.wall.bending import HorizontalBending, VerticalBending
 from ...problem.wall.block import Block
 from ...problem.wall.case import Case
+from ...problem.wall.effect import Anchored
 from ...problem.wall.effects import link_effects
 from ...problem.wall.restoring_moment import moment_at_strength
 from ...problem.wall.wedge import Corner
@@ -52,7 +53,7 @@ from ...quantities import (
 )
 from ...result.response import Response
 from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of
-from .limit_analysis import WEAKER, LimitCurve, collapse_multiplier
+from .limit_analysis import MOVED, WEAKER, LimitCurve, collapse_multiplier
 from .moving_part import MovingPart, multiplier_of
 from .push import Push, of_centroid
 from .pushover import falls_to_zero, pushover
@@ -188,6 +189,7 @@ class MechanismCheck:
         demands: what each limit state was checked against, by name.
         moving: names of the blocks that move, whose common centroid d is of; none of a wall.
         damage: acceleration that the limit state of the start of the mechanism demands [m/s2], where it has a demand.
+        ended: why the curve ends where something is borne, so that its end is taken for d_0; empty where nothing is.
     """
 
     alpha_0: float
@@ -207,6 +209,7 @@ class MechanismCheck:
     demands: Mapping[str, Demand] = field(default_factory=dict)
     moving: tuple[str, ...] = ()
     damage: float | None = None
+    ended: str = ""
 
     @property
     def floor_peak(self) -> float | None:
@@ -344,6 +347,7 @@ class MechanismCheck:
     def _rows(self) -> list[tuple[str, str, str]]:
         """The steps: what it is, its value, and its clause or its verdict."""
         rows = [("what moves", "", named(self.moving))] if self.moving else []
+        rows += [("end of the curve, taken for d_0", "", self.ended)] if self.ended else []
         for step in self.steps:
             what, note = self.code.step(step.key, step.of).plain, step.clause
             if step.key.endswith("linear_ratio"):
@@ -399,7 +403,8 @@ def mechanism_check(
     Of masonry of blocks the curve is that of `limit_curve`, one for each direction. alpha_0 and e* follow from the
     virtual displacements of the mechanism with which it begins, the displacement is that of the common centroid of the
     blocks that move in it, with the masses on them, and d is that over e* (C8.7.1.4). Ties pull with their strength
-    along the curve, and are slack in alpha_0, of the same mechanism.
+    along the curve, and are slack in alpha_0, of the same mechanism. Where blocks slide or another joint opens the
+    mechanism is another one: the curve up to there is checked, with its end for d_0, as if nothing were borne beyond.
 
     Args:
         case: the wall and its effects, whose release and motion play no part, a corner, a wall that bends between
@@ -418,11 +423,11 @@ def mechanism_check(
 
     Raises:
         TypeError, ValueError: for a value outside its range, a wall whose curve does not end, as its ties hold it, or a
-            limit curve that ends while something is borne.
+            limit curve that was ended by `to` or ends as it begins.
 
     Warns:
-        Implausible: for ties that still hold at d_SLC and raise it above d_0 of the wall without them, and for a wall
-            that is free both ways and is weaker inwards.
+        Implausible: for ties that still hold at d_SLC and raise it above d_0 of the wall without them, for a wall that
+            is free both ways and is weaker inwards, and for a limit curve that ends while something is borne.
 
     Examples:
         >>> check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=1.0, soil="A"))
@@ -451,7 +456,7 @@ def mechanism_check(
     alpha_0 = float(found.multiplier[0]) if found.slack is None else found.slack
     ties = found.yielding, found.breaking
     curve = alpha_0, found.tied, found.participation, factor, d, a, d_0, states
-    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving, damage)
+    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving, damage, found.ended)
 
 
 class _Mechanism(NamedTuple):
@@ -465,6 +470,7 @@ class _Mechanism(NamedTuple):
         yielding, breaking: displacement at which each tie yields and breaks [m], by name.
         slack: multiplier that starts it with the ties slack [-], where it is not the first of the curve.
         moving: names of the blocks that move.
+        ended: why the curve ends where something is borne; empty where nothing is.
     """
 
     multiplier: Array
@@ -475,6 +481,7 @@ class _Mechanism(NamedTuple):
     breaking: Mapping[str, float] = MappingProxyType({})
     slack: float | None = None
     moving: tuple[str, ...] = ()
+    ended: str = ""
 
 
 def _mechanism_of(case: Checked, code: Code) -> _Mechanism:
@@ -482,7 +489,7 @@ def _mechanism_of(case: Checked, code: Code) -> _Mechanism:
     if isinstance(case, VerticalBending | HorizontalBending):
         return _of_bending(case)
     if isinstance(case, LimitCurve):
-        return _of_blocks(case)
+        return _of_blocks(case, code)
     return _of_wall(Case(case.block, 0.0, 1.0, effects=case.masses) if isinstance(case, Corner) else case, code)
 
 
@@ -494,48 +501,88 @@ def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:
 
 
 class _PartCurve(NamedTuple):
-    """The curve of the part of masonry that moves, up to where nothing is borne.
+    """The curve of the part of masonry that moves, up to where nothing is borne or the curve ends.
 
     Args:
         part: what moves.
         masonry: it and the rest.
         displacement: of its centroid [m], shape (n,).
-        multiplier: [-], shape (n,), zero at the last.
+        multiplier: [-], shape (n,), zero at the last where nothing is borne.
+        along: displacement of the limit curve at each [m], shape (n,).
     """
 
     part: MovingPart
     masonry: Masonry
     displacement: Array
     multiplier: Array
+    along: Array
 
     @classmethod
     def of(cls, name: str, curve: LimitCurve) -> _PartCurve:
-        """That of a limit curve; a ValueError with its name says if it ends before."""
+        """That of a limit curve; a ValueError with its name says if it bears nothing or has been ended."""
         masonry, borne = curve.start.masonry, curve.multiplier
         if curve.start.loads:
             raise ValueError(f"{name} = {curve!r} has loads; the check is of a horizontal force: give them as effects")
-        if masonry is None or not curve.start.moving or not borne[0] > 0 >= borne[-1]:
-            raise ValueError(
-                f"{name} = {curve!r} ends where {borne[-1]:.4g} of the weight is borne: {curve.ended}; the check takes "
-                "a curve up to where nothing is borne: leave out to, or follow masonry that slides by push"
-            )
+        if masonry is None or not curve.start.moving or not borne[0] > 0:
+            raise ValueError(f"{name} = {curve!r} has no mechanism: nothing gives way, or nothing is borne")
         part = MovingPart.of(curve.start, masonry, curve.effects)
-        moved, last = part.displacement(masonry, curve.pose), int(np.flatnonzero(borne <= 0)[0])
-        end = falls_to_zero(moved[: last + 1], borne[: last + 1])
-        return cls(part, masonry, np.append(moved[:last], end), np.append(borne[:last], 0.0))
+        moved, along = part.displacement(masonry, curve.pose), curve.displacement
+        if borne[-1] > 0:
+            return cls(part, masonry, moved, borne, along)
+        last = int(np.flatnonzero(borne <= 0)[0])
+        ends = (falls_to_zero(path[: last + 1], borne[: last + 1]) for path in (moved, along))
+        moved, along = (np.append(path[:last], end) for path, end in zip((moved, along), ends, strict=True))
+        return cls(part, masonry, moved, np.append(borne[:last], 0.0), along)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it goes on until nothing is borne."""
+        return bool(self.multiplier[-1] == 0)
 
 
-def _of_blocks(curve: LimitCurve) -> _Mechanism:
-    """Masonry of blocks, up to where nothing is borne."""
-    part, masonry, moved, borne = _PartCurve.of("case", curve)
+def _of_blocks(curve: LimitCurve, code: Code) -> _Mechanism:
+    """Masonry of blocks, up to where nothing is borne, or where the mechanism cannot go on."""
+    found = _PartCurve.of("case", curve)
+    part, d = found.part, found.displacement / found.part.participation
+    alpha_0 = multiplier_of(curve.start, found.masonry, curve.effects)
+    if not found.is_whole:
+        _require_some(curve, float(d[-1]), alpha_0, part.participation)
     pulled = any(link.law.holds for link in link_effects(curve.effects).values())
+    yielding, breaking = (
+        {tie: float(np.interp(at, found.along, d)) for tie, at in of.items() if at <= found.along[-1]}
+        for of in curve.ties
+    )
+    last, rule = list(code.states.items())[-1]
+    capacity = rule.share * float(d[-1])
+    if _stands_by_ties(curve, found.masonry, int(np.searchsorted(d, capacity))):
+        _warn_of_ties(link_effects(curve.effects), f"d_{last}", capacity, None, breaking)
     return _Mechanism(
-        borne,
-        moved / part.participation,
+        found.multiplier,
+        d,
         part.participation,
-        float(borne[0]) if pulled else None,
-        slack=multiplier_of(curve.start, masonry, curve.effects),
-        moving=part.names,
+        float(found.multiplier[0]) if pulled else None,
+        yielding,
+        breaking,
+        alpha_0,
+        part.names,
+        "" if found.is_whole else curve.ended,
+    )
+
+
+def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: float) -> None:
+    """Warn of a curve that ends at d [m] while something is borne; a ValueError says if that is where it begins."""
+    if curve.ended.startswith(MOVED):
+        raise ValueError(f"case = {curve!r} was ended where something is borne; leave out to")
+    if d <= 0:
+        raise ValueError(
+            f"case = {curve!r} ends as it begins. Of it the linear check alone can be made, with alpha_0 = "
+            f"{alpha_0:.4g} and e* = {participation:.4g}; check the limit states by runs, dynamic_check(runs, "
+            "curve=push(masonry, direction, to))"
+        )
+    warn_of(
+        f"case ends at d = {d:.4g} m, where {curve.multiplier[-1]:.4g} of the weight is borne: {curve.ended}; the "
+        "check takes that for d_0, and counts nothing beyond",
+        Implausible,
     )
 
 
@@ -554,7 +601,7 @@ def _of_wall(case: Case, code: Code) -> _Mechanism:
     alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
     yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
     last, rule = list(code.states.items())[-1]
-    _warn_of_ties(case, f"d_{last}", rule.share * float(d[-1]), alone, breaking)
+    _warn_of_ties(case.springs, f"d_{last}", rule.share * float(d[-1]), alone, breaking)
     tied = None
     if case.pulls:
         tied = float(curve.multiplier[0]) + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
@@ -573,21 +620,37 @@ def warn_of_inner_edge(case: Case, outwards: float) -> None:
         )
 
 
-def _warn_of_ties(case: Case, name: str, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
+def _warn_of_ties(
+    springs: Mapping[str, Anchored], name: str, capacity: float, alone: float | None, breaking: Mapping[str, float]
+) -> None:
     """Warn of ties that still hold at the largest capacity [m], d_SLC of NTC 2018, where they raise it above the
-    displacement `alone` at which the curve of the wall without them ends [m]. `breaking` has the displacement at which
-    ties break [m]."""
+    displacement `alone` at which the curve without ties ends [m]; None where that is known to be less. `breaking` has
+    the displacement at which ties break [m]."""
     holding = [
         f"{name} (ultimate = {f'{tie.law.ultimate:g} m' if tie.law.ultimate < math.inf else None})"
-        for name, tie in case.springs.items()
+        for name, tie in springs.items()
         if breaking.get(name, math.inf) > capacity
     ]
-    if holding and capacity > alone:
+    if holding and (alone is None or capacity > alone):
+        beyond = "lies where" if alone is None else f"is more than {alone:.3g} m, at which"
         warn_of(
-            f"{name} = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
+            f"{name} = {capacity:.3g} m {beyond} the curve without ties {'has ended' if alone is None else 'ends'}: "
             f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
             Implausible,
         )
+
+
+def _stands_by_ties(curve: LimitCurve, masonry: Masonry, at: int) -> bool:
+    """Whether masonry in a pose of its limit curve bears nothing without its ties."""
+    if not (springs := link_effects(curve.effects)):
+        return False
+    others = [effect for effect in curve.effects if effect not in springs.values()]
+    push = curve.start.direction
+    way = push[:2] if masonry.in_space else float(push[0])
+    try:
+        return collapse_multiplier(masonry, way, effects=others, pose=curve.pose[at]).multiplier <= 0
+    except ValueError:
+        return False
 
 
 def required_demands(demand: Demand | Mapping[str, Demand], code: Code | str | None = None) -> Mapping[str, Demand]:
@@ -909,8 +972,13 @@ class _Judged(NamedTuple):
     def of(cls, curve: LimitCurve | Push) -> _Judged:
         """The blocks that move in a limit curve, or all free ones in a push."""
         if isinstance(curve, LimitCurve):
-            part, masonry, moved, _ = _PartCurve.of("curve", curve)
-            return cls(masonry, part.names, part.way, float(moved[-1]))
+            found = _PartCurve.of("curve", curve)
+            if not found.is_whole:
+                raise ValueError(
+                    f"curve = {curve!r} ends where something is borne; give it up to where nothing is, or take the "
+                    "push of masonry that slides"
+                )
+            return cls(found.masonry, found.part.names, found.part.way, float(found.displacement[-1]))
         masonry = cast(MasonryCase, curve.answer.case).masonry
         return cls(masonry, tuple(masonry.names[i] for i in masonry.free), curve.way, curve.d_0)
 

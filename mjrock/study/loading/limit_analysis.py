@@ -18,7 +18,7 @@ from ...linear import rates_of
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import applied, dragged, pulls_of
 from ...problem.masonry.limit.collapse import Collapse, UnbalancedError, limit_of, pushed
-from ...problem.masonry.limit.pose import Moves, gaps_of, posed
+from ...problem.masonry.limit.pose import Moves, gaps_of, posed, spans_in
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
 from ...problem.masonry.lines import free_numbers, mean_slip_rates
 from ...problem.masonry.masonry import Masonry
@@ -62,6 +62,8 @@ TANGENT, FARTHER = 1e-4, 10
 steps that are expected a curve may take until nothing is borne any more [-]."""
 Loads = Mapping[str, ArrayLike] | Sequence[Thrust | Load] | Thrust | Load
 """Loads that grow, see `collapse_multiplier`."""
+MOVED = "moved by"
+"""How the reason begins why a curve ends at the displacement to which it was to go."""
 HALVINGS = 40
 """How often a step is halved at most in the search for where a line closes."""
 
@@ -295,6 +297,8 @@ def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tup
 
 def _growing(masonry: Masonry, loads: Any) -> Mapping[str, tuple[float, ...]] | tuple[Effect, ...]:
     """Loads that grow, checked: effects with the numbers of their blocks, or forces by the name of a free block."""
+    if loads is None:
+        return ()
     if not isinstance(loads, Mapping):
         effects = required_loads(loads, "Thrust, Load, a sequence of them, or a mapping of blocks to forces [N]")
         try:
@@ -380,6 +384,22 @@ class LimitCurve:
     def d_0(self) -> float:
         """Displacement at which nothing is borne any more [m]; NaN where the curve ends before it."""
         return falls_to_zero(self.displacement, self.multiplier)
+
+    @property
+    def ties(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Displacements [m] at which ties yield, and at which they break, by name, of those that do along the curve.
+
+        A tie bears its strength from the start of the curve, and yields where its stiffness would have brought it up.
+        """
+        yielding, breaking = dict[str, float](), dict[str, float]()
+        for name, link in link_effects(self.effects).items():
+            if link.law.holds and self.start.masonry is not None:
+                spans, law = spans_in(self.start.masonry, link, self.pose), link.law
+                limit = law.reach + law.strength / law.k
+                for found, length in ((yielding, limit), (breaking, limit + law.ultimate)):
+                    if (spans > length).any():
+                        found[name] = falls_to_zero(self.displacement, length - spans)
+        return yielding, breaking
 
 
 def limit_curve(
@@ -469,7 +489,7 @@ def _ended(d: float, multiplier: float, to: float, found: Collapse) -> str:
         return "nothing gives way"
     if multiplier <= 0:
         return "goes on by itself"
-    return f"moved by {1e3 * to:.4g} mm" if d >= to * (1 - 1e-9) else ""
+    return f"{MOVED} {1e3 * to:.4g} mm" if d >= to * (1 - 1e-9) else ""
 
 
 class Stay(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from typing import NamedTuple
@@ -134,11 +135,22 @@ def _carried(masonry: Masonry, effect: Effect, moves: Moves) -> Effect:
     held = np.array(place_in_world(masonry, effect))
     changes: dict[str, object] = {"at": moves.at(effect.block, held), "height": None}
     if isinstance(effect, Anchored):
-        anchor, block = effect.anchor_of(held), effect.anchor_block
-        changes["anchor"] = anchor if block is None else moves.at(block, anchor)
+        changes["anchor"] = _ends(masonry, effect, moves)[1]
     elif effect.offset:
         changes["offset"] = 0.0
     return replace(effect, **changes)  # type: ignore[type-var]
+
+
+def _ends(masonry: Masonry, link: Anchored, moves: Moves) -> tuple[Array, Array]:
+    """Both ends of a link where its blocks have moved [m]."""
+    held = np.array(place_in_world(masonry, link))
+    anchor, block = link.anchor_of(held), link.anchor_block
+    return moves.at(link.block, held), anchor if block is None else moves.at(block, anchor)
+
+
+def spans_in(masonry: Masonry, link: Anchored, poses: Array) -> Array:
+    """Length of a link in poses of the free blocks [m], shape (n,)."""
+    return np.array([math.dist(*_ends(masonry, link, Moves.of(masonry, pose))) for pose in poses])
 
 
 def gaps_of(lines: Lines, moves: Moves) -> tuple[Array, Array, Array]:
