@@ -95,6 +95,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/animate.py --out docs/figures
 	$(BIN)/python scripts/models/stack_before_and_after.py --out docs/figures
 	$(BIN)/python scripts/models/rocking_by_the_guide.py --out docs/figures
+	$(BIN)/python scripts/models/four_masses.py --out docs/figures
 	$(BIN)/python scripts/paper/table2.py --out docs/figures
 	$(BIN)/python scripts/measure/convergence.py --out docs/figures
 	$(BIN)/python scripts/paper/layouts.py --out docs/figures

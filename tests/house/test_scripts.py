@@ -97,6 +97,7 @@ WRITES = {
     "first_minute": {"first_minute.csv", "first_minute.txt"},
     "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
+    "four_masses": {f"four_masses.{ending}" for ending in ("png", "csv", "txt")},
     "rocking_by_the_guide": {"rocking_by_the_guide.csv", "rocking_by_the_guide.txt"},
     "rest_on_processors": {"rest_on_processors.txt"},
     "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
