@@ -19,6 +19,7 @@ from .contacts.checks import (
     Array,
     Flags,
     Integers,
+    OneOf,
     P,
     Result,
     Within,

@@ -24,7 +24,7 @@ import numpy as np
 
 from ..problem.wall.block import Block
 from ..problem.wall.effect import CombinedEffect, Effect
-from ..quantities import Within, alternatives
+from ..quantities import OneOf, Within, alternatives
 
 REQUIRED = MISSING
 """The default of an argument that has none."""
@@ -95,6 +95,8 @@ def kinds_of(hint: Any) -> tuple[Any, ...]:
     kinds = alternatives(hint)
     if complex in kinds:  # ArrayLike, which has much that a file has not
         return (float, np.ndarray, *(one for one in kinds if isinstance(one, type) and is_dataclass(one)))
+    if known := [note for note in getattr(hint, "__metadata__", ()) if isinstance(note, OneOf)]:
+        kinds = tuple(Literal[known[0].texts] if one is str else one for one in kinds)
     return tuple(one for one in kinds if one is not type(None) and get_origin(one) is not Callable)
 
 
@@ -162,8 +164,9 @@ def maker_of(call: Callable[..., Any], owner: type | None = None) -> Maker:
 def hints_of(call: Callable[..., Any]) -> dict[str, Any]:
     """The types of the arguments of a class or function, with what is declared of them."""
     hints = _evaluated(call)
-    if isinstance(call, type) and inspect.isfunction(made := vars(call).get("__init__")):
-        hints |= _evaluated(made)
+    own = vars(call).get("__init__") if isinstance(call, type) else None
+    if inspect.isfunction(own) and own.__code__.co_filename != "<string>":  # not made by `dataclass`
+        hints |= _evaluated(own)
     return hints
 
 

@@ -192,10 +192,12 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
             reader.refuse(table.of("floor"), f"{spelt_place(table.of('floor'))} is a floor of no [site]")
         return None
     site, code = reader.required_table(table, "site"), options.get("code", USUAL_CODE)
+    rule = code_of(code)
     try:
-        rule = code_of(code)
-    except (TypeError, ValueError) as error:
-        reader.refuse(reader.required_table(table, "check").of("code"), str(error))
+        rule.confidence.checked(options.get("confidence_factor"))
+    except ValueError as error:
+        place = reader.required_table(table, "check").of("confidence_factor")
+        reader.refuse(place, f"{spelt_place(place)}: {error} by {rule.name}")
         raise RefusedError from None
     names = [*rule.states, *([] if rule.damage is None else [rule.damage.state])]
     states = [name for name in dict.fromkeys(names) if isinstance(site.values.get(name), Table)]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import product
-from typing import Any
+from typing import Annotated, Any
 
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
@@ -14,6 +14,7 @@ from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet, records_in
 from ..problem.ground.spectrum import SpectrumOfCode
 from ..problem.wall.block import Block
+from ..quantities import OneOf
 from ..study.loading.code_check import dynamic_check
 from .declarations import Key, Maker, Makers, maker_of, makers_of
 from .reading import Reader, RefusedError
@@ -65,7 +66,7 @@ def run_maker(solver: str) -> Maker:
     from ..study.analysis import SOLVERS as SOLVING
 
     own = {
-        "solver": Key("solver", str, "analytical", f"one of {', '.join(SOLVERS)}"),
+        "solver": Key("solver", Annotated[str, OneOf(SOLVERS)], "analytical", "by which the motion is solved"),
         "polarities": Key("polarities", bool, True, "whether each record is run in both polarities"),
     }
     call = SOLVING[solver]

@@ -12,7 +12,7 @@ Place = tuple[str | int, ...]
 """A key by the tables that it is in: ("effects", 0, "height")."""
 LARGEST = 1_000_000
 """Most characters of a file."""
-DEEPEST = 50
+MOST_LEVELS = 50
 """Most tables and lists within each other."""
 AT = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
 """What `tomllib` says of the place of an error."""
@@ -136,9 +136,9 @@ def parsed(text: str) -> dict[str, Any]:
 
 
 def is_deep(document: Mapping[str, Any]) -> bool:
-    """Whether tables and lists are within each other more than DEEPEST times."""
+    """Whether tables and lists are within each other more than MOST_LEVELS times."""
     level: list[Any] = [document]
-    for _ in range(DEEPEST):
+    for _ in range(MOST_LEVELS):
         inside = (one.values() if isinstance(one, Mapping) else one for one in level)
         level = [value for values in inside for value in values if isinstance(value, Mapping | list)]
     return bool(level)

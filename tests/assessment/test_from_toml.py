@@ -2,11 +2,15 @@
 
 import subprocess
 import sys
+from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.wall.effect import CombinedEffect, Effect
+from mjrock.quantities import Within
 
 SITE = """
 [site]
@@ -210,7 +214,7 @@ WRONG = (
     ("round = true", "round = 1.0", "round"),
     ("height = 5.0", "height = 8.0", "effects[2]"),
     ('ag = "0.21 g"', "ag = 0.21", None),
-    ('soil = "C"', 'soil = "F"', "site.soil: soil = 'F' is not one of A, B, C, D, E"),
+    ('soil = "C"', 'soil = "F"', "site.soil = 'F' is not one of A, B, C, D, E"),
 )
 
 
@@ -246,6 +250,68 @@ def test_what_is_missing_is_named_with_its_table():
         mr.from_toml(text="[wall]\nthickness = 0.5")
     with pytest.raises(mr.AssessmentError, match="has no site, which a check is against"):
         mr.from_toml(text="[wall]\nthickness = 0.5\nheight = 3").check()
+
+
+def test_the_range_of_the_code_counts_too():
+    text = f"[check]\nconfidence_factor = 2\n{SITE}{WALL}"
+    with pytest.raises(mr.AssessmentError, match=r"^line 2: check.confidence_factor: .* range 1 to 1.35 by NTC 2018"):
+        mr.from_toml(text=text)
+
+
+@dataclass(frozen=True, repr=False)
+class Brace(mr.Tie):
+    """A tie of a test, with a further number.
+
+    Args:
+        number: how many [-], 1 to 9.
+    """
+
+    number: Annotated[int, Within(1, 9, whole=True)] = field(default=1, kw_only=True)
+
+
+@dataclass(frozen=True)
+class Buttress(CombinedEffect):
+    """What holds a wall of a test as two ties do.
+
+    Args:
+        height: of the upper one [m], 0 to 9.
+    """
+
+    height: Annotated[float, Within(0, 9, "m")]
+
+    def on(self, wall):
+        return mr.Tie(self.height, 1e7), mr.Tie(self.height / 2, wall.density * 1e4)
+
+
+def test_a_class_of_a_user_is_in_the_file_the_day_it_exists():
+    text = f"{SITE}{WALL}[[effects]]\nkind = 'Brace'\nheight = 3.0\nstiffness = '10 MN/m'\nnumber = 3\n"
+    text += "[[effects]]\nkind = 'Buttress'\nheight = '400 cm'"
+    effects = mr.from_toml(text=text).mechanisms[""].problem.effects
+    assert effects == (Brace(3.0, 1e7, number=3), mr.Tie(4.0, 1e7), mr.Tie(2.0, 1.9e7))
+    for wrong, said in (
+        (text.replace("number = 3", "number = 12"), r"effects\[0\].number = 12 is outside the valid range 1 to 9"),
+        (
+            text.replace("400 cm", "950 cm"),
+            r"effects\[1\].height = '950 cm' = 9.5 m is outside the valid range 0 to 9 m",
+        ),
+    ):
+        with pytest.raises(mr.AssessmentError, match=said):
+            mr.from_toml(text=wrong)
+    number = mr.toml_schema()["$defs"]["Brace"]["properties"]["number"]
+    assert (number["type"], number["minimum"], number["maximum"]) == ("integer", 1, 9)
+    assert number["description"] == "how many [-], 1 to 9."
+
+
+def test_every_public_effect_and_builder_is_in_the_schema():
+    parts = mr.toml_schema()["$defs"]
+    effects = [
+        kind for kind in (getattr(mr, name) for name in dir(mr)) if isinstance(kind, type) and issubclass(kind, Effect)
+    ]
+    assert len(effects) >= 7
+    assert {kind.__name__ for kind in effects} <= set(parts)
+    for builder in ("arch", "stack", "running_bond", "dome", "facade", "corner", "from_obj", "between_sides"):
+        assert f"Masonry.{builder}!" in parts
+    assert {"Tie.of_bar", "Wedge", "EarthPressure", "Block.from_slenderness!"} <= set(parts)
 
 
 def test_a_kinematic_check_brings_no_mujoco():

@@ -13,6 +13,7 @@ from ...quantities import (
     GRAVITY,
     Array,
     Implausible,
+    OneOf,
     Within,
     frozen,
     keep,
@@ -303,13 +304,13 @@ SpectrumOfCode = CodeSpectrum | FloorSpectrum | PointSpectrum
 
 @within_ranges
 def code_spectrum(
-    code: str,
+    code: Annotated[str, OneOf(("NTC 2018", *SITE_EC8))],
     *,
     ag: Annotated[float, Within(0.05, 10, "m/s2")],
-    soil: str,
+    soil: Annotated[str, OneOf(SITE_NTC)],
     F0: Annotated[float | None, Within(2, 4)] = None,
     Tc: Annotated[float | None, Within(0.05, 1, "s")] = None,
-    topography: str = "T1",
+    topography: Annotated[str, OneOf(TOPOGRAPHY_NTC)] = "T1",
     damping: Annotated[float, Within(0.005, 0.5)] = 0.05,
     S: Annotated[float | None, Within(0.5, 5)] = None,
     TB: Annotated[float | None, Within(0.01, 1, "s")] = None,

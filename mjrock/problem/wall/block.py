@@ -16,6 +16,7 @@ from ...quantities import (
     Array,
     Density,
     Implausible,
+    OneOf,
     Real,
     Within,
     keep,
@@ -39,6 +40,8 @@ Length = Annotated[float, Within(1e-3, 1000, "m")]
 """Length of a wall, out of the plane of rocking."""
 Inset = Annotated[float, Within(0, 10, "m", "inset")]
 """How far the edges that a wall rocks about lie inside its faces."""
+Plumb = Annotated[str, OneOf(PLUMB)]
+"""The face of a wall that is plumb."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +80,7 @@ class Block:
     profile: Profile | None = None
     masses: tuple[AddedMass, ...] = ()
     gable: Gable | None = field(default=None, kw_only=True)
-    plumb: str = field(default="inner", kw_only=True)
+    plumb: Plumb = field(default="inner", kw_only=True)
 
     def __post_init__(self) -> None:
         keep_declared(self)
@@ -128,7 +131,7 @@ class Block:
         masses: Sequence[AddedMass] = (),
         *,
         gable: Gable | None = None,
-        plumb: str = "inner",
+        plumb: Plumb = "inner",
     ) -> Block:
         """The wall of full sizes.
 

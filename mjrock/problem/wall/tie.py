@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, TypedDict, Unpack
 
-from ...quantities import Within, require_array, require_one_of, require_within, within_ranges
+from ...quantities import OneOf, Within, require_array, require_one_of, require_within, within_ranges
 from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, Height, LinkLaw, OfBlock, PointOf
 
 GOVERNING = ("bar", "punching", "bearing", "other end")
@@ -87,7 +87,7 @@ class Tie(Anchored):
     at: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor: PointOf | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
     anchor_block: OfBlock | None = field(default=None, kw_only=True, metadata=OF_MASONRY)
-    governed_by: str | None = field(default=None, kw_only=True)
+    governed_by: Annotated[str | None, OneOf(GOVERNING)] = field(default=None, kw_only=True)
     prestress: Annotated[float, Within(0, 1e9, "N")] = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:

@@ -365,6 +365,11 @@ def _codes() -> dict[str, Code]:
     return {code.name: code for code in map(Code.load, sorted(CODE_FILES.glob("*.toml")))}
 
 
+def codes() -> tuple[str, ...]:
+    """The names of the codes that come with the package."""
+    return tuple(_codes())
+
+
 def code_of(code: Code | str = USUAL_CODE) -> Code:
     """A code, or that of a name; TypeError or ValueError for anything else."""
     require_kind("code", code, Code, str)

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
 
 import numpy as np
 
@@ -36,6 +36,8 @@ from ...quantities import (
     GRAVITY,
     Array,
     Implausible,
+    OneOf,
+    Within,
     is_iterable,
     listed,
     named,
@@ -50,9 +52,10 @@ from ...quantities import (
     shown,
     takes,
     warn_of,
+    within_ranges,
 )
 from ...result.response import Response
-from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of
+from .code import CHECK_STEPS, OF_LIMIT_STATE, OF_MECHANISM, USUAL_CODE, Code, DynamicRule, code_of, codes
 from .limit_analysis import MOVED, WEAKER, LimitCurve, collapse_multiplier
 from .moving_part import MovingPart, multiplier_of
 from .push import Push, of_centroid
@@ -376,13 +379,14 @@ class MechanismCheck:
         return f"<MechanismCheck{of}: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 
+@within_ranges
 def mechanism_check(
     case: Checked,
     demand: Demand | Mapping[str, Demand],
     *,
-    confidence_factor: float | None = None,
-    elastic_period: float | None = None,
-    code: Code | str = USUAL_CODE,
+    confidence_factor: Annotated[float | None, Within(1, 3)] = None,
+    elastic_period: Annotated[float | None, Within(1e-3, 5, "s")] = None,
+    code: Annotated[Code | str, OneOf(codes)] = USUAL_CODE,
 ) -> MechanismCheck:
     """The kinematic check of a wall as a local mechanism, linear and non-linear, by a code. Clauses that stand here are
     those of the Italian one, Circolare 2019 n. 7, C8.7.1.2.1.
@@ -412,8 +416,8 @@ def mechanism_check(
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
             [m] of a spectrum. It is that of all limit states, or a mapping has one for each, "SLV" and "SLC", and may
             have one of the damage limit state, "SLD"; the linear check then takes that of its own, the SLV.
-        confidence_factor: FC [-], 1 to 1.35 by NTC 2018; None takes 1.35, as the clause does where the strength of the
-            masonry does not enter the curve. Another code has its own range, or none.
+        confidence_factor: FC [-], 1 to 3, by NTC 2018 1 to 1.35; None takes 1.35, as the clause does where the strength
+            of the masonry does not enter the curve. Another code has its own range, or none.
         elastic_period: T_0 of an element that vibrates freely before it opens, such as a parapet [s], 0.001 to 5; its
             curve begins with an elastic branch, a = (2 pi / T_0)^2 d, C8.7.1.6. None is a rigid start.
         code: the name of a code that comes with the package, "NTC 2018", or a `Code`, such as one of your own file.
@@ -438,7 +442,7 @@ def mechanism_check(
     demands = _by_limit_state(demand, code)
     severe = demands[code.first]
     factor = code.confidence.checked(confidence_factor)
-    T_0 = None if elastic_period is None else require_within("elastic_period", elastic_period, 1e-3, 5.0, "s")
+    T_0 = elastic_period
     peak, damage = _starting(severe, T_0, code), None
     if code.damage is not None and code.damage.state in demands:
         damage = _starting(demands[code.damage.state], T_0, code)

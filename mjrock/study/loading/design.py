@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ...contacts.files import aligned
 from ...notebook import Drawn
-from ...quantities import is_iterable, listed, ratio_said, require_one_of, shown
+from ...quantities import OneOf, is_iterable, listed, ratio_said, require_one_of, shown
 from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands
 from .load_check import Borne, LoadCheck, load_check
 
@@ -163,7 +163,7 @@ def design(
     values: Sequence[Any],
     demand: Demand | Mapping[str, Demand] | float | None = None,
     *,
-    method: str | None = None,
+    method: Annotated[str | None, OneOf(METHODS)] = None,
     **options: Any,
 ) -> Design:
     """The first of some values for which every condition of the check holds, with the checks of all.
