@@ -222,13 +222,19 @@ def test_a_cylinder_that_stands_on_a_plane_is_named(ground, can, named):
     assert ("throws a cylinder" in notes) == named
 
 
-REPORT = Path(__file__).parents[2] / "scripts" / "peers" / "mujoco_plane_cylinder.md"
+REPORTS = Path(__file__).parents[2] / "scripts" / "peers"
 
 
-@pytest.mark.skipif(not REPORT.exists(), reason="the report is in the repository of mjrock")
+def code_of(report):
+    """The program in a report to MuJoCo, and what the report says that it prints."""
+    text = (REPORTS / report).read_text(encoding="utf-8")
+    return re.findall(r"```(?:py|text)\n(.*?)```", text, re.DOTALL)
+
+
+@pytest.mark.skipif(not REPORTS.exists(), reason="the reports are in the repository of mjrock")
 def test_the_fault_that_the_report_describes_is_there(capsys):
     """Once this fails, MuJoCo has mended it: take the report and the warning away."""
-    code = re.findall(r"```py\n(.*?)```", REPORT.read_text(encoding="utf-8"), re.DOTALL)[0]
+    code, _ = code_of("mujoco_plane_cylinder.md")
     exec(code.replace("20000", "2000").replace("4000", "500"), {})
     plane, box, poses = capsys.readouterr().out.splitlines()
     assert float(re.findall(r"lifts by (\S+) mm", plane)[0]) > 100
@@ -236,6 +242,18 @@ def test_the_fault_that_the_report_describes_is_there(capsys):
     deeper, without = map(int, re.findall(r"(\d+) of 2000 too deep, (\d+) without", poses)[0])
     assert deeper > 20
     assert without > 2
+
+
+@pytest.mark.skipif(not REPORTS.exists(), reason="the reports are in the repository of mjrock")
+def test_what_the_report_on_the_points_of_a_face_prints(capsys):
+    """Once this fails, MuJoCo weighs the points of a face: take the report and the warning of a turn away."""
+    code, printed = code_of("mujoco_points_of_a_face.md")
+    exec(code, {})
+    found, shown = (
+        [float(number) for number in re.findall(r"[\d.]+", text)] for text in (capsys.readouterr().out, printed)
+    )
+    assert found == pytest.approx(shown, rel=2e-3)
+    assert len(found) == 24
 
 
 @since(3, 8)
