@@ -31,6 +31,9 @@ class Command(NamedTuple):
 COMMANDS = {
     "new": Command(".commands.new", "write a file of a facade, gable, parapet, chimney, bending, corner or masonry"),
     "check": Command(".commands.check", "whether the mechanisms of a file hold, clause by clause"),
+    "run": Command(".commands.run", "the motion of a file under its records, with a table, a picture and a film"),
+    "design": Command(".commands.design", "the first value of a file for which every condition holds"),
+    "report": Command(".commands.report", "the report of a file, as PDF or as HTML, in English or Italian"),
     "schema": Command(".commands.schema", "what a file may have, as JSON schema for editors"),
     "demo": Command(".commands.demo", "a wall in MuJoCo beside rocking theory, with a table and a picture"),
     "examples": Command(".commands.examples", "list the examples, run one, or copy its script"),

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, get_args
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast, get_args
 
+from ..problem.damping.restitution import Restitution
 from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum, code_spectrum
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.bending import HorizontalBending, VerticalBending
@@ -96,6 +98,12 @@ class Mechanism:
             return None
         return limit_curve(self.problem.masonry, effects=self.problem.effects, **self.curve)
 
+    @property
+    def is_moved(self) -> bool:
+        """Whether there is a motion to run: records, another motion of the ground, or a release."""
+        is_run = not isinstance(self.problem, VerticalBending | HorizontalBending)
+        return is_run and (bool(self.shaking.records) or self.case.is_moved)
+
     def analyses(self) -> list[Analysis]:
         """One task for each record and polarity, for `campaign`, or one of the release where there are no records.
 
@@ -110,13 +118,20 @@ class Mechanism:
         shaken: list[Any] = [replace(case, motion=motion) for motion in shaking.motions] or [case]
         if not isinstance(self.problem, Checked):
             return [MasonryAnalysis(one, solver=shaking.solver, options=shaking.options) for one in shaken]
-        of = {"e": shaking.e} if shaking.solver == "analytical" else {"contacts": shaking.contacts}
+        wall = cast(Case, case)
+        e = shaking.e or Restitution.from_geometry(wall.wall, wall.stop_top)
+        of = {"e": e} if shaking.solver == "analytical" else {"contacts": shaking.contacts}
         return [Analysis(one, shaking.solver, options=shaking.options, **of) for one in shaken]
 
-    def dynamic(self, runs: Sequence[Response]) -> DynamicCheck:
-        """The check of its runs, see `dynamic_check`."""
+    def dynamic(self, runs: Sequence[Response] | Sequence[Analysis], store: Path | None = None) -> DynamicCheck:
+        """The check of its runs, see `dynamic_check`.
+
+        Args:
+            runs: responses, or of a wall the tasks of a campaign.
+            store: that of the campaign.
+        """
         options = dict(self.shaking.dynamic) | {name: one for name, one in self.options.items() if name == "code"}
-        return dynamic_check(runs, curve=self.limit_curve, **options)
+        return dynamic_check(runs, curve=self.limit_curve, store=store, **options)
 
 
 def case_of(problem: Any) -> Case | MasonryCase:

@@ -23,7 +23,8 @@ HEAD = """\
 Numbers are in SI units, or texts with a unit, such as "30 cm", "60 kN", "0.2 g" and "12 deg".
 A key after # may be left out, and has the value that is shown, if one is; take the # away to give
 it another one. None in a comment stands for a key that is left out.
-`mjrock check FILE` prints whether it holds."""
+    mjrock check FILE                    prints whether it holds
+    mjrock report FILE -o report.pdf     writes the report"""
 
 
 def seeds() -> dict[str, dict[str, Any]]:
@@ -90,10 +91,10 @@ class Writer:
         for name, key in keys.items():
             if not again and name not in value and "const" not in key and not self.holds_tables(key):
                 yield from explained(f"#{name} = {default_of(key)}".rstrip(), key)
-        others = of.get("additionalProperties")  # of a limit state, as the site; of a mechanism, its own
-        other = others if isinstance(others, Mapping) and "$ref" in others else of
         for name, one in below.items():
-            yield from self.below(keys.get(name, other), one, f"{path}.{toml_key(name)}".lstrip("."))
+            key = keys.get(name) or of.get("additionalProperties") or {}
+            is_alike = key.keys() <= {"type", "description"}  # of a limit state: what the site has too
+            yield from self.below(of if is_alike else key, one, f"{path}.{toml_key(name)}".lstrip("."))
         left = [name for name, key in keys.items() if name not in value and self.holds_tables(key)]
         if left and not again:
             where = f"[{path}]" if path else "this file"

@@ -6,10 +6,14 @@ import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..assessment.assessment import Assessment, assessment_of_text, decoded, from_toml
 from ..reporting.texts import Words
 from ..study.loading.code_check import MechanismCheck
+
+if TYPE_CHECKING:  # tasks bring MuJoCo, which a check does not need
+    from ..study.analysis import Analysis
 
 FILE_HELP = "the file; - is the standard input"
 INPUT = "-"
@@ -39,3 +43,15 @@ def opened(file: str, language: str | None = None) -> Assessment:
 def named_checks(checks: Mapping[str, MechanismCheck], words: Words) -> dict[str, MechanismCheck]:
     """Checks by the names of their mechanisms; one that has none is that of the wall or of the masonry."""
     return {name or words(f"kind_{'masonry' if one.moving else 'wall'}"): one for name, one in checks.items()}
+
+
+def tasks_of(assessment: Assessment) -> dict[str, list[Analysis]]:
+    """The runs of each mechanism that something moves, labelled with what does; those that nothing moves have none."""
+    moved = {name: one for name, one in assessment.mechanisms.items() if one.is_moved}
+    found = replace(assessment, mechanisms=moved).analyses()
+    return {name: [replace(one, labels={"motion": motion_of(one)}) for one in some] for name, some in found.items()}
+
+
+def motion_of(task: Analysis) -> str:
+    """What moves the wall or the masonry of a run."""
+    return "release" if task.case.motion is None else task.case.motion.name

@@ -9,6 +9,7 @@ import textwrap
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -210,11 +211,11 @@ def _in_style(text: str) -> str:
     return "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in short)
 
 
-def write_pdf(path: Path, text: str) -> None:
-    """Write a page as PDF.
+def pdf_writer() -> Any:
+    """WeasyPrint.
 
     Raises:
-        ImportError: if WeasyPrint, or a library that it needs, is missing.
+        ImportError: if it, or a library that it needs, is missing.
     """
     try:
         import weasyprint
@@ -223,6 +224,12 @@ def write_pdf(path: Path, text: str) -> None:
             f"{error}; WeasyPrint makes a PDF: pip install weasyprint. Or give a path that ends in .html, and print "
             "the page from a browser"
         ) from error
+    return weasyprint
+
+
+def write_pdf(path: Path, text: str) -> None:
+    """Write a page as PDF; ImportError as `pdf_writer`."""
+    weasyprint = pdf_writer()
     sheet = FORMULAE.replace("ROOT", base64.b64encode(ROOT.encode()).decode())
     with replacing(path) as partial:
         weasyprint.HTML(string=text).write_pdf(partial, stylesheets=[weasyprint.CSS(string=sheet)])

@@ -161,5 +161,32 @@ def test_a_check_needs_no_simulator(here):
     assert done.stdout.endswith("False\n"), done.stderr
 
 
+def test_a_report_is_written_beside_its_file_and_replaces_nothing_by_itself(here, capsys):
+    (here / "muro di cinta.toml").write_text(THICK)
+    assert printed(capsys, "report", "muro di cinta.toml", "-l", "it") == "written: muro di cinta.html\n"
+    page = here / "muro di cinta.html"
+    assert "VERIFICATO" in page.read_text(encoding="utf-8")
+    assert "muro di cinta.html: exists already" in refused(capsys, "report", "muro di cinta.toml")
+    assert "VERIFICATO" in page.read_text(encoding="utf-8")
+    printed(capsys, "report", "muro di cinta.toml", "--force")
+    assert "VERIFICATO" not in page.read_text(encoding="utf-8")
+    assert "does not end in .html or .pdf" in refused(capsys, "report", "muro di cinta.toml", "-o", "report.doc")
+
+
+def test_a_pdf_without_weasyprint_is_refused_with_the_remedy(here, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    (here / "wall.toml").write_text(THICK)
+    assert "pip install weasyprint" in refused(capsys, "report", "wall.toml", "-o", "wall.pdf")
+    assert [path.name for path in here.iterdir()] == ["wall.toml"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_every_template_has_a_report(name, here, capsys):
+    printed(capsys, "new", name, "-o", "wall.toml")
+    printed(capsys, "report", "wall.toml")
+    assert (here / "wall.html").stat().st_size > 5e4
+
+
 def test_the_schema_is_that_of_files(capsys):
     assert json.loads(printed(capsys, "schema")) == json.loads(json.dumps(mr.toml_schema()))

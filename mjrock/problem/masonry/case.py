@@ -330,6 +330,12 @@ class MasonryCase(Carrying):
         return np.where(self.guided, 0.0, velocity)
 
     @property
+    def is_moved(self) -> bool:
+        """Whether something moves the masonry beside its weight."""
+        driven = self.grounds or self.supports or self.actuators
+        return bool(driven) or self.tilt is not None or self.velocity is not None
+
+    @property
     def actuators(self) -> dict[str, Actuator]:
         """The actuators by name: `actuator_0` and so on."""
         return {f"{Actuator.label}_{i}": actuator for i, actuator in enumerate(self.each(Actuator))}

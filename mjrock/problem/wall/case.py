@@ -250,6 +250,11 @@ class Case(Carrying):
         """Whether nothing moves the wall."""
         return not (self.theta0 or self.omega0 or self.shaken)
 
+    @property
+    def is_moved(self) -> bool:
+        """Whether something moves the wall."""
+        return not self.is_still
+
     def require_dry(self, what: str) -> None:
         """Raise a ValueError where joints have a bond, which those of a wall have not."""
 
