@@ -513,7 +513,8 @@ def of_header(motion: GroundMotion, words: Words) -> list[Input]:
     if scaled := SCALED.fullmatch(motion.header.get("SCALED_TO", "")):
         said.append(_scaled(scaled, words))
     if modes := motion.header.get("FLOOR"):
-        said.append(words.marked(modes.replace("_", "")))
+        shorter = re.sub(r"\d+\.\d+", lambda found: words.number(float(found[0])), modes)
+        said.append(shorter.replace("_", ""))
     return [Input("origin", words("in_origin"), "; ".join(said))] if said else []
 
 

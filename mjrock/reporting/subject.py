@@ -224,8 +224,7 @@ class ReportedMasonry(Reported):
         """The blocks as the runs with the largest motion end."""
         worst = sorted(runs, key=lambda run: -run.largest)[:ENDS]
         ends = [words.quantity(float(run.response.t[-1]), "s", FOUND) for run in worst]
-        names = [f"{run.label} ({words('reversed')})" if run.turned else run.label for run in worst]
-        said = [words("at_time", run=name, t=t) for name, t in zip(names, ends, strict=True)]
+        said = [words("at_time", run=_polar(run, words), t=t) for run, t in zip(worst, ends, strict=True)]
         return self._drawn([(run.response, text) for run, text in zip(worst, said, strict=True)])
 
     def _drawn(self, pieces: Sequence[tuple[Masonry | Response, str]]) -> Figure:
@@ -304,8 +303,13 @@ def forces_kept(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
             forces, normal = run.response.forces, run.response.forces.normal.max(axis=0)
             joint = int(normal.argmax())
             said = [words.quantity(float(force), "N", FOUND) for force in (forces.largest_reaction, normal[joint])]
-            rows.append((run.label, *said, forces.joints[joint]))
+            rows.append((_polar(run, words), *said, forces.joints[joint]))
     return rows
+
+
+def _polar(run: Run, words: Words) -> str:
+    """The label of a run, and whether its record is reversed."""
+    return f"{run.label} ({words('reversed')})" if run.turned else run.label
 
 
 def reported(case: AnyCase) -> Reported:
