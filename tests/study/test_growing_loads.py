@@ -59,25 +59,25 @@ def test_in_space_a_thrust_acts_along_its_direction():
 
 def test_the_load_stays_level_at_its_point_as_the_wall_turns():
     """About the toe at a rotation theta the weight has t/2 cos - h/2 sin, and the wind 1.5 cos + t/2 sin."""
-    curve = mr.limit_curve(WALL, None, loads=WIND)
+    curve = mr.limit_curve(WALL, None, loads=WIND, poses=12)
     theta = curve.pose[:, 0, 2]
     weight = W * (T / 2 * np.cos(theta) - H / 2 * np.sin(theta))
     hand = weight / (2000 * (1.5 * np.cos(theta) + T / 2 * np.sin(theta)))
     np.testing.assert_allclose(curve.multiplier, hand, atol=1e-9)
-    assert theta[-1] == pytest.approx(math.atan(T / H), abs=0.01)
+    assert theta[-2] < math.atan(T / H) <= theta[-1]  # it goes on by itself from there
     assert mr.load_check(curve).capacity == pytest.approx(W * T / 2 / 3000)
 
 
 def test_a_limit_curve_of_weight_and_wind_goes_by_the_centroid():
     """W (t/2) = lambda (W h/2 + F z) at rest, and both have their levers at the end."""
-    curve = mr.limit_curve(WALL, 1, loads=[WIND])
+    curve = mr.limit_curve(WALL, 1, loads=[WIND], poses=12)
     assert curve.multiplier[0] == pytest.approx(W * T / 2 / (W * H / 2 + 3000), rel=1e-9)
     assert curve.d_0 == pytest.approx(T / 2, rel=1e-5)
 
 
 def test_a_check_by_a_code_takes_no_curve_with_loads():
     with pytest.raises(ValueError, match="has loads; the check is of a horizontal force: give them as effects"):
-        mr.mechanism_check(mr.limit_curve(WALL, 1, loads=WIND), lambda T, xi: 0.02)
+        mr.mechanism_check(mr.limit_curve(WALL, 1, loads=WIND, poses=4), lambda T, xi: 0.02)
 
 
 @pytest.mark.parametrize(
