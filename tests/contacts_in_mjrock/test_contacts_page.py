@@ -2,11 +2,12 @@
 
 import math
 import re
+import textwrap
 from pathlib import Path
 
 import mujoco
 import pytest
-from pairs import FLOOR, ON_A_PLANE, rebound, scene
+from pairs import BALL, FLOOR, ON_A_PLANE, rebound, scene
 
 import mjrock as mr
 from mjrock.contacts.rebound import falling_rebound, rebound_damping, rebound_restitution
@@ -28,6 +29,54 @@ def test_the_example_runs_and_does_what_it_says():
     assert max(speeds) / -min(speeds) == pytest.approx(0.5, rel=0.01)
     mujoco.mj_step(model, data, 15000)
     assert 0.1 - data.qpos[2] == pytest.approx(2 * 9.81 / 1e5, rel=1e-3)
+
+
+def indented(start):
+    """The lines of an indented block of the page, from the one that begins so."""
+    (block,) = re.findall(rf"^    {re.escape(start)}.*\n(?:    .*\n)*", PAGE, re.MULTILINE)
+    return textwrap.dedent(block)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_its_lines_for_gymnasium_make_contacts_of_the_feet():
+    """MuJoCo then has them in N/m, with the restitution, as the ant lies on its feet after 5 s."""
+    gymnasium = pytest.importorskip("gymnasium")
+    pytest.importorskip("imageio")
+    names = {"gymnasium": gymnasium, "contacts_for": mr.contacts_for}
+    exec(indented("model = gymnasium"), names)
+    model, ankles = names["model"], names["contacts"]
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 5000)
+    feet = [contact for contact in data.contact if "ankle" in model.geom(contact.geom[1]).name]
+    assert feet
+    for contact in feet:
+        assert contact.solref == pytest.approx(ankles.contacts[0].solref)
+    found = {each.geom2: each for each in mr.inspect_contacts(model) if "ankle" in each.geom2 and each.geom1 == "floor"}
+    assert [each.k for each in found.values()] == pytest.approx([5e3] * 4)
+    assert [each.restitution for each in found.values()] == pytest.approx([0.2] * 4, abs=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("engine", ["mujoco.mjx", "mujoco_warp"])
+def test_its_lines_for_mjx_and_warp_keep_the_restitution(engine):
+    """On a processor, of a ball that comes with 1 m/s from 1 mm: as MuJoCo rebounds, to single precision."""
+    mjx = pytest.importorskip(engine)
+    text = scene(FLOOR, BALL.replace("0 0 .1", "0 0 .101"), timestep=2e-4, gravity=9.81, options='iterations="3"')
+    names = {"mjx": mjx, "contact_for": mr.contact_for, "spec": mujoco.MjSpec.from_string(text)}
+    exec(indented("contact_for(spec"), names)
+    model, batch = names["spec"].compile(), names["batch"]
+    data = mujoco.MjData(model)
+    data.qvel[2] = -1.0
+    made, speeds = mjx.put_data(model, data), []
+    step = pytest.importorskip("jax").jit(mjx.step) if engine == "mujoco.mjx" else mjx.step
+    for _ in range(150):
+        made = step(batch, made) or made
+        mujoco.mj_step(model, data)
+        speeds.append((float(made.qvel[2] if engine == "mujoco.mjx" else made.qvel.numpy()[0, 2]), data.qvel[2]))
+    found, right = (max(each) for each in zip(*speeds, strict=True))
+    assert found == pytest.approx(right, rel=1e-4)
+    assert right == pytest.approx(0.489, abs=1e-3)
 
 
 def test_its_figures():
