@@ -37,6 +37,7 @@ COMMANDS = {
     "schema": Command(".commands.schema", "what a file may have, as JSON schema for editors"),
     "demo": Command(".commands.demo", "a wall in MuJoCo beside rocking theory, with a table and a picture"),
     "examples": Command(".commands.examples", "list the examples, run one, or copy its script"),
+    "app": Command(".app.command", "a form in the browser: checks, runs and reports, on this machine alone"),
     "compile": Command(".study.compilation", "compile the loops of all solvers and store them, once"),
     "status": Command(".study.campaign.progress", "how far a campaign is, from its store"),
     "inspect": Command(".commands.inspect_contacts", "contacts of a MuJoCo model in physical units"),

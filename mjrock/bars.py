@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, wait
-from contextvars import copy_context
-from typing import TypeVar
+from contextvars import ContextVar, copy_context
+from typing import NamedTuple, TypeVar
 
 from tqdm import tqdm
 
@@ -20,6 +21,34 @@ LOOK = 0.1
 """Time between two looks at whether something is done [s]."""
 PLAIN = "{desc}: {n:.0f} {unit} [{elapsed}{postfix}]"
 OF_ALL = "{desc}: {percentage:3.0f}%|{bar}| {n:.0f} of {total:g} {unit} [{elapsed}<{remaining}{postfix}]"
+
+
+class Progress(NamedTuple):
+    """How far something is.
+
+    Args:
+        what: is in progress.
+        done: how much of it is done.
+        total: how much there is of it; None if that is unknown.
+    """
+
+    what: str
+    done: float
+    total: float | None
+
+
+Listener = Callable[[Progress], None]
+_listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
+
+
+@contextlib.contextmanager
+def progress_given_to(listener: Listener) -> Iterator[None]:
+    """Give the progress of every bar in this block to a function too, which may raise an error to end the work."""
+    token = _listener.set(listener)
+    try:
+        yield
+    finally:
+        _listener.reset(token)
 
 
 def shown_bar(what: str, unit: str, total: float | None, **options: object) -> tqdm:
@@ -71,6 +100,8 @@ class Bar:
     def to(self, n: float) -> None:
         """Say how much there is."""
         self.n = n if self.total is None else min(n, self.total)
+        if (listener := _listener.get()) is not None:
+            listener(Progress(self.what, self.n, self.total))
         if self.bar is None and time.time() - self.begun >= DELAY:
             self.bar = shown_bar(self.what, self.unit, self.total, leave=None)
             self.bar.start_t = self.bar.last_print_t = self.begun  # the rate is that since then

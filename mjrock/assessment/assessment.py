@@ -261,6 +261,8 @@ def assessment_of(
     name: str = "",
     folder: Path | None = None,
     lines: Mapping[Place, int] | None = None,
+    *,
+    confined: bool = False,
 ) -> Assessment:
     """The assessment of plain tables, as `tomllib` and a form make them.
 
@@ -269,11 +271,12 @@ def assessment_of(
         name: of their file, for messages.
         folder: what paths in them are relative to; None reads no path.
         lines: the line of each key.
+        confined: whether a path that leads out of that folder is refused.
 
     Raises:
         AssessmentError: with all that is wrong.
     """
-    reader = Reader(folder, lines or {}, name)
+    reader = Reader(folder, lines or {}, name, confined=confined)
     top: Table = located(document)
     whole: dict[str, Any] = {}
     for name_of in OF_ALL.keys() & top.values.keys():

@@ -47,6 +47,7 @@ class Reader:
 
     Args:
         folder: what paths of other files are relative to; None where there is no file, and no path is read.
+        confined: whether a path that leads out of that folder is refused.
         lines: the line of each key.
         name: of the file, for messages.
 
@@ -54,8 +55,8 @@ class Reader:
         faults: what is wrong.
     """
 
-    def __init__(self, folder: Path | None, lines: Mapping[Place, int], name: str) -> None:
-        self.folder, self.lines, self.name = folder, lines, name
+    def __init__(self, folder: Path | None, lines: Mapping[Place, int], name: str, *, confined: bool = False) -> None:
+        self.folder, self.lines, self.name, self.confined = folder, lines, name, confined
         self.faults: list[Fault] = []
 
     def refuse(self, place: Place, message: str) -> None:
@@ -194,7 +195,11 @@ class Reader:
         if self.folder is None:
             self.refuse(place, f"{spelt_place(place)} = {value!r} is the path of a file, and these tables are in none")
             raise RefusedError
-        return self.folder / value
+        path = self.folder / value
+        if self.confined and not path.resolve().is_relative_to(self.folder.resolve()):
+            self.refuse(place, f"{spelt_place(place)} = {value!r} leads out of the folder of the files")
+            raise RefusedError
+        return path
 
     def _number(self, kinds: tuple[Any, ...], within: Within | None, value: str | float, place: Place) -> Any:
         """A number, or a text with a unit."""

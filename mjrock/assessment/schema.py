@@ -13,7 +13,18 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..quantities import Within
 from .assessment import DESIGN, OF_ALL, report_maker
-from .declarations import USUAL_MAKE, Key, Maker, Makers, choices_of, classes_of, items_of, key_named, makers_of
+from .declarations import (
+    USUAL_MAKE,
+    Key,
+    Maker,
+    Makers,
+    choices_of,
+    classes_of,
+    is_path,
+    items_of,
+    key_named,
+    makers_of,
+)
 from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, SECTIONS, SITES
 from .reading import NUMERIC, is_mapping, parted
 from .running import DYNAMIC, RECORDS, SCALED, SOLVERS, run_maker
@@ -184,7 +195,7 @@ class SchemaWriter:
         if texts:
             found.append({"type": "string", "enum": texts})
         elif str in kinds:
-            found.append({"type": "string"})
+            found.append({"type": "string"} | ({"x-path": True} if is_path(kinds) else {}))
         for kind in kinds:
             if (items := items_of(kind)) is not None:
                 found.append(self._list(items, within))

@@ -27,6 +27,7 @@ from ..study.loading.code_check import signals_of
 from ..study.loading.design import Design
 from ..study.loading.load_check import Borne
 from . import inputs, subject, verdicts
+from .drawings import OTHERS, drawn
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strip
 from .subject import Reported, reported
@@ -241,9 +242,13 @@ def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanis
     methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
     methods += [words("borne")] * borne
     said = [*methods, *([outcomes(runs, words)] if runs else [])]
-    figure, caption = whole.at_rest(words, [one.result for each in verdicts.ranked(mechanisms) for one in each.loads])
-    drawn = picture(figure, caption, words)
-    return [element("h2", words("answer")), *found[:-1], drawn, *found[-1:], *(element("p", one) for one in said)]
+    ranked = verdicts.ranked(mechanisms)
+    other = next((one for mechanism in ranked for one in mechanism.subjects if isinstance(one, OTHERS)), None)
+    figure, caption = whole.at_rest(words, [one.result for each in ranked for one in each.loads])
+    if other is not None:
+        figure, caption = drawn(other, words)
+    drawing = picture(figure, caption, words)
+    return [element("h2", words("answer")), *found[:-1], drawing, *found[-1:], *(element("p", one) for one in said)]
 
 
 def outcomes(runs: Sequence[Run], words: Words) -> str:
@@ -287,11 +292,11 @@ def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism]
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     solved = subject.solved_with([run.response for run in runs], words)
     parts = [element("h2", words("runs")), *[element("p", said) for said in solved]]
-    drawn = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
-    parts.append(picture(drawn, words(f"strip_{whole.KIND}"), words))
-    drawn = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
+    drawing = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
+    parts.append(picture(drawing, words(f"strip_{whole.KIND}"), words))
+    drawing = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
     count = len({run.record for run in runs})
-    parts.append(picture(drawn, words("histories_said", count=min(count, PANELS), of=count), words))
+    parts.append(picture(drawing, words("histories_said", count=min(count, PANELS), of=count), words))
     end = whole.at_end(runs, words)
     return parts if end is None else [*parts, picture(end, words("ends_said"), words)]
 

@@ -44,9 +44,12 @@ SHARED = 4
 
 
 @cache
-def texts() -> dict[str, dict[str, str]]:
-    """Every text by its key and its language."""
-    return tomllib.loads(FILE.read_text(encoding="utf-8"))
+def texts(*more: Path) -> dict[str, dict[str, str]]:
+    """Every text by its key and its language: those of the report, and those of further files."""
+    found: dict[str, dict[str, str]] = {}
+    for file in (FILE, *more):
+        found |= tomllib.loads(file.read_text(encoding="utf-8"))
+    return found
 
 
 @cache
@@ -71,23 +74,25 @@ class Words:
 
     Args:
         language: one of `languages()`.
+        more: files of further texts, such as those of the form.
 
     Raises:
         TypeError, ValueError: for any other, with those that there are.
     """
 
-    def __init__(self, language: str) -> None:
+    def __init__(self, language: str, *more: Path) -> None:
         require_kind("language", language, str)
         self.language = require_one_of("language", language, languages())
-        self.mark = texts()["decimal_mark"][language]
+        self.texts = texts(*more)
+        self.mark = self.texts["decimal_mark"][language]
 
     def __call__(self, key: str, /, **values: object) -> str:
         """The text of a key, with values in their places."""
-        return texts()[key][self.language].format(**values)
+        return self.texts[key][self.language].format(**values)
 
     def or_else(self, key: str, other: str) -> str:
         """The text of a key, or another one where there is none."""
-        return self(key) if key in texts() else other
+        return self(key) if key in self.texts else other
 
     def drawn(self, text: str) -> str:
         """The text of a picture in this language, line by line where a plot function has printed it; else as it is."""

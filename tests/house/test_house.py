@@ -31,6 +31,7 @@ FLOORS = (
     ("reporting",),
     ("assessment",),
     ("commands",),
+    ("app",),
     ("__main__",),
 )
 """From the ground up. Rooms of one floor do not import each other."""

@@ -95,6 +95,7 @@ WRITES = {
     "your_geometry": {"your_geometry.png", "your_geometry.txt"},
     "throughput": {"throughput.txt"},
     "first_minute": {"first_minute.csv", "first_minute.txt"},
+    "form_times": {"form_times.csv", "form_times.txt"},
     "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "four_masses": {f"four_masses.{ending}" for ending in ("png", "csv", "txt")},

@@ -1,0 +1,385 @@
+"""The plan of the form, made from the schema of the file alone, and the input of the form as tables of the file.
+
+The input is what a person has typed: nested dictionaries and lists of the shape of the file, whose values are texts. A
+text becomes a number, a truth or a list where its field takes one; any other stays, for the reader of the file to
+refuse it or to take it as a number with a unit.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..assessment.tables import Place
+from ..reporting.texts import Words, languages
+
+TEXTS = Path(__file__).with_name("texts.toml")
+"""The texts of the form, beside those of the report."""
+Schema = Mapping[str, Any]
+Tables = dict[str, Any]
+"""Tables of a file, or the input of the form."""
+NAMES = "kind", "make", "solver"
+"""Keys that name the class, its constructor or the solver that a table stands for."""
+FILES = "file", "folder"
+"""Controls whose values are names of files that are uploaded, or their folder."""
+HERE = "."
+"""The folder of all files that are uploaded."""
+ANY = frozenset({"number", "boolean", "array"})
+"""Types of a value whose key is not known."""
+COMMA = re.compile(r"^([+-]?(?:0+|\d+(?=,(?!\d{3}(?!\d)))|\d{4,})),(\d+)(?=[^\d.,]|$)")
+"""A number with a comma as its decimal mark, and what follows. One such as 1,000 may be a thousand and is left out."""
+TRUTHS = {"true": True, "false": False}
+
+
+class Variant(NamedTuple):
+    """What a table may stand for.
+
+    Args:
+        id: of its fields in the plan.
+        label: what a person reads.
+        names: the values of `kind` and `make` that name it.
+        usual: whether it is so where these are left out.
+    """
+
+    id: str
+    label: str
+    names: dict[str, str]
+    usual: bool
+
+
+class Field(NamedTuple):
+    """One field of the form.
+
+    Args:
+        key: its name in the file.
+        label, help: what a person reads beside it and below it.
+        control: "number", "text", "choice", "truth", "file", "folder" of files, "row" of values in brackets, "table",
+            "list" of tables, "named" tables, or "pairs" of names and texts.
+        unit: in SI.
+        range: of a number, in words.
+        default: as a text; empty where there is none.
+        needed: whether the file has to have it.
+        choices: values and their labels.
+        variants: what its tables may be.
+        several: whether it takes several files.
+        types: of the values that it takes, as the schema names them.
+    """
+
+    key: str
+    label: str
+    help: str
+    control: str
+    unit: str = ""
+    range: str = ""
+    default: str = ""
+    needed: bool = False
+    choices: tuple[tuple[str, str], ...] = ()
+    variants: tuple[Variant, ...] = ()
+    several: bool = False
+    types: frozenset[str] = frozenset()
+
+
+class Plan:
+    """The plan of the form in a language.
+
+    Args:
+        schema: of the file, see `mjrock.toml_schema`.
+        words: of the language, with the texts of the form.
+
+    Attributes:
+        tables: the fields of each table by its id.
+        root: the field of the whole file.
+    """
+
+    def __init__(self, schema: Schema, words: Words) -> None:
+        self.schema, self.words = schema, words
+        self.tables: dict[str, list[Field]] = {}
+        self._tables_of: dict[str, Schema] = {}
+        parts = schema["$defs"]
+        several = self._field("mechanisms", {"anyOf": [_mechanisms_of(parts["several"])]}, False)
+        self.root = self._field("", parts["one"], True)
+        for variant in self.root.variants:
+            fields = [one for one in self.tables[variant.id] if one.key != "language"]
+            self.tables[variant.id] = [*fields, several]
+
+    def _field(self, key: str, node: Schema, needed: bool, place: str = "") -> Field:
+        """The field of a key; `place` is the id of the table that it is in."""
+        kinds = list(self._kinds(node))
+        plain = [one for _, one in kinds if not _is_table(one)]
+        types = frozenset(name for one in plain for name in _types(one))
+        control, variants = self._nested(kinds, f"{place}.{key}")
+        choices = self._choices(plain, types)
+        if not control or (control == "table" and types - {"boolean"}):
+            control = self._control(key, plain, types, bool(choices))
+        number = next((one for one in plain if "unit" in one or "minimum" in one), {})
+        help = str(node.get("description", ""))
+        return Field(
+            key,
+            self._label(key, place),
+            help,
+            control,
+            unit=_unit(number),
+            range=self._range(number, help),
+            default=self._default(node),
+            needed=needed,
+            choices=choices,
+            variants=variants,
+            several="array" in types,
+            types=types,
+        )
+
+    def _nested(self, kinds: list[tuple[str, Schema]], here: str) -> tuple[str, tuple[Variant, ...]]:
+        """The control of a field with tables, and what these may be; an empty one of a field without any."""
+        for key, control in (("items", "list"), ("", "table"), ("additionalProperties", "named")):
+            for name, one in kinds:
+                of = one.get(key) if key else one
+                found = [*self._kinds(of, "" if key else name)] if isinstance(of, Mapping) else []
+                if any("properties" in each for _, each in found):
+                    every = found if key else kinds
+                    return control, self._variants([pair for pair in every if "properties" in pair[1]], here)
+        return ("pairs", ()) if any(_is_table(one) for _, one in kinds) else ("", ())
+
+    def _kinds(self, node: Schema, name: str = "") -> Iterator[tuple[str, Schema]]:
+        """The alternatives of a part of the schema, with the names of those that are definitions."""
+        if "$ref" in node:
+            name = str(node["$ref"]).rpartition("/")[2]
+            yield from self._kinds(self.schema["$defs"][name], name)
+        elif found := node.get("anyOf", node.get("oneOf")):
+            for one in found:
+                yield from self._kinds(one)
+        elif node:
+            yield name, node
+
+    def _variants(self, tables: list[tuple[str, Schema]], here: str) -> tuple[Variant, ...]:
+        """What a table may be."""
+        found = []
+        for i, (name, one) in enumerate(tables):
+            properties = one["properties"]
+            consts = {key: properties[key] for key in NAMES if "const" in properties.get(key, {})}
+            names = {key: str(given["const"]) for key, given in consts.items()}
+            usual = all("default" in given for given in consts.values())
+            id = name if name and one is self.schema["$defs"].get(name) else f"{here}/{i}"
+            self._register(id, one)
+            found.append(Variant(id, self._variant_label(str(one.get("title", "")), names), names, usual))
+        return tuple(found)
+
+    def _register(self, id: str, table: Schema) -> None:
+        """Plan the fields of a table, once."""
+        if id in self.tables:
+            return
+        self.tables[id] = []
+        needed = table.get("required", ())
+        for key, node in table["properties"].items():
+            if key not in NAMES or "const" not in node:
+                self.tables[id].append(self._field(key, node, key in needed, id))
+
+    def _control(self, key: str, plain: list[Schema], types: frozenset[str], chosen: bool) -> str:
+        """How a value without tables is typed."""
+        if any(one.get("x-path") or one.get("items", {}).get("x-path") for one in plain):
+            return "folder" if key == "folder" else "file"
+        if chosen:
+            return "truth" if types == {"boolean"} else "choice"
+        if types & {"number", "integer"}:
+            return "number"
+        return "row" if types == {"array"} else "text"
+
+    def _choices(self, plain: list[Schema], types: frozenset[str]) -> tuple[tuple[str, str], ...]:
+        """The values that can be chosen, with their labels; none where others can be typed."""
+        texts = [str(value) for one in plain for value in one.get("enum", ())]
+        only = [one["const"] for one in plain if "const" in one]
+        known = [text for text, value in TRUTHS.items() if value in only or not only] if "boolean" in types else []
+        truths = [(text, self.words(f"form_{text}")) for text in known]
+        if not texts and types - {"boolean"}:
+            return ()
+        return (*truths, *((value, self.words.or_else(f"value_{value}", value)) for value in texts))
+
+    def _range(self, node: Schema, help: str) -> str:
+        """The range of a number in words, unless its help has it in the same words."""
+        low, high = node.get("minimum", -math.inf), node.get("maximum", math.inf)
+        ends = {"low": self.words.marked(f"{low:g}"), "high": self.words.marked(f"{high:g}")}
+        said = self.words("form_range" if math.isfinite(high) else "form_from", **ends) if math.isfinite(low) else ""
+        return "" if said in help else said
+
+    def _default(self, node: Schema) -> str:
+        default = node.get("default")
+        if isinstance(default, bool):
+            return self.words(f"form_{str(default).lower()}")
+        return "" if default is None else self.words.marked(text_of(default)) if _is_number(default) else str(default)
+
+    def _label(self, key: str, place: str) -> str:
+        """What an argument is called: of its class, by the form, by the report, or as it is."""
+        own = f"arg_{place.partition('.')[0].rstrip('!?*')}_{key}"
+        known = (own, f"arg_{key}", f"in_{key}")
+        return next((self.words(name) for name in known if name in self.words.texts), key.replace("_", " "))
+
+    def _variant_label(self, title: str, names: Mapping[str, str]) -> str:
+        kind, make = names.get("solver") or names.get("kind", title.partition(".")[0]), names.get("make", "")
+        said = self.words.or_else(f"table_{kind}", kind)
+        return f"{said}: {self.words.or_else(f'make_{make}', make.replace('_', ' '))}" if make else said
+
+    def field(self, fields: list[Field], key: str) -> Field | None:
+        """The field of a key; None where there is none."""
+        return next((one for one in fields if one.key == key), None)
+
+    def variant(self, field: Field, values: Mapping[str, object]) -> Variant:
+        """The variant of a table that its `kind` and `make` name; the nearest where none fits."""
+
+        def fits(one: Variant, key: str) -> bool:
+            own = one.names.get(key)
+            return values[key] == own if key in values else own is None or one.usual
+
+        used = {key for one in field.variants for key in one.names}
+        fitting = [one for one in field.variants if all(fits(one, key) for key in used)]
+        return [*fitting, *(one for one in field.variants if fits(one, NAMES[0])), *field.variants][0]
+
+    def tables_of(self, state: Mapping[str, Any]) -> Tables:
+        """The tables of the file that the input of the form stands for."""
+        return self._read(self.root, state)
+
+    def _read(self, field: Field, state: Mapping[str, Any]) -> Tables:
+        fields = self.tables[self.variant(field, state).id]
+        found = {key: self.field(fields, key) for key, one in state.items() if one != ""}
+        return {key: self._value(field, state[key]) for key, field in found.items()}
+
+    def _value(self, field: Field | None, value: Any) -> Any:
+        if isinstance(value, Mapping):
+            if field is None or field.control in ("named", "pairs"):
+                return {name: self._item(field, one) for name, one in value.items()}
+            return self._item(field, value)
+        if isinstance(value, list):
+            return [self._item(field, one) for one in value]
+        return typed(value, ANY if field is None else field.types) if isinstance(value, str) else value
+
+    def _item(self, field: Field | None, value: Any) -> Any:
+        """A table of a field, or an item of a list, whose texts stay as they are."""
+        if field is None:
+            return self._value(None, value)
+        return self._read(field, value) if isinstance(value, Mapping) and field.variants else value
+
+    def files_in(self, tables: Mapping[str, Any], field: Field | None = None) -> Iterator[tuple[Place, object]]:
+        """The places of all files that tables of the file name, and what they name."""
+        field = field or self.root
+        fields = self.tables[self.variant(field, tables).id]
+        for key, value in tables.items():
+            own = self.field(fields, key)
+            for at, one in _each(value, (key,)):
+                if own is not None and own.control in FILES and not isinstance(one, Mapping):
+                    yield at, one
+                elif own is not None and own.variants and isinstance(one, Mapping):
+                    yield from ((at + place, name) for place, name in self._files_of(own, one))
+
+    def _files_of(self, field: Field, table: Mapping[str, Any]) -> Iterator[tuple[Place, object]]:
+        """The same of a table, or of tables by name."""
+        if field.control != "named":
+            yield from self.files_in(table, field)
+            return
+        for name, one in table.items():
+            if isinstance(one, Mapping):
+                yield from (((name, *place), path) for place, path in self.files_in(one, field))
+
+    @property
+    def as_json(self) -> dict[str, Any]:
+        """The plan as the page takes it."""
+
+        def plain(field: Field) -> dict[str, Any]:
+            own = field._asdict() | {"variants": [one._asdict() for one in field.variants]}
+            return {key: one for key, one in own.items() if key != "types" and one not in ("", (), [], False)}
+
+        tables = {id: [plain(field) for field in fields] for id, fields in self.tables.items()}
+        return {"tables": tables, "root": plain(self.root)}
+
+
+def _mechanisms_of(several: Schema) -> Schema:
+    """The table of mechanisms by name, from that of a file with several."""
+    parts = several.get("anyOf") or several["oneOf"]
+    found: Schema = parts[0]["properties"]["mechanisms"]
+    return found
+
+
+def _each(value: Any, place: Place) -> list[tuple[Place, Any]]:
+    """A value with its place, or each item of a list with its own."""
+    return [((*place, i), one) for i, one in enumerate(value)] if isinstance(value, list) else [(place, value)]
+
+
+def _is_table(node: Schema) -> bool:
+    return node.get("type") == "object" or "properties" in node
+
+
+def _types(node: Schema) -> list[str]:
+    if isinstance(node.get("const"), bool):
+        return ["boolean"]
+    given = node.get("type", "string" if "enum" in node else [])
+    return [given] if isinstance(given, str) else list(given)
+
+
+def _unit(node: Schema) -> str:
+    """The unit of a number as it is printed."""
+    unit = str(node.get("unit", ""))
+    return unit.replace("m3", "m\u00b3").replace("m2", "m\u00b2").replace("s2", "s\u00b2").replace(" ", "\u00b7")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def typed(text: str, types: frozenset[str]) -> Any:
+    """The value that a text stands for in a field that takes some types; the text itself where it fits none.
+
+    A number may have a comma as its decimal mark, unless it may be that of thousands, as in 1,000.
+    """
+    text = text.strip()
+    if types & {"number", "integer"}:
+        text = COMMA.sub(r"\1.\2", text)
+        for kind in (int, float):
+            try:
+                return kind(text)
+            except ValueError:
+                continue
+    if "boolean" in types and text in TRUTHS:
+        return TRUTHS[text]
+    if "array" in types and text.startswith("["):
+        try:
+            return tomllib.loads(f"value = {text}")["value"]
+        except (tomllib.TOMLDecodeError, RecursionError):
+            return text
+    return text
+
+
+def text_of(value: Any) -> str:
+    """A value of a file as a person would type it, with all its digits."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    if isinstance(value, list):
+        return f"[{', '.join(json.dumps(one) if isinstance(one, str) else text_of(one) for one in value)}]"
+    return str(value)
+
+
+def state_of(tables: Mapping[str, Any]) -> Tables:
+    """The input of the form that stands for tables of a file: its values as texts."""
+
+    def one(value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return state_of(value)
+        if isinstance(value, list) and value and all(isinstance(each, Mapping) for each in value):
+            return [state_of(each) for each in value]
+        return text_of(value)
+
+    return {key: one(value) for key, value in tables.items()}
+
+
+def texts_of(words: Words) -> dict[str, str]:
+    """The texts that the page needs, by their names in its script."""
+    own = {key: text[words.language] for key, text in words.texts.items() if key.startswith("form_")}
+    return {key.removeprefix("form_"): text for key, text in own.items()}
+
+
+def languages_named(words: Words) -> list[tuple[str, str]]:
+    """The languages of the form, and what each is called."""
+    return [(name, words(f"language_{name}")) for name in languages()]

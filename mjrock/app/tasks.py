@@ -1,0 +1,337 @@
+"""What the form asks for: its plan, the verdict on its input, runs, and reports. Each answers in parts.
+
+A request brings the whole input and the files that go with it. Nothing else is read, and nothing is written but in a
+folder that goes with the request.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import math
+import pickle
+import time
+import tomllib
+import warnings
+from collections.abc import Mapping, Sequence
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from ..assessment.assessment import Assessment, assessment_of
+from ..assessment.schema import toml_schema
+from ..assessment.tables import AssessmentError, Fault, spelt_place
+from ..assessment.templates import seeds
+from ..assessment.writing import toml_text
+from ..bars import Progress, progress_given_to
+from ..plotting.browser import view
+from ..quantities import require_kind, shown
+from ..reporting.drawings import drawn
+from ..reporting.markup import Markup, element
+from ..reporting.page import Asked, every_run, outcomes, required_runs
+from ..reporting.subject import reported
+from ..reporting.texts import FOUND, Words, languages
+from ..reporting.verdicts import Mechanism, answers, kinematic_steps, ranked, required_checks
+from ..result.response import Response
+from .form import HERE, TEXTS, Plan, languages_named, state_of, texts_of
+from .worker import Item, Send, Task
+
+MOST_FILES, LONGEST_NAME = 50, 200
+"""Most files of a request, and most characters of the name of one."""
+
+OFTEN = 0.15
+"""Time between two messages on how far a run is [s]."""
+TYPES = {".pdf": "application/pdf", ".html": "text/html", ".csv": "text/csv"}
+"""Types of the files of a report."""
+
+
+def words_of(language: object) -> Words:
+    """The words of a language; English where it is none."""
+    return Words(language if isinstance(language, str) and language in languages() else "en", TEXTS)
+
+
+@cache
+def plan_of(language: str) -> Plan:
+    """The plan of the form in a language."""
+    return Plan(toml_schema(), words_of(language))
+
+
+def form(request: Mapping[str, Any], send: Send) -> None:
+    """The plan of the form in a language, with its texts and templates."""
+    words = words_of(request.get("language"))
+    states = {name: state_of(template) for name, template in templates_of().items()}
+    own = {
+        "language": words.language,
+        "languages": languages_named(words),
+        "texts": texts_of(words),
+        "templates": [(name, words.or_else(f"template_{name}", name)) for name in states],
+        "states": states,
+    }
+    send(plan_of(words.language).as_json | own)
+
+
+def templates_of() -> dict[str, dict[str, Any]]:
+    """The tables of each template by its name."""
+    return {name: {key: one for key, one in own.items() if key != "title"} for name, own in seeds().items()}
+
+
+def open_file(request: Mapping[str, Any], send: Send) -> None:
+    """The input of the form that stands for the text of a file, and what is wrong with that."""
+    text = request.get("text")
+    try:
+        require_kind("text", text, str)
+        assert isinstance(text, str)
+        state = state_of(tomllib.loads(text))
+    except (TypeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        send({"faults": [{"place": [], "message": str(error)}]})
+        return
+    send({"state": state})
+
+
+def save(request: Mapping[str, Any], send: Send) -> None:
+    """The input as the text of a file, as it is, also where something is wrong with it."""
+    try:
+        send({"name": "mjrock.toml", "text": toml_text(tables_in(request))})
+    except (TypeError, ValueError) as error:
+        send({"faults": [{"place": [], "message": str(error)}]})
+
+
+def check(request: Mapping[str, Any], send: Send) -> None:
+    """The verdict clause by clause, the steps, and the sketch; or what is wrong, with the place of each fault."""
+    words = words_in(request)
+    with Folder(request) as folder, warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            assessment = folder.assessment()
+        except AssessmentError as error:
+            send({"faults": faults_of(error)})
+            return
+        try:
+            checks = {name or kind_named(one.problem, words): one for name, one in assessment.mechanisms.items()}
+            mechanisms = required_checks(dict(zip(checks, assessment.check().values(), strict=True)), "")
+            send(verdict(mechanisms, [str(one.message) for one in caught], words))
+        except AssessmentError as error:
+            send({"faults": faults_of(error)})
+        send(sketch(assessment, words))
+
+
+def verdict(mechanisms: Sequence[Mechanism], notes: Sequence[str], words: Words) -> Item:
+    """What holds clause by clause, what is doubtful, and the steps."""
+    said = [element("p", note, kind="note") for note in dict.fromkeys(notes)]
+    return {
+        "verdict": "".join([*answers(mechanisms, [], words), *said]),
+        "ratio": in_short(mechanisms, words),
+        "steps": element("h2", words("checks")) + "".join(kinematic_steps(mechanisms, words)),
+    }
+
+
+def kind_named(problem: object, words: Words) -> str:
+    """What a mechanism without a name is called."""
+    return words(f"table_{type(problem).__name__}")
+
+
+def in_short(mechanisms: Sequence[Mechanism], words: Words) -> str:
+    """Whether it holds, and the least ratio, in a line."""
+    least = ranked(mechanisms)[0].least
+    return f"{words('holds' if least.holds else 'fails')} {words.ratio(least.ratio)}"
+
+
+def sketch(assessment: Assessment, words: Words) -> Item:
+    """The drawing of the first mechanism."""
+    figure, caption = drawn(next(iter(assessment.mechanisms.values())).problem, words)
+    return {"sketch": svg_of(figure), "alt": caption}
+
+
+def svg_of(figure: Figure) -> str:
+    """A figure as the address of an image, with its words as text."""
+    file = BytesIO()
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "mjrock"}):
+        figure.savefig(file, format="svg", metadata={"Date": None})
+    return f"data:image/svg+xml;base64,{base64.b64encode(file.getvalue()).decode()}"
+
+
+class Sender:
+    """Sends how far a run is, not too often.
+
+    Args:
+        send: to the page.
+        words: of the page.
+        count: of runs.
+    """
+
+    def __init__(self, send: Send, words: Words, count: int) -> None:
+        self.send, self.words, self.count = send, words, count
+        self.before, self.last = 0, -math.inf
+
+    def __call__(self, progress: Progress) -> None:
+        """Take how far the current run is."""
+        now = time.monotonic()
+        if now - self.last < OFTEN:
+            return
+        self.last = now
+        part = progress.done / progress.total if progress.total else 0.0
+        run = self.words("form_run_of", number=self.before + 1, count=self.count)
+        said = f"{run}: {self.words.number(progress.done, FOUND)} / {self.words.number(progress.total or 0.0, FOUND)} s"
+        self.send({"share": (self.before + part) / self.count, "what": said if progress.total else run})
+
+
+def run(request: Mapping[str, Any], send: Send) -> None:
+    """The runs of the input, how far they are, what comes of them, and the film of the one that goes farthest."""
+    words = words_in(request)
+    with Folder(request) as folder, warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            assessment = folder.assessment()
+            analyses = assessment.analyses()
+            sender = Sender(send, words, sum(map(len, analyses.values())))
+            responses: dict[str, list[Response]] = {}
+            for name, several in analyses.items():
+                for one in several:
+                    with progress_given_to(sender):
+                        responses.setdefault(name, []).append(one.solve())
+                    sender.before += 1
+        except AssessmentError as error:
+            send({"faults": faults_of(error)})
+            return
+        notes = [element("p", str(one.message), kind="note") for one in caught]
+        found = dynamic(assessment, responses, words)
+        found += [part for name, several in responses.items() for part in of_runs(name, several, words)]
+        send({"answers": "".join([*found, *dict.fromkeys(notes)])})
+        page = view(farthest([one for several in responses.values() for one in several]), folder.path / "film.html")
+        send({"keep": {"film": page.read_bytes(), "responses": pickle.dumps(responses)}})
+
+
+def dynamic(assessment: Assessment, responses: Mapping[str, Sequence[Response]], words: Words) -> list[Markup]:
+    """What holds by the runs under records; nothing of a release, and without a site."""
+    try:
+        checks = assessment.dynamic_check(responses)
+    except AssessmentError:
+        return []
+    named = {name or kind_named(assessment.mechanisms[name].problem, words): one for name, one in checks.items()}
+    return answers(required_checks(named, ""), [], words)
+
+
+def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Markup]:
+    """How many of the runs of a mechanism overturn, and a table of them."""
+    whole = reported(responses[0].case)
+    runs = required_runs(Asked(responses[0].case, responses, None, False), whole, words)
+    heading = [element("h3", name)] if name else []
+    return [*heading, element("p", outcomes(runs, words)), *every_run(whole, runs, words)]
+
+
+def farthest(responses: Sequence[Response]) -> Response:
+    """The response with the largest displacement."""
+    return max(responses, key=lambda one: reported(one.case).largest(one))
+
+
+def report(request: Mapping[str, Any], send: Send) -> None:
+    """The report in a language, with the runs that are kept: a PDF, or a page of HTML where WeasyPrint is missing."""
+    words = words_of(request.get("language"))
+    kept = request.get("responses")
+    with Folder(request) as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            assessment = folder.assessment()
+            runs = None if kept is None else pickle.loads(kept)
+            written, note = folder.path / "written", ""
+            written.mkdir()
+            try:
+                assessment.report(written / "mjrock.pdf", runs, language=words.language)
+            except ImportError:
+                note = words("form_no_pdf")
+                assessment.report(written / "mjrock.html", runs, language=words.language)
+        except AssessmentError as error:
+            send({"faults": faults_of(error)})
+            return
+        send({"documents": [document(path) for path in sorted(written.iterdir())], "note": note})
+
+
+def document(path: Path) -> Item:
+    """A file as the page takes it."""
+    data = base64.b64encode(path.read_bytes()).decode()
+    return {"name": path.name, "type": TYPES.get(path.suffix, "application/octet-stream"), "data": data}
+
+
+def words_in(request: Mapping[str, Any]) -> Words:
+    """The words of the language of the input."""
+    state = request.get("state")
+    return words_of(state.get("language") if isinstance(state, Mapping) else None)
+
+
+def tables_in(request: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of the file that the input of a request stands for."""
+    state: Any = request.get("state")
+    require_kind("state", state, dict)
+    return plan_of("en").tables_of(state)
+
+
+def faults_of(error: AssessmentError) -> list[Item]:
+    """What is wrong, with its place in the form."""
+    return [{"place": list(one.place), "message": one.message} for one in error.faults]
+
+
+class Folder:
+    """The files of a request in a folder of their own. Use it in a `with` statement.
+
+    Args:
+        request: with `files`, their content by name, as base64.
+
+    Raises:
+        TypeError, ValueError: for a name with a folder, for too many files, and for what is no base64.
+    """
+
+    def __init__(self, request: Mapping[str, Any]) -> None:
+        self.request, self.files = request, dict[str, bytes]()
+        given = request.get("files") or {}
+        require_kind("files", given, dict)
+        if len(given) > MOST_FILES:
+            raise ValueError(f"files has {len(given)} files; the valid range is 0 to {MOST_FILES}")
+        for name, content in given.items():
+            require_kind(f"files[{name!r}]", content, str)
+            if (
+                name in ("", ".", "..")
+                or name != Path(name).name
+                or "\\" in name
+                or "\0" in name
+                or len(name) > LONGEST_NAME
+            ):
+                raise ValueError(f"files has {shown(name)}, which is no plain name of a file")
+            try:
+                self.files[name] = base64.b64decode(content, validate=True)
+            except binascii.Error:
+                raise ValueError(f"files[{name!r}] is no base64") from None
+
+    def __enter__(self) -> Folder:
+        self._made = TemporaryDirectory()
+        self.path = Path(self._made.name)
+        for name, content in self.files.items():
+            (self.path / name).write_bytes(content)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._made.cleanup()
+
+    def assessment(self) -> Assessment:
+        """What the input stands for.
+
+        Raises:
+            AssessmentError: with all that is wrong, and for a path that is not that of a file of the request.
+        """
+        tables = tables_in(self.request)
+        faults = [
+            Fault(place, f"{spelt_place(place)} = {shown(name)} is no file that is uploaded; choose the file again")
+            for place, name in plan_of("en").files_in(tables)
+            if name not in (*self.files, HERE)
+        ]
+        if faults:
+            raise AssessmentError(tuple(faults))
+        return assessment_of(tables, folder=self.path, confined=True)
+
+
+TASKS: dict[str, Task] = {"form": form, "open": open_file, "save": save, "check": check, "run": run, "report": report}
+"""What the form may ask for, by name."""
