@@ -98,6 +98,18 @@ def test_a_film_is_that_of_the_largest_run(here, capsys):
     assert all((Path("there") / name).stat().st_size > 50 for name in names)
 
 
+@pytest.mark.filterwarnings("ignore::mjrock.Implausible")
+def test_records_are_found_beside_their_file_and_not_beside_the_caller(here, capsys):
+    (here / "prove 2").mkdir()
+    motion = mr.GroundMotion.synthetic(peak=1.5, duration=1.0, seed=1)
+    motion.to_esm(here / "prove 2" / "IT.ST1..HNE.ASC", STATION_CODE="ST1", STREAM="HNE")
+    (here / "recorded.toml").write_text(WALL + SITE + '[records]\nfolder = "prove 2"\npattern = "*.ASC"\n')
+    said = printed(capsys, "run", "walls/recorded.toml", "--no-film", "-w", 1)
+    assert said.count("ST1") >= 2
+    (here / "elsewhere.toml").write_text(WALL + SITE + '[records]\nfolder = "walls"\n')
+    assert refused(capsys, "run", "walls/elsewhere.toml").startswith("error: walls/elsewhere.toml")
+
+
 def test_what_nothing_moves_is_not_run(here, capsys):
     (here / "still.toml").write_text(WALL + SITE)
     assert "still.toml has nothing to run: give it [records]" in refused(capsys, "run", "walls/still.toml")

@@ -108,6 +108,9 @@ def test_the_wheel_holds_the_package_alone(wheel):
     rest = {name.split("/")[0] for name in names} - {"mjrock"}
     assert rest == {f"mjrock-{mr.__version__}.dist-info"}
     assert any(name.endswith("licenses/LICENSE") for name in names)
+    assert {"mjrock/examples/07_push_over.py", "mjrock/assessment/templates.toml"} <= set(names)
+    scripts = zipfile.ZipFile(wheel).read(f"mjrock-{mr.__version__}.dist-info/entry_points.txt").decode()
+    assert "mjrock = mjrock.__main__:main" in scripts
 
 
 @pytest.mark.slow
