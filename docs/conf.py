@@ -45,7 +45,7 @@ nitpicky = True  # a name that leads nowhere is an error
 nitpick_ignore_regex = [
     ("py:class", r"(numpy|matplotlib|collections|concurrent|pathlib|os|typing|mujoco|pandas)\b.*"),
     ("py:class", r"mjrock\.[\w.]+"),
-    ("py:class", r"Array|ArrayLike|Flags|Integers"),
+    ("py:class", r"Array|ArrayLike|Flags|Integers|Path"),
 ]
 
 myst_heading_anchors = 3
@@ -132,12 +132,26 @@ def plain(app: object, what: str, name: str, obj: object, options: object, lines
     lines[:] = text.split("\n")
 
 
+ANNOTATED = re.compile(r"(?:\w+\.)*Annotated\[")
+
+
+def plain_types(text: str) -> str:
+    """A signature without what is declared beside a type, such as the range of a number, which its text has."""
+    while found := ANNOTATED.search(text):
+        depth, end, at = 1, 0, found.end()
+        while depth:
+            depth += (text[at] in "[({") - (text[at] in "])}")
+            end = end or (at if depth == 0 or (depth == 1 and text[at] == ",") else 0)
+            at += 1
+        text = text[: found.start()] + text[found.end() : end] + text[at:]
+    return text
+
+
 def without_ranges(
     app: object, what: str, name: str, obj: object, options: object, signature: str | None, returns: str | None
 ) -> tuple[str | None, str | None]:
-    """A signature without the declared ranges of numbers, which the text has, and `...` for what a factory makes."""
-    signature = signature and signature.replace("<factory>", "...")
-    return signature and re.sub(r"(?:\w+\.)*Annotated\[(.+?), Within\([^()]*\)\]", r"\1", signature), returns
+    """A signature without the declared ranges of numbers, and `...` for what a factory makes."""
+    return signature and plain_types(signature.replace("<factory>", "...")), returns
 
 
 def compile_loops() -> None:
