@@ -25,7 +25,7 @@ from .rest import UnsettledError
 from .scene import Scene
 
 SETTLEMENT_OF_STIFF = 1e-5
-"""Deformation of joints that count as stiff, at each line under the heaviest block [m]."""
+"""Deformation of joints that count as stiff, at each line under the weight of all blocks [m]."""
 BED = 0.5
 """Vertical part of the normal of a joint that counts as level [-]."""
 SHARE_OF_FARTHEST = 0.1
@@ -163,9 +163,12 @@ def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...
 
 
 def stands_on_stiff_joints(scene: Scene) -> bool:
-    """Whether masonry comes to rest on joints that give by no more than STIFF under its heaviest block."""
+    """Whether masonry comes to rest on joints that give by no more than SETTLEMENT_OF_STIFF under all of its weight.
+
+    Joints that are stiff for one block are soft for a tall stack, which buckles on them.
+    """
     k, k_s = scene.contacts.k, np.asarray(scene.contacts.k_s)
-    factor = max(1.0, float(scene.bodies.mass.max()) * GRAVITY / (SETTLEMENT_OF_STIFF * float(k.min())))
+    factor = max(1.0, float(scene.bodies.mass.sum()) * GRAVITY / (SETTLEMENT_OF_STIFF * float(k.min())))
     try:
         _ = replace(scene, contacts=replace(scene.contacts, k=factor * k, k_s=factor * k_s)).at_rest
     except UnsettledError:

@@ -196,3 +196,23 @@ def test_bodies_fall_along_the_way_that_takes_the_most_energy():
     assert far > first
     assert energy(1.0) < energy(0.5) < energy(0.0)
     assert energy(2.0) >= energy(1.0) or np.abs(far * way).max() >= rest.ROTATION_OF_FALLEN
+
+
+@pytest.mark.parametrize(("number", "stands"), [(20, True), (24, False)])
+def test_a_tall_stack_buckles_on_its_joints_and_is_not_wedged(number, stands):
+    """A column of rigid cubes of side a on springs at two edges buckles under its own weight as an elastic one does,
+    q L^3 = 7.837 E I, where E I / a = k a^3 / 4 a unit of length: 21.6 cubes of 2 cm on 1e8 N/m3."""
+    a, k = 0.02, 1e8
+    block = mr.Block.from_size(a, a)
+    q = block.weight / (block.length * a)
+    assert 20 < (7.837 * k * a**4 / 4 / q) ** (1 / 3) / a < 24
+    stack = mr.Masonry.stack([block] * number, k)
+    found = mr.collapse_multiplier(stack)
+    assert found.multiplier == pytest.approx(1 / number, rel=1e-6)
+    assert found.wedged == ()
+    if stands:
+        mr.masonry_scene(mr.MasonryCase(stack, 1.0))
+        return
+    with pytest.raises(ValueError, match="on joints of this stiffness .* would fall; raise k_n"):
+        mr.masonry_scene(mr.MasonryCase(stack, 1.0))
+    mr.masonry_scene(mr.MasonryCase(mr.Masonry.stack([block] * number, 10 * k), 1.0))
