@@ -213,6 +213,6 @@ def test_a_tall_stack_buckles_on_its_joints_and_is_not_wedged(number, stands):
     if stands:
         mr.masonry_scene(mr.MasonryCase(stack, 1.0))
         return
-    with pytest.raises(ValueError, match="on joints of this stiffness .* would fall; raise k_n"):
+    with pytest.raises(ValueError, match=r"on joints of this stiffness .* would fall; raise k_n"):
         mr.masonry_scene(mr.MasonryCase(stack, 1.0))
     mr.masonry_scene(mr.MasonryCase(mr.Masonry.stack([block] * number, 10 * k), 1.0))
