@@ -1,6 +1,5 @@
 """Where no loop is stored, a short run has its answer as plain Python while another process compiles: `patience`."""
 
-import json
 import multiprocessing
 import os
 import pickle
@@ -21,7 +20,6 @@ import mjrock as mr
 from mjrock import compiled, patience
 
 PACKAGE = Path(mr.__file__).parent
-THIRTY = Path(__file__).with_name("thirty_scenes.py")
 pytest.importorskip("numba")
 
 WALL = """
@@ -354,15 +352,3 @@ except KeyboardInterrupt:
     time.sleep(0.5)
     run.send_signal(signal.SIGINT)
     assert run.communicate() == ("True False\n", "")
-
-
-@pytest.mark.slow
-def test_thirty_scenes_have_the_same_bits_as_plain_python():
-    def digests(**environment):
-        command = [sys.executable, str(THIRTY)]
-        run = subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=True)
-        return json.loads(run.stdout)
-
-    plain, fast = digests(NUMBA_DISABLE_JIT="1"), digests()
-    assert len(plain) >= 30
-    assert plain == fast

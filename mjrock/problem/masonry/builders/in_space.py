@@ -321,7 +321,7 @@ def bending_between_sides(bending: HorizontalBending) -> list[Polyhedron]:
 def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: int) -> list[Polyhedron]:
     """Rectangles of a wall of the plane, its base and beam, as boxes in space, see `Masonry.wallette`."""
     middle = 0.5 * float(blocks[0].corners[:, 0].min() + blocks[0].corners[:, 0].max())
-    boxes = []
+    made: list[tuple[Polygon, str, tuple[float, float, float], tuple[float, float, float]]] = []
     for block in blocks:
         (left, low), (right, high) = block.corners.min(axis=0).tolist(), block.corners.max(axis=0).tolist()
         name, thick = str(block.name), block.length
@@ -339,8 +339,8 @@ def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: in
         for part, ((front, back), (a, b)) in zip(names, spans, strict=True):
             size = back - front, b - a, high - low
             centre = -0.5 * (front + back), 0.5 * (a + b) - middle, 0.5 * (low + high)
-            boxes.append(Polyhedron.box(size, centre, block.density, block.fixed, part))
-    if len(boxes) > MOST_BODIES:
-        made = f"leaves = {leaves} and headers = {headers} make a wall of {len(boxes)} blocks"
-        raise ValueError(f"{made}; the valid range ends at {MOST_BODIES}")
-    return boxes
+            made.append((block, part, size, centre))
+    if len(made) > MOST_BODIES:
+        many = f"leaves = {leaves} and headers = {headers} make a wall of {len(made)} blocks"
+        raise ValueError(f"{many}; the valid range ends at {MOST_BODIES}")
+    return [Polyhedron.box(size, centre, block.density, block.fixed, part) for block, part, size, centre in made]
