@@ -29,6 +29,8 @@ width = 1.0
 height = 2.0
 drums = 2
 k_n = 1e9
+[run]
+solver = "explicit"
 [motion]
 make = "sine"
 amplitude = 1.0

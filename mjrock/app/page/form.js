@@ -267,7 +267,7 @@ function drawPairs(field, values, path) {
   return drawByName(field, path, {
     entries: () => Object.entries(values[field.key] ?? {}),
     add: name => ((values[field.key] ??= {})[name] ??= ''),
-    draw: name => drawValue(text(name), values[field.key], path),
+    draw: name => drawValue(text(name), values[field.key], [...path, name]),
   });
 }
 
