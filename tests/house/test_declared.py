@@ -20,7 +20,7 @@ FUNCTIONS = [
     for member in ([kind] if not isinstance(kind, type) else vars(kind).values())
     if hasattr(function := getattr(member, "__func__", member), "__wrapped__") and inspect.isfunction(function)
 ]
-NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?|pi"
 
 
 def of_argument(kind, name):
@@ -37,7 +37,8 @@ def faults(kind):
     for name, one in declared(kind).items():
         within = one.within
         text = of_argument(kind, name)
-        ranges = [(float(low), float(high)) for low, high in re.findall(rf"({NUMBER}) to ({NUMBER})", text)]
+        found = re.findall(rf"({NUMBER}) to ({NUMBER})", text)
+        ranges = [tuple(math.pi if end == "pi" else float(end) for end in ends) for ends in found]
         if re.search(r"(as|those) of `", text):
             continue
         if (within.low, within.high) not in ranges or (f"[{within.unit or '-'}]" not in text and not within.whole):

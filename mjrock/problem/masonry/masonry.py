@@ -120,6 +120,14 @@ from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
 AnyPath = str | PathLike[str]
+Radius = Annotated[float, Within(0.01, 1000, "m")]
+Thick = Annotated[Taper, Within(1e-5, 1000, "m")]
+SpanAngle = Annotated[float, Within(0.1, math.pi, "rad")]
+Voussoirs = Annotated[int, Within(1, 1000, whole=True)]
+Length = Annotated[float, Within(1e-3, 1000, "m")]
+Size = Annotated[float, Within(0.01, 1000, "m")]
+Unit = Annotated[tuple[float, float], Within(0.01, 100, "m")]
+"""Sizes that builders share."""
 
 
 @keywords_checked
@@ -491,13 +499,13 @@ class Masonry(Drawn):
     @classmethod
     def arch(
         cls,
-        radius: float,
-        thickness: Taper,
-        span_angle: float = math.pi,
-        voussoirs: int = 17,
+        radius: Radius,
+        thickness: Thick,
+        span_angle: SpanAngle = math.pi,
+        voussoirs: Voussoirs = 17,
         *,
-        density: float = 2000.0,
-        length: float = 1.0,
+        density: Density = 2000.0,
+        length: Length = 1.0,
         chords: Annotated[int, Within(1, 50, whole=True)] = 1,
         ground: bool = False,
         **options: Unpack[JointOptions],
@@ -509,8 +517,8 @@ class Masonry(Drawn):
 
         Args:
             radius: of the middle of the arch at the joints [m], 0.01 to 1000.
-            thickness: across the arch at the joints [m], 0.001 to 1 times the radius; or a pair, at the springing and
-                at the crown, between which it changes linearly with the angle.
+            thickness: across the arch at the joints [m], 1e-5 to 1000, 0.001 to 1 times the radius; or a pair, at the
+                springing and at the crown, between which it changes linearly with the angle.
             span_angle: angle between the two springings [rad], 0.1 to pi.
             voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
             density: mass density [kg/m3], 100 to 30000.
@@ -536,17 +544,17 @@ class Masonry(Drawn):
     @classmethod
     def bridge(
         cls,
-        radius: float,
-        thickness: Taper,
-        span_angle: float = math.pi,
-        voussoirs: int = 17,
+        radius: Radius,
+        thickness: Thick,
+        span_angle: SpanAngle = math.pi,
+        voussoirs: Voussoirs = 17,
         *,
         spans: Annotated[int, Within(1, 50, whole=True)] = 1,
-        pier_width: float,
+        pier_width: Size,
         pier_height: Annotated[float, Within(0.01, 1000, "m")],
         abutments: bool = True,
-        density: float = 2000.0,
-        length: float = 1.0,
+        density: Density = 2000.0,
+        length: Length = 1.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """Equal arches side by side on piers: a bridge of several spans, or an arch on buttresses.
@@ -554,8 +562,8 @@ class Masonry(Drawn):
         Args:
             radius, thickness, span_angle, voussoirs: of each arch, as of `arch`.
             spans: how many arches, 1 to 50. Voussoirs are `span_0_voussoir_0` and so on, of one span `voussoir_0`.
-            pier_width: between the springings of two arches [m], at least twice the width of a springing, once of one
-                span. A pier is one block, `pier_1` that between the first two arches.
+            pier_width: between the springings of two arches [m], 0.01 to 1000, at least twice the width of a springing,
+                once of one span. A pier is one block, `pier_1` that between the first two arches.
             pier_height: from the ground up to the springings [m], 0.01 to 1000.
             abutments: whether the outer arches end on fixed abutments; otherwise on piers of the same width.
             density: mass density [kg/m3], 100 to 30000.
@@ -571,14 +579,14 @@ class Masonry(Drawn):
     @classmethod
     def barrel_vault(
         cls,
-        radius: float,
-        thickness: Taper,
+        radius: Radius,
+        thickness: Thick,
         length: Annotated[float, Within(0.01, 1000, "m")],
-        unit: float,
-        span_angle: float = math.pi,
+        unit: Size,
+        span_angle: SpanAngle = math.pi,
         courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
         *,
-        density: float = 2000.0,
+        density: Density = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """A barrel vault in space between two fixed abutments, its courses in running bond along y.
@@ -586,7 +594,7 @@ class Masonry(Drawn):
         Args:
             radius, thickness, span_angle: of its section, as of `arch`.
             length: along y [m], 0.01 to 1000.
-            unit: length of a voussoir [m], 0.01 to the length; units are made to fit.
+            unit: length of a voussoir [m], 0.01 to 1000 and at most the length; units are made to fit.
             courses: voussoirs of the section, 1 to 1000. `voussoir_2_0` is the first of the third course.
             density: mass density [kg/m3], 100 to 30000.
             options: further arguments of `Masonry`.
@@ -599,15 +607,15 @@ class Masonry(Drawn):
     @classmethod
     def groin_vault(
         cls,
-        radius: float,
-        thickness: Taper,
-        length: float,
-        unit: float,
-        span_angle: float = math.pi,
+        radius: Radius,
+        thickness: Thick,
+        length: Size,
+        unit: Size,
+        span_angle: SpanAngle = math.pi,
         courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
         *,
         cut: bool = False,
-        density: float = 2000.0,
+        density: Density = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """A groin vault, or cross vault: two equal barrels that cross over a square bay, on four fixed piers.
@@ -618,9 +626,10 @@ class Masonry(Drawn):
 
         Args:
             radius, thickness, span_angle: of the section of a web, as of `arch`.
-            length: of the sides of the bay [m], at least the span of the extrados.
-            unit: length of a voussoir of the webs [m], 0.01 to the length. `web_left_2_0` is the first of the third
-                course of the left web, from its side inwards, and what is left of a course belongs to the groin.
+            length: of the sides of the bay [m], 0.01 to 1000, at least the span of the extrados.
+            unit: length of a voussoir of the webs [m], 0.01 to 1000 and at most the length. `web_left_2_0` is the first
+                of the third course of the left web, from its side inwards, and what is left of a course belongs to the
+                groin.
             courses: voussoirs of the section of a web, 1 to 1000. An odd number has a keystone, with four arms.
             cut: whether the stones of a groin are cut along it, each of one web. Otherwise a stone of two arms, a
                 `Compound`, belongs to both webs, `groin_front_right_0` above the pier, and binds them.
@@ -635,11 +644,11 @@ class Masonry(Drawn):
     @classmethod
     def running_bond(
         cls,
-        length: float,
-        height: float,
-        unit: tuple[float, float],
-        thickness: float = 1.0,
-        density: float = 2000.0,
+        length: Size,
+        height: Size,
+        unit: Unit,
+        thickness: Length = 1.0,
+        density: Density = 2000.0,
         *,
         halves: Bond | None = None,
         **options: Unpack[JointOptions],
@@ -647,8 +656,8 @@ class Masonry(Drawn):
         """A wall of units in running bond on the ground, which moves in the plane of its face.
 
         Args:
-            length, height: of the wall [m]. The height is a whole number of units. What is left of a course at its end
-                is a piece of a unit.
+            length, height: of the wall [m], 0.01 to 1000. The height is a whole number of units. What is left of a
+                course at its end is a piece of a unit.
             unit: length and height of a unit [m], 0.01 to 100.
             thickness: of the wall, out of the plane [m], 1e-3 to 1000.
             density: mass density [kg/m3], 100 to 30000.
@@ -665,11 +674,11 @@ class Masonry(Drawn):
     @classmethod
     def shear_wall(
         cls,
-        length: float,
-        height: float,
-        unit: tuple[float, float],
-        thickness: float = 1.0,
-        density: float = 2000.0,
+        length: Size,
+        height: Size,
+        unit: Unit,
+        thickness: Length = 1.0,
+        density: Density = 2000.0,
         *,
         halves: Bond | None = None,
         **options: Unpack[JointOptions],
@@ -754,11 +763,11 @@ class Masonry(Drawn):
     @classmethod
     def wallette(
         cls,
-        length: float,
-        height: float,
-        unit: tuple[float, float],
-        thickness: float,
-        density: float = 2000.0,
+        length: Size,
+        height: Size,
+        unit: Unit,
+        thickness: Length,
+        density: Density = 2000.0,
         *,
         leaves: Annotated[int, Within(1, 10, whole=True)] = 1,
         headers: Annotated[int, Within(0, 1000, whole=True)] = 0,
@@ -798,7 +807,7 @@ class Masonry(Drawn):
         return cls(blocks, **_halved(halves, options))
 
     @classmethod
-    def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Unpack[JointOptions]) -> Self:
+    def box(cls, size: ArrayLike, *, density: Density = 2000.0, **options: Unpack[JointOptions]) -> Self:
         """One box, `block`, on the ground, in the middle of it.
 
         Args:
@@ -814,12 +823,12 @@ class Masonry(Drawn):
     @classmethod
     def column(
         cls,
-        width: Taper,
+        width: Annotated[Taper, Within(0.01, 100, "m")],
         height: Annotated[float, Within(0.01, 1000, "m")],
         drums: Annotated[int, Within(1, 1000, whole=True)],
         *,
         sides: Annotated[int, Within(3, 100, whole=True)] = 4,
-        density: float = 2000.0,
+        density: Density = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """A column of drums of equal height on the ground.
@@ -842,21 +851,21 @@ class Masonry(Drawn):
     @classmethod
     def dome(
         cls,
-        radius: float,
-        thickness: Taper,
+        radius: Annotated[float, Within(0.1, 1000, "m")],
+        thickness: Thick,
         lunes: Annotated[int, Within(4, 360, whole=True)],
         hoops: Annotated[int, Within(1, 360, whole=True)],
         *,
         oculus: Annotated[float, Within(0.01, 1.5, "rad")] = 0.05,
-        density: float = 2000.0,
+        density: Density = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """A hemispherical dome of voussoirs with plane faces, which springs from the ground.
 
         Args:
             radius: of the middle of the thickness at the corners of the voussoirs [m], 0.1 to 1000.
-            thickness: [m], 0.001 to 1 times the radius; or a pair, at the springing and at the oculus, between which it
-                changes linearly with the angle.
+            thickness: [m], 1e-5 to 1000, 0.001 to 1 times the radius; or a pair, at the springing and at the oculus,
+                between which it changes linearly with the angle.
             lunes: how many voussoirs a hoop has, 4 to 360.
             hoops: how many hoops of equal angles, 1 to 360. `voussoir_0_3` is the fourth of the lowest hoop.
             oculus: angle at the centre between the axis and the edge of the opening at the crown [rad], 0.01 to 1.5.
@@ -881,7 +890,7 @@ class Masonry(Drawn):
         openings: Sequence[tuple[float, Opening]] = (),
         gable: int = 0,
         ground: Polyhedron | None = None,
-        density: float = 2000.0,
+        density: Density = 2000.0,
         **options: Unpack[JointOptions],
     ) -> Self:
         """A facade and return walls behind it, on the ground.

@@ -126,9 +126,9 @@ class VerticalBending:
         wall: a rectangle, or one with a `profile` and the face of it that is `plumb`.
         load: of the floor on the whole length of the wall [N], 1 to 1e9. It has no inertia sideways, where the floors
             are held.
-        bearing: how far from the inner face at the top the floor bears at most [m], above 0 and up to the thickness
+        bearing: how far from the inner face at the top the floor bears at most [m], 1e-6 to 20 and up to the thickness
             there, where the whole load acts as the wall turns; None is the thickness.
-        crack: its height [m], 0.01 to 0.99 times that of the wall; None is that of the least multiplier.
+        crack: its height [m], 1e-4 to 200, 0.01 to 0.99 times that of the wall; None is that of the least multiplier.
         effects: loads and masses on the wall, their offsets from the middle of its base, outwards [m].
 
     Raises:
@@ -143,8 +143,8 @@ class VerticalBending:
 
     wall: Block
     load: Annotated[float, Within(1, 1e9, "N", "load of the floor")]
-    bearing: float | None = None
-    crack: float | None = None
+    bearing: Annotated[float | None, Within(1e-6, 20, "m")] = None
+    crack: Annotated[float | None, Within(1e-4, 200, "m")] = None
     effects: tuple[Load | AddedMass, ...] = field(default=(), kw_only=True)
 
     __repr__ = short_repr
@@ -333,7 +333,7 @@ class HorizontalBending:
     Args:
         wall: a plain rectangle, as high as what bends.
         thrust: H that the weaker of both side walls bears along the wall, at any displacement [N], 1 to 1e9.
-        crack: its distance from one end [m], 0.01 to 0.99 times the length; None is the middle.
+        crack: its distance from one end [m], 1e-5 to 1000, 0.01 to 0.99 times the length; None is the middle.
 
     Raises:
         TypeError, ValueError: for a wall that is not a plain rectangle, or a value outside its range.
@@ -349,7 +349,7 @@ class HorizontalBending:
 
     wall: Block
     thrust: Annotated[float, Within(1, 1e9, "N", "thrust of the side walls")]
-    crack: float | None = None
+    crack: Annotated[float | None, Within(1e-5, 1000, "m")] = None
 
     __repr__ = short_repr
 
