@@ -232,7 +232,9 @@ class Declared(NamedTuple):
         if (value is None and self.optional) or (self.computed and callable(value)):
             return value
         if self.several and not isinstance(value, RealNumber):
-            for each in require_reals(name, value, "a number or a row of them").ravel().tolist():
+            plain = isinstance(value, tuple | list) and all(isinstance(each, RealNumber) for each in value)
+            row = value if plain else require_reals(name, value, "a number or a row of them").ravel().tolist()
+            for each in row:
                 self.within.checked(name, each)
             return value
         return self.within.checked(name, value)
