@@ -126,7 +126,8 @@ SpanAngle = Annotated[float, Within(0.1, math.pi, "rad")]
 Voussoirs = Annotated[int, Within(1, 1000, whole=True)]
 Length = Annotated[float, Within(1e-3, 1000, "m")]
 Size = Annotated[float, Within(0.01, 1000, "m")]
-Unit = Annotated[tuple[float, float], Within(0.01, 100, "m")]
+Side = Annotated[float, Within(0.01, 100, "m")]
+Unit = tuple[Side, Side]
 """Sizes that builders share."""
 
 
