@@ -46,6 +46,18 @@ def test_faces_that_lie_in_one_plane_count_once(turn):
     assert common(BOX, mr.Polyhedron.box((0.2, 0.2, 0.1)), turn=turn) == pytest.approx(0.2 * 0.2 * 0.1)
 
 
+@pytest.mark.parametrize("size", [0.01, 1.0, 50.0])
+@pytest.mark.parametrize("by", [(0.0, 0.0, 0.0), (1e3, 0.0, 0.0), (9.1e3, -7.7e3, 5e3)])
+def test_faces_that_lie_in_one_plane_count_once_wherever_the_blocks_are(size, by):
+    """Coordinates round with their size: those of 9 km by 2e-12 m."""
+    block = mr.Polyhedron.box((0.4 * size, 0.2 * size, 0.2 * size))
+    solids = solids_about([block, block], np.zeros((2, 3)))
+    for turn in TURNS[1:]:
+        place = np.array(by) + turn.apply([[0.0, 0.0, 0.0], [0.1 * size, 0.0, 0.0]])
+        found = common_volume(solids.moved(place, np.array([turn.as_matrix() - np.eye(3)] * 2)), 0, 1)
+        assert found == pytest.approx(0.3 * 0.2 * 0.2 * size**3, rel=1e-6 + 1e-10 / size)
+
+
 @pytest.mark.parametrize("turn", TURNS)
 def test_blocks_that_only_touch_or_stand_apart_have_nothing_in_common(turn):
     for place in ((0.4, 0.0, 0.0), (0.4, 0.2, 0.2), (0.4 + 1e-9, 0.0, 0.0), (1.0, 1.0, 1.0)):

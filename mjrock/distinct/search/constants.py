@@ -115,8 +115,8 @@ OVERLAP_SAMPLES = 200
 """Most samples at which the overlap of blocks is measured."""
 DEEPEST_PAIRS = 16
 """Pairs whose overlap is measured: those whose mean depth over their size is largest."""
-FLUSH = 1e-12
-"""Distance within which faces of two blocks lie in one plane [m]."""
+FLUSH = 1e-14
+"""Distance within which faces of two blocks lie in one plane, over their largest coordinate, which rounds [-]."""
 OVERLAP_WARNED_OF = 0.01
 """Share of a block from which on its overlap is warned of."""
 SOFTENED_WARNED_OF = 0.25

@@ -118,7 +118,8 @@ def _posed(search: ContactSearch, system: System, pose: Array, t: float, case: A
 def common_volume(solids: Solids, a: int, b: int) -> float:
     """Volume that two convex solids have in common [m3]: that of pyramids on what is left of their faces, from a point
     within both."""
-    kept = []
+    kept, blocks = [], [solids.corners[solids.corner[block] : solids.corner[block + 1]] for block in (a, b)]
+    one_plane = FLUSH * float(max(np.abs(corners).max() for corners in blocks))
     for block, other in ((a, b), (b, a)):
         for face in range(solids.face[block], solids.face[block + 1]):
             normal, polygon = solids.normals[face], face_corners(solids, face)
@@ -126,7 +127,7 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
                 if not len(polygon):
                     break
                 beyond = (polygon - face_corners(solids, wall)[0]) @ solids.normals[wall]
-                flush = np.abs(beyond).max(initial=0.0) < FLUSH and normal @ solids.normals[wall] > 0
+                flush = np.abs(beyond).max(initial=0.0) < one_plane and normal @ solids.normals[wall] > 0
                 # a face that two blocks share counts once
                 polygon = polygon[:0] if flush and block == b else polygon if flush else cut_off(polygon, beyond)
             if len(polygon):
