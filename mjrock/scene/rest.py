@@ -6,11 +6,11 @@ sliders may stand anywhere. The one that is sought is that in which every spring
 pose: of all that need no slip it has the least energy in its springs. The equations have one text, so that the pose
 depends on no path and on no rounding.
 
-The search is Newton's method. Its exact step, in which the limit of friction follows the pressure, is taken where it
-halves the force that is missing. Elsewhere a step is taken that lowers the energy at the present limits. Keeping the
-shear stiffness of slipping contacts converges safely and slowly; dropping it converges fast or not at all. The share of
-the stiffness that is kept is therefore halved from pose to pose, and is whole again when more force is missing than
-before.
+The search is Newton's method. Its exact step, in which the limit of friction follows the pressure, or a part of it is
+taken where less force is missing then. Elsewhere a step is taken that lowers the energy at the present limits. Keeping
+the shear stiffness of slipping contacts converges safely and slowly; dropping it converges fast or not at all. The
+share of the stiffness that is kept is therefore halved from pose to pose, and is whole again when more force is missing
+than before.
 """
 
 from __future__ import annotations
@@ -51,17 +51,23 @@ the energy, over itself, as friction acts halfway between point and face where s
 smallest part of a step that is tried."""
 BEGINNING = LOOSE, 1.0, SLIPPING, np.inf
 """What is lent, shares and least shares of slipping contacts, and the force that was missing, where a search begins."""
+IMPERFECTION = 1e-5
+"""Forces on all bodies by which a structure is no longer its own mirror image, over the largest that is missing [-]."""
 PUSH = 1e-2
 """First motion of a push off a pose at which the bodies balance and do not stand, over the deepest penetration [-]."""
+AS_LOW = 1e-3
+"""Difference of energies up to which two ways to fall are alike, over what is lost, and sum of the momenta of bodies
+that counts as none, over the sum of their sizes [-]."""
 LITTLE_PROGRESS = 0.5
-"""Force that is missing, over that of the pose before, above which an exact step is not taken, and a pose that is near
-enough ends the search [-]."""
+"""Share of the missing force that an exact step must make up for, and of that share a part of the step [-]."""
+PARTS_OF_STEP, EXACT_STEPS = (1.0, 0.5, 0.25, 0.125, 0.0625), 30
+"""Parts of an exact step that are tried in turn, and most exact steps from a pose."""
 RIGID, RIGID_WITHOUT_LIMIT = 1e3, 1e4
 """Shear stiffness of contacts that stick rigidly, over their normal stiffness [-]: with the limit of friction, and
 without one. More makes rounding of the slip a larger force than may be missing."""
 SOFT_STARTS = 100.0, 0.01, 0.1
 """Shear stiffnesses, over the normal one, at which the pose is found from which a search starts that finds none from
-the undeformed pose, in turn [-]: stiff springs slip more on the way. Two vaults of 500 need the last ones."""
+the undeformed pose, in turn [-]: stiff springs slip more on the way, as of blocks beside a rough wall."""
 POSES = 300
 """Most poses of a search."""
 
@@ -230,11 +236,27 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
         last = trial.left
         springs = np.where(trial.closed, potential.springs, LEANING * potential.springs)
         stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.grips, share)
-        motion = solved(potential, stiffness, trial.missing, loose)
+        motion = solved(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
         trial = tried(potential, search, lowering(potential, trial.pose, motion, trial.sliders))
         if loose > MOST_LOOSE or not turned(trial.pose, freedom).max() < ROTATION_OF_FALLEN:
             break
     raise UnsettledError(trial.pose.reshape(-1, freedom.nq))
+
+
+def imperfection(potential: Potential, trial: Trial) -> Array:
+    """Small forces towards positive x, and half of them along y, on all bodies that friction connects with the ground.
+
+    Steps that are not exact are taken with them. A structure that is its own mirror image falls to that side if it
+    falls, whatever the rounding is.
+    """
+    places, freedom = potential.structure.places, potential.structure.places.freedom
+    count, grips = len(trial.missing) // freedom.nv, trial.sliders.limit > 0
+    pairs = places.body[grips], places.face_body[grips] % (count + 1)  # the ground is the last
+    connected = csr_array((np.ones(int(grips.sum())), pairs), shape=(count + 1, count + 1))
+    group = scipy.sparse.csgraph.connected_components(connected, directed=False)[1]
+    forces = np.zeros((count, freedom.nv))
+    forces[group[:-1] == group[-1], : freedom.translations - 1] = [1.0, 0.5][: freedom.translations - 1]
+    return IMPERFECTION * float(np.abs(trial.missing).max()) * forces.ravel()
 
 
 def balances(potential: Potential, search: Search, trial: Trial) -> bool:
@@ -243,10 +265,26 @@ def balances(potential: Potential, search: Search, trial: Trial) -> bool:
 
 
 def ended(potential: Potential, search: Search, trial: Trial) -> Trial:
-    """The pose to which exact steps lead that each halve what is missing."""
-    while (better := exact(potential, search, trial)).left < LITTLE_PROGRESS * trial.left:
+    """The pose to which exact steps lead, or parts of them, that each leave less force missing."""
+    for _ in range(EXACT_STEPS):
+        better = exact(potential, search, trial)
+        if better is None:
+            break
         trial = better
     return trial
+
+
+def exact(potential: Potential, search: Search, trial: Trial) -> Trial | None:
+    """The pose after a step along which the derivatives of all forces lead, or after a part of it, or None if no part
+    lets less force be missing. Where the error of the whole step is too large for the smallest part, none is tried."""
+    motion = solved(potential, stiffness_at(potential, search, trial), trial.missing, LEAST_LOOSE)
+    for part in PARTS_OF_STEP[:1] if balances(potential, search, trial) else PARTS_OF_STEP:
+        step = tried(potential, search, moved(trial.pose, part * motion, potential.structure.places.freedom))
+        if step.left < (1 - LITTLE_PROGRESS * part) * trial.left:
+            return step
+        if step.left > LITTLE_PROGRESS * part / PARTS_OF_STEP[-1] * trial.left:
+            break
+    return None
 
 
 def tried(potential: Potential, search: Search, pose: Array, touches: bool = False) -> Trial:
@@ -260,16 +298,11 @@ def tried(potential: Potential, search: Search, pose: Array, touches: bool = Fal
     return Trial(pose, closed, rates, push, sliders, grips, missing)
 
 
-def exact(potential: Potential, search: Search, trial: Trial) -> Trial:
-    """The pose to which the derivatives of all forces lead."""
-    motion = solved(potential, stiffness_at(potential, search, trial), trial.missing, LEAST_LOOSE)
-    return tried(potential, search, moved(trial.pose, motion, potential.structure.places.freedom))
-
-
 def stiffness_at(potential: Potential, search: Search, trial: Trial) -> csr_array:
     """What is missing more per motion, shape (n nv, n nv): the limit of friction grows with the pressure too."""
     places, slipping, m = potential.structure.places, trial.grips.slipping, len(search.shear)
-    springs = np.where(trial.closed, potential.springs, LEANING * potential.springs)
+    # open contacts have next to none: more of it would hide that open joints let go of a structure that stands on few
+    springs = np.where(trial.closed, potential.springs, LEAST_LOOSE * potential.springs)
     stiffness = sprung(trial.rates, springs) + potential.curvature(trial.pose) + shear_stiffness(trial.grips, 0.0)
     pressed = (trial.push[:m] > 0)[slipping]
     rises = np.where(pressed, shear_limit(Law(friction=places.friction), places.k)[slipping], 0.0)  # with depth [N/m]
@@ -360,16 +393,36 @@ def falling_way(potential: Potential, search: Search, trial: Trial) -> Array | N
 
 
 def let_go(potential: Potential, grips: Grips, pose: Array, way: Array) -> Array:
-    """The pose to which bodies fall along a way from a pose at which they balance, while its friction holds."""
-    freedom, far = potential.structure.places.freedom, PUSH * float(potential.pressed(pose).max()) / np.abs(way).max()
+    """The pose to which bodies fall from a pose at which they balance, forwards or backwards along a way, while the
+    friction there holds: to where the energy is lower, and forwards where both are alike, as in a structure that is
+    its own mirror image."""
+    freedom, way = potential.structure.places.freedom, forwards(potential, way)
+    near = PUSH * float(potential.pressed(pose).max()) / np.abs(way).max()
     held, stiffness = way @ grips.held, way @ (shear_stiffness(grips, 1.0) @ way)
 
     def energy(far: float) -> float:
         return potential.energy(moved(pose, far * way, freedom)) - far * held + 0.5 * far * far * stiffness
 
-    while energy(2 * far) < energy(far) and far * np.abs(way).max() < ROTATION_OF_FALLEN:
-        far *= 2
-    return moved(pose, far * way, freedom)
+    def fallen(far: float) -> float:
+        while energy(2 * far) < energy(far) and abs(far) * np.abs(way).max() < ROTATION_OF_FALLEN:
+            far *= 2
+        lowest = scipy.optimize.minimize_scalar(lambda part: energy(part * far), bounds=(1, 2), method="bounded")
+        return far * float(lowest.x)
+
+    ahead, behind = fallen(near), fallen(-near)
+    lower = energy(ahead) - energy(behind)
+    alike = max(ENERGY_ROUNDING * heaviest(potential), AS_LOW * (energy(0.0) - energy(ahead)))
+    return moved(pose, (ahead if lower < alike else behind) * way, freedom)
+
+
+def forwards(potential: Potential, way: Array) -> Array:
+    """A way, or its opposite, in the sense in which the momentum of all bodies along x, y or z is positive, along that
+    axis along which it is largest. It is the same in any order of the bodies."""
+    masses, freedom = potential.structure.masses, potential.structure.places.freedom
+    momenta = (masses * way).reshape(-1, freedom.nv)[:, : freedom.translations]
+    total = momenta.sum(axis=0)
+    largest = total[np.argmax(np.abs(total))]
+    return -way if largest < -AS_LOW * np.abs(momenta).sum() else way
 
 
 def touching(potential: Potential, pose: Array) -> Flags:

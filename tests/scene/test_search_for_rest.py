@@ -192,10 +192,9 @@ def test_bodies_fall_along_the_way_that_takes_the_most_energy():
         return scene.potential.energy(pose + part * far * way) + held_too
 
     first = 1e-2 * scene.potential.pressed(pose).max() / np.abs(way).max()
-    assert math.log2(abs(far) / first) == pytest.approx(round(math.log2(abs(far) / first)), abs=1e-6)
-    assert far > first
+    assert abs(far) > first
     assert energy(1.0) < energy(0.5) < energy(0.0)
-    assert energy(2.0) >= energy(1.0) or np.abs(far * way).max() >= rest.ROTATION_OF_FALLEN
+    assert energy(1.0) < min(energy(0.98), energy(1.02)) or np.abs(far * way).max() >= rest.ROTATION_OF_FALLEN
 
 
 @pytest.mark.parametrize(("number", "stands"), [(20, True), (24, False)])
