@@ -167,7 +167,10 @@ class Within(NamedTuple):
             return math.inf
         if self.whole:
             return require_whole(name, value, int(self.low), int(self.high))
-        return require_within(name, value, self.low, self.high, self.unit)
+        try:
+            return require_within(name, value, self.low, self.high, self.unit)
+        except ValueError as error:
+            raise ValueError(f"{error}, or inf" if self.infinite else str(error)) from None
 
 
 class OneOf(NamedTuple):
