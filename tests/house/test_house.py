@@ -3,6 +3,7 @@
 import ast
 import re
 import sys
+from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -178,6 +179,13 @@ def test_nothing_is_solved_as_tests_are_collected():
     assert [f"{path} calls {name}" for path, name in calls if SOLVES.fullmatch(name)] == []
     text = "X = [lambda: mr.simulate(case)]\nfor x in f(mr.push()): pass\ndef g(): mr.solve_explicit(1)\n"
     assert [name for name in called_at_import(ast.parse(text)) if SOLVES.fullmatch(name)] == ["push"]
+
+
+def test_modules_of_tests_have_names_of_their_own():
+    """Folders of tests are no packages, and Python imports one module of a name."""
+    names = Counter(path.name for path in ROOT.parent.glob("tests/**/*.py") if path.stem not in ("conftest", "__main__"))
+    assert len(names) > 100
+    assert [name for name, count in names.items() if count > 1] == []
 
 
 def test_few_ask_whether_a_case_is_of_a_wall_or_of_masonry():
