@@ -183,7 +183,8 @@ def test_nothing_is_solved_as_tests_are_collected():
 
 def test_modules_of_tests_have_names_of_their_own():
     """Folders of tests are no packages, and Python imports one module of a name."""
-    names = Counter(path.name for path in ROOT.parent.glob("tests/**/*.py") if path.stem not in ("conftest", "__main__"))
+    paths = ROOT.parent.glob("tests/**/*.py")
+    names = Counter(path.name for path in paths if path.stem not in ("conftest", "__main__"))
     assert len(names) > 100
     assert [name for name, count in names.items() if count > 1] == []
 
