@@ -141,9 +141,12 @@ def compared(seeds: Sequence[int], out: Path, named: Sequence[str] = KERNELS) ->
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Compare the kernels, and print the table."""
-    args = cli.parser(__doc__, "rest_on_processors").parse_args(argv)
+    options = cli.parser(__doc__, "rest_on_processors")
+    options.add_argument("--first", type=int, default=0, metavar="SEED", help="first seed, for other structures")
+    args = options.parse_args(argv)
     out = cli.folder(args.out)
-    seeds, named = (range(QUICK), KERNELS[:2]) if args.quick else (range(COUNT), KERNELS)
+    count, named = (QUICK, KERNELS[:2]) if args.quick else (COUNT, KERNELS)
+    seeds = range(args.first, args.first + count)
     with tempfile.TemporaryDirectory() as kept:
         rows = compared(seeds, Path(kept), named)
     header = ["kernel", "held", "refused", f"beyond {EQUAL:g}", "largest difference [-]", "of", "refused ones"]
