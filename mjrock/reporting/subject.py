@@ -147,7 +147,7 @@ class ReportedWall(Reported):
     def by_hand(self, words: Words) -> list[tuple[str, ...]]:
         """Moments about the toe by which alpha_0 can be checked by hand: what they are, in kN m."""
         case, wall = self.case, self.case.wall
-        lever = case.block.half_base + wall.centroid_offset
+        lever = wall.lever
         weight = wall.mass * GRAVITY
         turning = weight * wall.centroid_height
         holding = case.restoring.outer.P

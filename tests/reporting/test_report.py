@@ -11,6 +11,7 @@ from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image
@@ -286,6 +287,41 @@ def test_alpha_0_by_hand_is_that_of_the_push_over(tmp_path):
     text = read(page_of(tmp_path, case, answer(), e=E))
     by_hand = re.search(r"ties slack\s+([\d.]+)", text)[1]
     assert float(by_hand) == pytest.approx(mr.pushover(case).start, rel=5e-3)  # three digits are printed
+
+
+def test_a_check_by_hand_has_the_moments_of_a_wall_that_leans(tmp_path):
+    """Two storeys with a setback inside, and a mass behind the middle: levers are from the outer edge."""
+    profile = ((0.0, 0.6), (4.0, 0.6), (4.0, 0.4), (6.0, 0.4))
+    wall = mr.Block.from_size(0.6, 6.0, 8.0, 1900.0, profile=profile, plumb="outer")
+    effects = mr.AddedMass(1000.0, 5.0, -0.1), mr.Thrust(5.0, 2000.0)
+    weights, levers = 9.81 * np.array([1900 * 8 * 0.6 * 4, 1900 * 8 * 0.4 * 2, 1000]), (0.3, 0.2, 0.4)
+    case = mr.Case(wall, effects=effects)
+    checks = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"))
+    page = mr.report(case, (), tmp_path / "leans.html", checks=checks)
+    text = read(page.read_text(encoding="utf-8"))
+    said = re.search(
+        r"hinge, x ([\d.]+) m .*weight, W x ([\d.]+) kN m .*thrusts, M (.[\d.]+) kN m", re.sub(r"\s+", " ", text)
+    )
+    lever, holding, moment = (float(one.replace("\N{MINUS SIGN}", "-")) for one in said.groups())
+    assert lever == pytest.approx(weights @ levers / weights.sum(), rel=5e-3)  # three digits are printed
+    assert holding == pytest.approx(weights @ levers / 1e3, rel=5e-3)
+    assert moment == pytest.approx(-10.0, rel=5e-3)
+
+
+def test_side_walls_and_loads_are_no_proposal(tmp_path):
+    """A tie is what is proposed; wedges of side walls and a roof are another mechanism of the wall as it is."""
+    wall, demand = mr.Block.from_size(0.6, 6.0, 8.0), mr.code_spectrum("EC8 type 1", ag=2.0, soil="B")
+    further = {
+        "wedges": mr.Wedge(0.4, 0.3, 6.0).behind(wall),
+        "roof": (mr.Load(2e4, 5.8),),
+        "tied": (mr.Tie(5.8, 1e7, strength=5e4, length=6.0),),
+    }
+    cases = {"bare": mr.Case(wall), **{name: mr.Case(wall, effects=one) for name, one in further.items()}}
+    checks = {name: mr.mechanism_check(one, demand) for name, one in cases.items()}
+    page = mr.report(cases["bare"], (), tmp_path / "several.html", checks=checks)
+    text = read(page.read_text(encoding="utf-8"))
+    assert re.findall(r"With what is proposed, (\w+):", text) == ["tied"]
+    assert len(re.findall(r"As it is, \w+ governs:", text)) == 1
 
 
 def test_how_runs_were_solved_is_said_once(tmp_path):
