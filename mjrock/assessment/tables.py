@@ -14,6 +14,8 @@ LARGEST = 1_000_000
 """Most characters of a file."""
 MOST_LEVELS = 50
 """Most tables and lists within each other."""
+COMMA = re.compile(r"[^#\"'\[{]*=\s*[+-]?\d+,\d")
+"""A line with a number that is written with a decimal comma."""
 AT = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
 """What `tomllib` says of the place of an error."""
 
@@ -130,6 +132,8 @@ def parsed(text: str) -> dict[str, Any]:
         place = AT.search(str(error))
         line = int(place[1]) if place and place[1] else text.count("\n") + 1
         message = AT.sub("", str(error)).replace("{", "(").replace("}", ")")
+        if COMMA.match(text.split("\n")[line - 1]):
+            message = "a number has a comma; the decimal mark is a point, as in 0.5"
         raise AssessmentError((Fault((), f"is not TOML: {message}", line),)) from None
     except RecursionError:
         raise AssessmentError((Fault((), "is nested too deeply; a file has some five levels", 1),)) from None

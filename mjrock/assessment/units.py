@@ -58,6 +58,8 @@ UNITS = {
 POWERS = str.maketrans({"²": "2", "³": "3", "·": " ", "*": " ", "µ": "u"})
 TEXT = re.compile(r"\s*([+-]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][+-]?\d{1,3})?)\s*(.*?)\s*", re.DOTALL)
 """A number and its unit."""
+COMMA = re.compile(r",\d")
+"""What follows a number that is written with a decimal comma."""
 PART = re.compile(r"([a-zA-Z°%-]+?)\^?(\d?)")
 
 
@@ -102,6 +104,8 @@ def value_in(text: str, unit: str) -> float:
     number = Fraction(found[1])
     if not found[2]:
         raise ValueError(f"has no unit; write the number without quotes for {unit or 'a plain number'}")
+    if COMMA.match(found[2]):
+        raise ValueError("has a comma; the decimal mark is a point, as in 0.5")
     given = unit_named(found[2])
     if given is None:
         raise ValueError(f"has the unit {found[2]!r}, which is not known; {said} is due, such as {examples_of(unit)}")

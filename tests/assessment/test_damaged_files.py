@@ -106,6 +106,8 @@ def deep(levels):
         (deep(20), "a is not known"),
         (".".join(2000 * "a") + " = 1", "not known|too deeply"),
         ("[wall]\n[wall]", ":2: is not TOML: Cannot declare"),
+        ("[wall]\nthickness = 0,45\n", ":2: is not TOML: a number has a comma; the decimal mark is a point"),
+        ("[wall]\nthickness = 0.45,\n", ":2: is not TOML: Expected newline"),
         ("wall = 3", "wall is 3 of type int; it takes a table"),
         ("mechanisms = 3", "mechanisms is no table of tables"),
         ("kind = 'Caes'", "did you mean 'Case'"),

@@ -99,6 +99,28 @@ def test_a_wall_with_openings_and_effects_is_checked_as_from_python():
     same(assessment.check()[""], mr.mechanism_check(mr.Case(GABLE, effects=effects()), DEMAND, confidence_factor=1.2))
 
 
+def test_a_profile_has_units():
+    """The façade with a setback inside, as one writes it."""
+    rows = '[["0 m", "60 cm"], ["7 m", "600 mm"], [7, 0.45], ["10.5 m", "45 cm"]]'
+    text = f'[wall]\nthickness = "60 cm"\nheight = 10.5\nplumb = "outer"\nprofile = {rows}\n'
+    profile = ((0, 0.6), (7, 0.6), (7, 0.45), (10.5, 0.45))
+    assert mr.from_toml(text=text).mechanisms[""].problem.block == mr.Block.from_size(
+        0.6, 10.5, profile=profile, plumb="outer"
+    )
+    with pytest.raises(
+        mr.AssessmentError, match=r"wall\.profile\[2\]\[1\] = 45 m is outside the valid range 0.001 to 20"
+    ):
+        mr.from_toml(text=text.replace("[7, 0.45]", "[7, 45]"))
+
+
+def test_a_decimal_comma_has_its_remedy():
+    for given in ("0,45 m", "45,5 cm", "0,45"):
+        with pytest.raises(
+            mr.AssessmentError, match=rf"wall.thickness = '{given}' has a comma; the decimal mark is a poi"
+        ):
+            mr.from_toml(text=f'[wall]\nthickness = "{given}"\nheight = 3.0\n')
+
+
 def test_a_case_needs_no_release_and_no_duration():
     case = mr.Case(GABLE)
     assert (case.theta0, case.duration) == (0.0, 10.0)

@@ -32,7 +32,7 @@ from ...quantities import (
 )
 from .effects import AddedMass
 from .restoring_moment import Restoring, of_force, pose_of
-from .section import PLUMB, Front, Gable, Moments, Opening, Profile, Section, moments, require_profile
+from .section import PLUMB, Front, Gable, Moments, Opening, Profile, Section, Thickness, moments, require_profile
 
 HEAVIEST = 4000.0
 """Density above which that of a wall is taken for a weight [kg/m3]; basalt and iron ore have 3,000 to 4,000."""
@@ -127,7 +127,7 @@ class Block:
         density: Density = 2000.0,
         inset: Inset = 0.0,
         openings: Sequence[Opening] = (),
-        profile: Sequence[tuple[float, float]] | None = None,
+        profile: Sequence[Thickness] | None = None,
         masses: Sequence[AddedMass] = (),
         *,
         gable: Gable | None = None,

@@ -30,7 +30,9 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""
 HEIGHTS_TRIED = 201
 """Heights at which it is made sure that something is left beside the openings."""
-Profile = tuple[tuple[float, float], ...]
+Thickness = tuple[Annotated[float, Within(0, 200, "m")], Annotated[float, Within(1e-3, 20, "m")]]
+"""A height [m] and the thickness there [m]."""
+Profile = tuple[Thickness, ...]
 """Height [m] and thickness [m] from the base to the top, linear in between. Two at one height are a step."""
 
 
