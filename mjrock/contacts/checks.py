@@ -163,7 +163,7 @@ class Within(NamedTuple):
 
     def checked(self, name: str, value: object) -> float:
         """The value as a float or an integer; raises as `require_within` and `require_whole`."""
-        if self.infinite and value == math.inf:
+        if self.infinite and require_real(name, value) == math.inf:
             return math.inf
         if self.whole:
             return require_whole(name, value, int(self.low), int(self.high))
