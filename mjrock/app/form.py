@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..assessment.tables import Place
-from ..reporting.texts import Words, languages
+from ..reporting.texts import MINUS, POWERS, Words, languages
 
 TEXTS = Path(__file__).with_name("texts.toml")
 """The texts of the form, beside those of the report."""
@@ -34,6 +34,11 @@ ANY = frozenset({"number", "boolean", "array"})
 COMMA = re.compile(r"^([+-]?(?:0+|\d+(?=,(?!\d{3}(?!\d)))|\d{4,})),(\d+)(?=[^\d.,]|$)")
 """A number with a comma as its decimal mark, and what follows. One such as 1,000 may be a thousand and is left out."""
 TRUTHS = {"true": True, "false": False}
+WRITTEN_IN = "en"
+"""The language of the descriptions in the schema."""
+END = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+ENDS = re.compile(rf"(?: \[[^\]]*\])?, (?:above )?({END}) to ({END})(?:(?=[.,;:](?!\d)|$)|(?P<and> and ))")
+"""The range of a number in its description, with its unit."""
 
 
 class Variant(NamedTuple):
@@ -57,11 +62,12 @@ class Field(NamedTuple):
 
     Args:
         key: its name in the file.
-        label, help: what a person reads beside it and below it.
+        label, help: what a person reads beside it and below it, in the language of the form.
+        english: its description, where there is no help in the language.
         control: "number", "text", "choice", "truth", "file", "folder" of files, "row" of values in brackets, "table",
             "list" of tables, "named" tables, or "pairs" of names and texts.
         unit: in SI.
-        range: of a number, in words.
+        range: of a number with its unit, in words.
         default: as a text; empty where there is none.
         needed: whether the file has to have it.
         choices: values and their labels.
@@ -74,6 +80,7 @@ class Field(NamedTuple):
     label: str
     help: str
     control: str
+    english: str = ""
     unit: str = ""
     range: str = ""
     default: str = ""
@@ -99,7 +106,7 @@ class Plan:
     def __init__(self, schema: Schema, words: Words) -> None:
         self.schema, self.words = schema, words
         self.tables: dict[str, list[Field]] = {}
-        self._tables_of: dict[str, Schema] = {}
+        self._owners: dict[str, str] = {}
         parts = schema["$defs"]
         several = self._field("mechanisms", {"anyOf": [_mechanisms_of(parts["several"])]}, False)
         self.root = self._field("", parts["one"], True)
@@ -117,14 +124,16 @@ class Plan:
         if not control or (control == "table" and types - {"boolean"}):
             control = self._control(key, plain, types, bool(choices))
         number = next((one for one in plain if "unit" in one or "minimum" in one), {})
-        help = str(node.get("description", ""))
+        said = _without_range(str(node.get("description", "")), number)
+        help = said if self.words.language == WRITTEN_IN else self._help(key, place)
         return Field(
             key,
             self._label(key, place),
             help,
             control,
+            english="" if help else said,
             unit=_unit(number),
-            range=self._range(number, help),
+            range=self._range(number),
             default=self._default(node),
             needed=needed,
             choices=choices,
@@ -164,6 +173,8 @@ class Plan:
             names = {key: str(given["const"]) for key, given in consts.items()}
             usual = all("default" in given for given in consts.values())
             id = name if name and one is self.schema["$defs"].get(name) else f"{here}/{i}"
+            section = ".".join((here.rpartition(".")[2], *names.values()))
+            self._owners[id] = str(one.get("title") or names.get("kind") or section)
             self._register(id, one)
             found.append(Variant(id, self._variant_label(str(one.get("title", "")), names), names, usual))
         return tuple(found)
@@ -198,12 +209,31 @@ class Plan:
             return ()
         return (*truths, *((value, self.words.or_else(f"value_{value}", value)) for value in texts))
 
-    def _range(self, node: Schema, help: str) -> str:
-        """The range of a number in words, unless its help has it in the same words."""
+    def _range(self, node: Schema) -> str:
+        """The range of a number in words, with its unit."""
         low, high = node.get("minimum", -math.inf), node.get("maximum", math.inf)
-        ends = {"low": self.words.marked(f"{low:g}"), "high": self.words.marked(f"{high:g}")}
-        said = self.words("form_range" if math.isfinite(high) else "form_from", **ends) if math.isfinite(low) else ""
-        return "" if said in help else said
+        if not math.isfinite(low):
+            return ""
+        ends = {"low": self._end(low), "high": self._end(high), "unit": f" {_unit(node)}".rstrip()}
+        return self.words("form_range" if math.isfinite(high) else "form_from", **ends)
+
+    def _end(self, value: float) -> str:
+        """An end of a range, with a power of ten where it is long."""
+        digits, _, power = f"{value:g}".partition("e")
+        if power:
+            digits = f"{digits}\u00b710".removeprefix("1\u00b7").replace("-1\u00b7", "-")
+            digits += str(int(power)).translate(POWERS)
+        return self.words.marked(digits).replace("-", MINUS)
+
+    def _help(self, key: str, place: str) -> str:
+        """What a key means, from the table of the language; empty where that has nothing."""
+        known = self.words.texts.get(f"help_{self.words.language}", {})
+        return next((known[name] for name in self.names_of(key, place) if name in known), "")
+
+    def names_of(self, key: str, place: str) -> list[str]:
+        """The names of a key in a table of helps, the closest first: of a constructor, of its class, of any table."""
+        owner = self._owners.get(place, "")
+        return [f"{owner}.{key}", f"{owner.partition('.')[0]}.{key}", key]
 
     def _default(self, node: Schema) -> str:
         default = node.get("default")
@@ -213,7 +243,7 @@ class Plan:
 
     def _label(self, key: str, place: str) -> str:
         """What an argument is called: of its class, by the form, by the report, or as it is."""
-        own = f"arg_{place.partition('.')[0].rstrip('!?*')}_{key}"
+        own = f"arg_{self._owners.get(place, '').partition('.')[0]}_{key}"
         known = (own, f"arg_{key}", f"in_{key}")
         return next((self.words(name) for name in known if name in self.words.texts), key.replace("_", " "))
 
@@ -321,6 +351,15 @@ def _unit(node: Schema) -> str:
     """The unit of a number as it is printed."""
     unit = str(node.get("unit", ""))
     return unit.replace("m3", "m\u00b3").replace("m2", "m\u00b2").replace("s2", "s\u00b2").replace(" ", "\u00b7")
+
+
+def _without_range(said: str, node: Schema) -> str:
+    """A description without the range that the schema has too."""
+
+    def repeats(found: re.Match[str]) -> bool:
+        return float(found[1]) == node.get("minimum") and node.get("maximum", float(found[2])) == float(found[2])
+
+    return ENDS.sub(lambda found: (", " if found["and"] else "") if repeats(found) else found[0], said)
 
 
 def _is_number(value: object) -> bool:

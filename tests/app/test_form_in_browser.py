@@ -121,6 +121,8 @@ def test_a_gable_with_a_tie_in_italian_ends_in_a_pdf(address, tmp_path):
     with form(address, language="it") as page:
         assert page.run("document.documentElement.lang") == "it"
         begun(page, "gable")
+        said = page.run("document.getElementById('at/wall/thickness/help').innerText")
+        assert said == "da 0,002 a 20 m; spessore 2b alla base"
         before = page.run("document.getElementById('to-results').textContent")
         count = page.run("document.querySelectorAll('#form fieldset').length")
         page.click("document.getElementById('at/effects')")

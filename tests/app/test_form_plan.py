@@ -1,6 +1,7 @@
 """The plan of the form from the schema of the file, and its input as tables of the file and back."""
 
 import math
+import re
 import tomllib
 
 import pytest
@@ -19,9 +20,37 @@ ITALIAN = MECHANISMS | {"Block", "Opening", "Gable", "SideStop", "code_spectrum"
 ITALIAN |= {"Tie", "Thrust", "Load", "AddedMass", "Wedge", "EarthPressure", "FrictionDamper", "Damper"}
 
 
+EXPLAINED = {"Block", "Opening", "Gable", "Thrust", "Load", "AddedMass", "Tie", "Wedge", "SideStop", "floor", "check"}
+EXPLAINED |= {"report", "run", "records_in", "GroundMotion", "code_spectrum", "PointSpectrum", "CodeSpectrum"}
+OF_TABLES = {"table", "list", "named", "pairs"}
+
+
 @pytest.fixture(scope="module")
 def plan():
     return Plan(toml_schema(), Words("it", TEXTS))
+
+
+@pytest.fixture(scope="module")
+def english():
+    return Plan(toml_schema(), Words("en", TEXTS))
+
+
+def shown(field):
+    """Whether a field is drawn with a line of help."""
+    return field.control not in OF_TABLES or (field.control == "table" and bool(field.choices))
+
+
+def places_in(plan, field, values):
+    """The tables that input of the form shows."""
+    place = plan.variant(field, values).id
+    yield place
+    for key, value in values.items():
+        own = plan.field(plan.tables[place], key)
+        if own is None or not own.variants or isinstance(value, str):
+            continue
+        items = value if isinstance(value, list) else [*value.values()] if own.control == "named" else [value]
+        for one in items:
+            yield from places_in(plan, own, one)
 
 
 def variant_named(plan, field, **names):
@@ -39,11 +68,11 @@ def field_of(plan, *keys, **names):
 
 def test_a_field_has_unit_range_default_and_help_of_the_declaration(plan):
     inset = field_of(plan, "wall", "inset")
-    assert (inset.control, inset.unit, inset.range, inset.default) == ("number", "m", "da 0 a 10", "0")
-    assert "crushed" in inset.help.lower()
+    assert (inset.control, inset.unit, inset.range, inset.default) == ("number", "m", "da 0 a 10 m", "0")
+    assert "schiacciamento" in inset.help
     assert not inset.needed
     thickness = field_of(plan, "wall", "thickness")
-    assert (thickness.range, thickness.needed, thickness.label) == ("da 0,002 a 20", True, "spessore")
+    assert (thickness.range, thickness.needed, thickness.label) == ("da 0,002 a 20 m", True, "spessore")
     assert field_of(plan, "wall", "density").unit == "kg/m³"
 
 
@@ -190,6 +219,69 @@ def test_every_argument_of_walls_has_words_in_each_language():
 
 def test_the_texts_of_the_form_are_in_every_language_and_none_of_the_report_is_hidden():
     own = tomllib.loads(TEXTS.read_text("utf-8"))
-    assert [key for key, text in own.items() if set(text) != set(languages())] == []
+    words = {key: text for key, text in own.items() if not key.startswith("help_")}
+    assert [key for key, text in words.items() if set(text) != set(languages())] == []
     assert own.keys() & texts().keys() == set()
     assert texts_of(Words("it", TEXTS))["run"] == "Calcola il moto"
+
+
+@pytest.mark.parametrize("language", languages())
+def test_a_range_stands_once_with_its_unit(language):
+    """A description that repeats the ends of the schema is without them; the rest of it stays as it is."""
+    plan = Plan(toml_schema(), Words(language, TEXTS))
+    twice = re.compile(r", (above )?-?[\d.e-]+\d to -?[\d.e-]*\d([.;,:](?!\d)| and |$)")
+    found = {
+        f"{place}.{one.key}": one.help + one.english
+        for place, fields in plan.tables.items()
+        for one in fields
+        if one.range and twice.search(one.help + one.english)
+    }
+    assert found == {}
+
+
+def test_ranges_are_printed_in_the_language(plan, english):
+    for one, thickness, mass, height in (
+        (english, "0.002 to 20 m", "0 to 10\u2078 kg", "0.01 to 200 m"),
+        (plan, "da 0,002 a 20 m", "da 0 a 10\u2078 kg", "da 0,01 a 200 m"),
+    ):
+        assert one.field(one.tables["Block.from_size!"], "thickness").range == thickness
+        assert one.field(one.tables["AddedMass"], "mass").range == mass
+        assert one.field(one.tables["Block.from_size!"], "height").range == height
+    assert plan.field(plan.tables["Thrust"], "force").range == "da \u221210\u2079 a 10\u2079 N"
+    assert plan.field(plan.tables["Tie.of_bar"], "yield_stress").range == "da 5\u00b710\u2077 a 2\u00b710\u2079 Pa"
+    assert field_of(english, "wall", "thickness").help == "2b at the base."
+    assert field_of(english, "wall", "inset").help.startswith(
+        "how far the edges that the wall rocks about lie inside its faces, less than b."
+    )
+    assert english.field(english.tables["Tie"], "strength").range == "from 0 N"
+
+
+def test_helps_of_templates_and_of_what_engineers_use_are_italian(plan, english):
+    """No help is a description of the program, and each of these keys has one."""
+    places = {
+        one for name in tasks.templates_of() for one in places_in(plan, plan.root, state_of(tasks.templates_of()[name]))
+    }
+    assert len(places) > 15
+    described = {one.help for fields in english.tables.values() for one in fields if one.help}
+    used = [(place, one) for place, fields in plan.tables.items() for one in fields if shown(one)]
+    assert [f"{place}.{one.key}" for place, one in used if one.help in described] == []
+    wanted = [
+        (place, one)
+        for place, one in used
+        if place in places or plan.names_of(one.key, place)[1].partition(".")[0] in EXPLAINED
+    ]
+    assert len(wanted) > 200
+    assert [f"{place}.{one.key}" for place, one in wanted if one.english] == []
+
+
+def test_a_key_without_italian_help_keeps_its_english_one_apart(plan, english):
+    law = plan.field(plan.tables["DampingLaw!"], "source")
+    assert (law.help, law.english) == ("", english.field(english.tables["DampingLaw!"], "source").help)
+    assert not any(one.english for fields in english.tables.values() for one in fields)
+
+
+def test_every_entry_of_the_table_of_helps_is_a_key(plan):
+    names = {name for place, fields in plan.tables.items() for one in fields for name in plan.names_of(one.key, place)}
+    helps = tomllib.loads(TEXTS.read_text("utf-8"))["help_it"]
+    assert len(helps) > 150
+    assert helps.keys() - names == set()

@@ -125,6 +125,7 @@ function drawValue(field, values, path, add) {
     set(values, field.key, event.target.value);
     changed();
   };
+  const described = field.english ? {lang: 'en', title: field.english} : {};
   let control;
   if (field.control === 'choice' || field.control === 'truth') {
     control = element('select', {...common, onchange: change});
@@ -138,9 +139,8 @@ function drawValue(field, values, path, add) {
     control = element('input', {...common, ...typed, type: 'text', placeholder: field.default ?? '', oninput: change});
     control.value = values[field.key] ?? '';
   }
-  const said = [field.range, element('span', {lang: 'en'}, field.help)].filter(Boolean);
+  const said = [[field.range, field.help].filter(Boolean).join('; ')];
   const unit = field.unit ? [element('span', {class: 'unit'}, field.unit)] : [];
-  if (field.range && field.help) said.splice(1, 0, '. ');
   if (control.type === 'file') {
     const names = field.control === 'folder' ? Object.keys(files) : [values[field.key] ?? []].flat();
     said.unshift(element('b', {}, names.join(', ')), ' ');
@@ -148,7 +148,7 @@ function drawValue(field, values, path, add) {
   return element(
     'div',
     {class: 'field'},
-    element('label', {for: id}, field.label, element('code', {}, field.key)),
+    element('label', {for: id}, field.label, element('code', described, field.key)),
     element('div', {class: 'control'}, control, ...unit),
     element('p', {class: 'help', id: notes}, ...said),
   );
