@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..problem.wall.effect import Anchored, Effect
+from ..problem.wall.effect import Effect
+from ..problem.wall.effects import link_effects
 from ..quantities import require_kind, require_text, shown
 from ..study.loading.code import OF_MECHANISM, Code
 from ..study.loading.code_check import DynamicCheck, MechanismCheck, Step, Verdict
@@ -145,8 +146,8 @@ def _adds(subject: Any, base: Any) -> bool:
     """Whether a case is another one of the same wall or masonry with further ties or dampers: a proposal."""
     if type(subject) is not type(base) or not hasattr(subject, "built") or subject.built != base.built:
         return False
-    further = [one for one in subject.effects if one not in base.effects]
-    return any(isinstance(one, Anchored) for one in further) and all(one in subject.effects for one in base.effects)
+    further = tuple(one for one in subject.effects if one not in base.effects)
+    return bool(link_effects(further)) and all(one in subject.effects for one in base.effects)
 
 
 class Sentence(NamedTuple):
