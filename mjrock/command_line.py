@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import errno
 import shutil
+from collections.abc import Sequence
 from enum import IntEnum
 from pathlib import Path
 from typing import NamedTuple
 
+from .contacts.files import aligned
 from .notice import notice
 
 WIDEST = 98
@@ -66,6 +68,17 @@ def add_output(made: argparse.ArgumentParser, what: str, default: str = "") -> N
     said = f"{what}; without it {default}" if default else what
     made.add_argument("-o", "--output", type=Path, metavar="PATH", help=said)
     made.add_argument("-f", "--force", action="store_true", help="replace files that exist")
+
+
+def ruled(rows: Sequence[Sequence[str]], sides: str) -> list[str]:
+    """The lines of a table with a rule below its heads.
+
+    Args:
+        rows: cells; the first row has the heads.
+        sides: of each column, "<" or ">".
+    """
+    head, *body = (line.rstrip() for line in aligned(rows, sides))
+    return [head, "-" * max(map(len, (head, *body))), *body]
 
 
 def require_free(path: Path, force: bool) -> Path:

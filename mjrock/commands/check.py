@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..assessment.assessment import Assessment
-from ..command_line import Answer, Status, complain, parser
+from ..command_line import Answer, Status, complain, parser, ruled
 from ..contacts.files import aligned
 from ..reporting.texts import FOUND, Words, languages
 from ..reporting.verdicts import Mechanism, conditions, ranked, required_checks, sentence_of
@@ -26,9 +26,8 @@ def table_of(mechanisms: Sequence[Mechanism], words: Words) -> str:
     for mechanism in order:
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([mechanism.name * (i == 0), *conditions(verdict, words)])
-    head, *body = (line.rstrip() for line in aligned(rows, "<<<>>><<"))
     said = sentence_of(order[0], "lead_governs" if order[1:] else "lead_alone", words)
-    return "\n".join([head, "-" * max(map(len, (head, *body))), *body, "", f"{said.start} {said.end}"])
+    return "\n".join([*ruled(rows, "<<<>>><<"), "", f"{said.start} {said.end}"])
 
 
 def steps_of(check: MechanismCheck, words: Words) -> list[str]:

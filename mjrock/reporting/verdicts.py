@@ -212,17 +212,28 @@ def _conditions(verdict: Verdict, words: Words) -> list[str]:
     return [what, state, *(element("td", one, kind="right") for one in numbers), element("td", held, kind=kind), clause]
 
 
-def designed(found: Design, words: Words) -> list[Markup]:
-    """Each value that was tried with its least ratio and the condition that it is of, and the result in a sentence."""
-    rows = []
+def design_rows(found: Design, words: Words) -> list[list[str]]:
+    """Cells of each value that was tried: its least ratio, whether it holds, and the condition that governs it with its
+    clause; below their heads."""
+    rows = [[words(f"verdict_{key}") for key in ("value", "ratio", "verdict", "check", "clause")]]
     for trial in found.trials:
         if trial.governs is None:
             rows.append([words.marked(trial.label), DASH, DASH, trial.refused, DASH])
             continue
-        kind, verdict = "holds" if trial.holds else "fails", trial.governs.verdict
-        cells = words.ratio(trial.ratio), element("td", words(kind), kind=kind), condition(trial.governs, words)
-        rows.append([words.marked(trial.label), *cells, verdict.clause or DASH])
-    heads = [words(f"verdict_{key}") for key in ("value", "ratio", "verdict", "check", "clause")]
+        held, clause = words("holds" if trial.holds else "fails"), trial.governs.verdict.clause or DASH
+        rows.append(
+            [words.marked(trial.label), words.ratio(trial.ratio), held, condition(trial.governs, words), clause]
+        )
+    return rows
+
+
+def designed(found: Design, words: Words) -> list[Markup]:
+    """Each value that was tried with what governs it, and the result in a sentence."""
+    heads, *cells = design_rows(found, words)
+    rows: list[list[Any]] = []
+    for trial, (label, ratio, held, *rest) in zip(found.trials, cells, strict=True):
+        kind = "holds" if trial.holds else "fails"
+        rows.append([label, ratio, held if trial.governs is None else element("td", held, kind=kind), *rest])
     return [table(heads, rows, right=(1,)), element("p", design_sentence(found, words))]
 
 

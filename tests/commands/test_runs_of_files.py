@@ -116,12 +116,21 @@ def test_what_nothing_moves_is_not_run(here, capsys):
 
 
 @pytest.mark.parametrize(
-    ("values", "status", "said"),
-    [(("20 cm", "60 cm"), Status.HOLDS, "60 cm"), (("20 cm", "21 cm"), Status.FAILS, "none of 2 values")],
+    ("values", "status", "said", "italian"),
+    [
+        (("20 cm", "60 cm"), Status.HOLDS, "60 cm is the first of 2", "60 cm è il primo di 2 valori per cui ogni"),
+        (
+            ("20 cm", "21 cm"),
+            Status.FAILS,
+            "None of 2 values",
+            "Nessuno dei 2 valori è verificato; il più vicino è",
+        ),
+    ],
 )
-def test_a_design_says_which_value_holds(values, status, said, here, capsys):
+def test_a_design_says_which_value_holds(values, status, said, italian, here, capsys):
     (here / "design.toml").write_text(WALL + SITE + DESIGN.format(*values))
     assert said in printed(capsys, "design", "walls/design.toml", status=status)
+    assert italian in printed(capsys, "design", "walls/design.toml", "-l", "it", status=status)
 
 
 def test_a_file_without_a_design_is_refused_with_the_remedy(capsys):
