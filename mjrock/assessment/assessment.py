@@ -91,11 +91,10 @@ class Assessment:
 
     def run(self) -> dict[str, list[Response]]:
         """The responses of all runs, by mechanism, see `analyses`."""
-        solving = {
-            name: [partial(self._of, self.mechanisms[name], task.solve) for task in tasks]
+        return {
+            name: [self._of(self.mechanisms[name], task.solve) for task in tasks]
             for name, tasks in self.analyses().items()
         }
-        return {name: [solve() for solve in each] for name, each in solving.items()}
 
     def dynamic_check(self, runs: Mapping[str, Sequence[Response]]) -> dict[str, DynamicCheck]:
         """The check by its runs of each mechanism, see `mjrock.dynamic_check`.

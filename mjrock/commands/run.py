@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..assessment.mechanisms import Mechanism
-from ..command_line import Answer, Status, add_output, parser, require_free
-from ..contacts.files import aligned, csv_text, write_text
+from ..command_line import Answer, Status, add_output, parser, require_free, ruled
+from ..contacts.files import csv_text, write_text
 from ..plotting.animation import animate
 from ..plotting.histories import history
 from ..plotting.style import save
@@ -47,8 +47,7 @@ def table_of(runs: Sequence[Analysis], rows: Sequence[Row]) -> str:
     shown = [("motion", "outcome", runs[0].PEAK.replace("_", " "))]
     for run, row in zip(runs, rows, strict=True):
         shown.append((str(run.labels["motion"]), row["outcome"], f"{row[run.PEAK]:.4g}"))
-    head, *body = (line.rstrip() for line in aligned(shown, "<<>"))
-    return "\n".join([head, "-" * max(map(len, (head, *body))), *body])
+    return "\n".join(ruled(shown, "<<>"))
 
 
 def written(runs: Sequence[Analysis], rows: Sequence[Row], files: Files, film: bool) -> list[Path]:
