@@ -67,6 +67,7 @@ WRITES = {
     "in_the_browser": {"view.png"},
     "plain_throughput": {"plain_throughput.txt"},
     "rebound_phase": {"rebound_phase.txt"},
+    "warp_throughput": {"warp_throughput.txt"},
     "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
     "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
