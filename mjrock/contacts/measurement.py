@@ -110,7 +110,7 @@ def measure(
     geom1: str | int,
     geom2: str | int,
     *,
-    speed: Annotated[float, Within(1e-6, 1e3, "m/s")] = 1.0,
+    speed: Annotated[float, Within(1e-9, 1e6, "m/s")] = 1.0,
     duration: Annotated[float, Within(1e-6, 1e3, "s")] = 1.0,
     keyframe: Keyframe = None,
     qpos: Sequence[float] | Array | None = None,
@@ -120,7 +120,7 @@ def measure(
     Args:
         model: a compiled model or a specification; it is not changed. `contact.apply(model)` comes first.
         geom1, geom2: names or numbers of the geoms.
-        speed: speed of approach of the blows [m/s], 1e-6 to 1000.
+        speed: speed of approach of the blows [m/s], 1e-9 to 1e6: a model may have millimetres.
         duration: how long the geoms rest, and then are pushed [s], 1e-6 to 1000.
         keyframe, qpos: the pose from which the geoms are moved together; see `contact_for`.
 
