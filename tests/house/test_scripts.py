@@ -295,6 +295,11 @@ LONG = {
     "in_the_browser",
     "plain_throughput",
     "rebound_phase",
+    "rest_on_processors",
+    "form_times",
+    "stacks_grippers_feet",
+    "rocking_by_the_guide",
+    "make_models",
 }
 """Scripts that take a while even with --quick."""
 
