@@ -137,7 +137,7 @@ class Mechanism:
 def case_of(problem: Any) -> Case | MasonryCase:
     """The case that stands for a problem in pictures and runs."""
     if isinstance(problem, Corner):
-        return Case(problem.block, effects=problem.masses)
+        return problem.case
     if isinstance(problem, VerticalBending | HorizontalBending):
         return Case(problem.wall)
     return problem  # type: ignore[no-any-return]

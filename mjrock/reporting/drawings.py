@@ -13,6 +13,7 @@ from matplotlib.patches import Polygon
 
 from ..plotting.bodies import FORCE, GROUND_COLOUR, STONE
 from ..problem.wall.bending import HorizontalBending, VerticalBending
+from ..problem.wall.effects import link_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import Array
 from .pictures import FAILS, SMALL, TALL, WIDE
@@ -83,6 +84,7 @@ def _corner(axes: Sequence[Axes], corner: Corner, words: Words) -> None:
         _stone(plan, outline)
     way = -1 / math.sqrt(2)
     _arrow(plan, (0.6 * far * way, 0.6 * far * way), (way, way), 0.5 * far)
+    _on_corner(plan, side, corner)
     _stone(side, [(0, 0), (far, 0), (far, h), (0, h)], GROUND_COLOUR)
     _stone(side, [(0, 0), (t, 0), (t + p, h), (0, h)])
     turned = 0.5 * SWAY
@@ -94,6 +96,29 @@ def _corner(axes: Sequence[Axes], corner: Corner, words: Words) -> None:
     for ax, name in ((plan, "plan"), (side, "elevation")):
         _plain(ax)
         ax.set_title(words(name), fontsize=SMALL, loc="left")
+
+
+def _on_corner(plan: Axes, side: Axes, corner: Corner) -> None:
+    """What a corner bears: rods along the walls, arrows of forces, dots of loads and masses."""
+    t, far = corner.thickness, (corner.thickness + corner.depth) * (1 + BEYOND)
+    links = link_effects(corner.effects).values()
+    for link in links:
+        z = link.height
+        for ax, *ends in ((plan, (0, t / 2), (far, t / 2)), (plan, (t / 2, 0), (t / 2, far)), (side, (0, z), (far, z))):
+            ax.plot(*zip(*ends, strict=True), color=link.colour, linewidth=1.4, zorder=4)
+    for effect in (one for one in corner.effects if one not in links):
+        out, _, up = effect.force_vector or (0.0, 0.0, 0.0)
+        if out:
+            way, face = (-1, t) if out > 0 else (1, 0)
+            _arrow(plan, (face, face), (way / math.sqrt(2), way / math.sqrt(2)), 0.25 * far)
+            _arrow(side, (way * 0.25 * far, effect.height), (way, 0), 0.25 * far)
+            continue
+        along = t / 2 - math.sqrt(2) * effect.offset  # half of what lies behind the post is in either wall
+        at = [(along, t / 2), (t / 2, along)] if along > t / 2 else [((along + t / 2) / 2,) * 2]
+        for ax, places in ((plan, at), (side, [(at[0][0], effect.height)])):
+            ax.plot(*zip(*places, strict=True), "o", color=FORCE, markersize=4, zorder=6)
+        if up:
+            _arrow(side, (at[0][0], effect.height), (0, -1), 0.2 * corner.height)
 
 
 def _between_floors(ax: Axes, bending: VerticalBending, words: Words) -> None:

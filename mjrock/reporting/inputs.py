@@ -172,9 +172,12 @@ def of_horizontal_bending(bending: HorizontalBending, words: Words) -> list[Inpu
 
 
 def of_corner(corner: Corner, words: Words) -> list[Input]:
-    """A corner that turns along its diagonal."""
-    units = {"thickness": "m", "height": "m", "angle": "rad", "density": "kg/m3"}
-    return _rows(((key, getattr(corner, key), unit) for key, unit in units.items()), words)
+    """A corner that turns along its diagonal, with a rod in either wall for each tie."""
+    sizes = ((key, getattr(corner, key), one.within.unit) for key, one in declared(Corner).items())
+    effects = of_effects(corner.effects, words)
+    ties = {f"tie_{i}" for i in range(len(corner.effects))}
+    said = [one._replace(name=words("rods", name=one.name)) if one.key in ties else one for one in effects]
+    return [*_rows(sizes, words), *said]
 
 
 def _rows(values: Iterable[tuple[str, float, str]], words: Words, *, computed: bool = False) -> list[Input]:

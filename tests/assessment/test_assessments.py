@@ -1,5 +1,6 @@
 """Whole files: jobs of an engineer with the numbers of the same objects in Python, and what they become."""
 
+import dataclasses
 import math
 import tomllib
 from pathlib import Path
@@ -175,3 +176,69 @@ def test_the_variants_of_row_houses_have_the_verdicts_of_python():
     assert list(checks) == list(expected)
     for name, case in expected.items():
         same(checks[name], mr.mechanism_check(case, {"SLV": slv, "SLC": slc}))
+
+
+CORNER = """
+kind = "Corner"
+thickness = "50 cm"
+height = 4.0
+angle = "30 deg"
+[site]
+code = "EC8 type 1"
+ag = "0.15 g"
+soil = "A"
+[[effects]]
+kind = "Thrust"
+height = "4 m"
+force = "2 kN"
+[[effects]]
+kind = "Load"
+height = 4.0
+force = "12 kN"
+offset = "-60 cm"
+[[effects]]
+kind = "Tie"
+make = "of_bar"
+height = 3.8
+diameter = "16 mm"
+yield_stress = "235 MPa"
+length = 6.0
+plate = "20 cm"
+thickness = "50 cm"
+shear_strength = "30 kPa"
+compressive_strength = "1.5 MPa"
+ultimate = "3 cm"
+[run]
+solver = "analytical"
+"""
+
+
+def test_a_corner_with_its_roof_and_rods_is_that_of_python(tmp_path):
+    masonry = {"thickness": 0.5, "shear_strength": 30e3, "compressive_strength": 1.5e6}
+    tie = mr.Tie.of_bar(3.8, 0.016, 235e6, 6.0, plate=0.2, ultimate=0.03, **masonry)
+    roof = mr.Thrust(4.0, 2e3), mr.Load(12e3, 4.0, -0.6)
+    corner = mr.Corner(0.5, 4.0, math.pi / 6, effects=(*roof, tie))
+    assessment = mr.from_toml(text=CORNER)
+    mechanism = assessment.mechanisms[""]
+    assert mechanism.problem == corner
+    same(assessment.check()[""], mr.mechanism_check(corner, mr.code_spectrum("EC8 type 1", ag=0.15 * g, soil="A")))
+    assert mechanism.case.effects == corner.case.effects
+    page = assessment.report(tmp_path / "corner.html", language="it").read_text(encoding="utf-8")
+    assert "in ciascuna parete" in page
+    with pytest.raises(
+        mr.AssessmentError, match=r"line 18: effects\[1\]\.offset: effects\[1\], offset of the Load = -6 m"
+    ):
+        mr.from_toml(text=CORNER.replace("-60 cm", "-6 m"))
+    damper = CORNER.replace('kind = "Thrust"', 'kind = "Damper"')
+    with pytest.raises(mr.AssessmentError, match=r"kind = 'Damper' .*is not known; it is one of Tie, "):
+        mr.from_toml(text=damper)
+    designed = CORNER + """[design]\nkey = "effects[2].diameter"\nvalues = ["12 mm", "16 mm", "20 mm"]\n"""
+    found = mr.from_toml(text=designed).design()
+    by_hand = mr.design(
+        lambda d: dataclasses.replace(
+            corner, effects=(*roof, mr.Tie.of_bar(3.8, d, 235e6, 6.0, plate=0.2, ultimate=0.03, **masonry))
+        ),
+        [0.012, 0.016, 0.020],
+        mr.code_spectrum("EC8 type 1", ag=0.15 * g, soil="A"),
+    )
+    assert [trial.ratio for trial in found.trials] == [trial.ratio for trial in by_hand.trials]

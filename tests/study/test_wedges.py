@@ -129,7 +129,7 @@ def test_a_centroid_behind_the_inner_edge_needs_a_side_stop():
 @pytest.mark.parametrize(
     ("call", "complaint"),
     [
-        (lambda: mr.Wedge(25.0, 0.5, 9.0), "angle of the wedge = 25 rad is outside the valid range 0.01 to 1.2 rad"),
+        (lambda: mr.Wedge(25.0, 0.5, 9.0), "angle of the wedge = 25 rad is outside the valid range 1e-06 to 1.2 rad"),
         (lambda: mr.Wedge(0.4, 0.5, 9.5).behind(FACADE), "height of the wedge = 9.5 m is outside the valid range"),
         (lambda: mr.Wedge(0.4, 0.5, 9.0, number=0), "number = 0"),
         (lambda: mr.Wedge(0.4, 0.5, 9.0).behind(3), "facade = 3 of type int is not a Block"),
@@ -163,3 +163,17 @@ def test_sketch_film_and_report_show_the_wedges_once_and_not_the_masses_that_sta
         text = mr.report(case, answer, tmp_path / "a.html", language=language).read_text(encoding="utf-8")
         assert text.count(said) == 1
         assert "wedge" not in text.replace("wedges of side walls", "")
+
+
+def test_a_load_may_rest_on_the_wedges():
+    """By moments about the toe; beyond the wedge nothing carries it."""
+    facade = mr.Block.from_size(thickness=0.8, height=9.0, length=8.0)
+    wedge = mr.Wedge(0.4, 0.5, 9.0)
+    masses = wedge.behind(facade)
+    alone = mr.pushover(mr.Case(facade, effects=masses))
+    at = -0.4 - 0.7 * wedge.depth
+    loaded = mr.pushover(mr.Case(facade, effects=(*masses, mr.Load(50e3, 9.0, at))))
+    moment = alone.case.wall.weight * alone.case.wall.centroid_height
+    assert loaded.start == pytest.approx(alone.start + 50e3 * (0.4 - at) / moment, rel=1e-12)
+    with pytest.raises(ValueError, match=r"offset of the Load = -4\.3 m is outside the valid range -4.20"):
+        mr.Case(facade, effects=(*masses, mr.Load(50e3, 9.0, -4.3)))

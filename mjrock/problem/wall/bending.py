@@ -24,13 +24,12 @@ from ...quantities import (
     keep,
     keep_declared,
     require_kind,
-    require_sequence,
     require_within,
     short_repr,
     warn_of,
 )
 from .block import Block
-from .effects import AddedMass, Load
+from .effects import AddedMass, Load, required_effects
 from .section import moments
 from .tie import Tie
 
@@ -157,14 +156,11 @@ class VerticalBending:
             keep(self, bearing=require_within("bearing", self.bearing, 1e-3 * thickness, thickness, "m"))
         if self.crack is not None:
             keep(self, crack=require_within("crack", self.crack, CRACKS[0] * height, CRACKS[1] * height, "m"))
-        given = (self.effects,) if isinstance(self.effects, Load | AddedMass) else self.effects
-        require_sequence("effects", given, "a sequence of Load and AddedMass")
-        for i, effect in enumerate(given):
-            require_kind(f"effects[{i}]", effect, Load, AddedMass)
+        keep(self, effects=required_effects("effects", self.effects, (Load, AddedMass)))
+        for i, effect in enumerate(self.effects):
             require_within(f"effects[{i}], height", effect.height, 0.0, height, "m")
             if isinstance(effect, Load):
                 require_within(f"effects[{i}], offset", effect.offset, -self.wall.b, self.wall.b, "m")
-        keep(self, effects=tuple(given))
 
     @property
     def lever(self) -> float:

@@ -98,6 +98,8 @@ class Case(Carrying):
         """Check that each effect is on the wall and that the wall stands with them, and keep them as a tuple."""
         self._keep_sequence()
         top, b = 2 * self.block.h * (1 + 1e-12), self.block.b * (1 + 1e-12)
+        wedges = np.vstack([np.empty((0, 2)), *(mass.outline for mass in self.each(AddedMass))])
+        inner = float(wedges[:, 0].min(initial=-b))  # a load may rest on wedges of side walls
         for i, effect in enumerate(self.effects):
             if isinstance(effect, SideStop):
                 raise TypeError(f"effects[{i}] = {shown(effect)}: give it as side_stop")
@@ -109,7 +111,7 @@ class Case(Carrying):
             require_only(f"effects[{i}]", effect)
             require_within(f"effects[{i}], height of the {type(effect).__name__}", effect.height, 0.0, top, "m")
             if isinstance(effect, Load):
-                require_within(f"effects[{i}], offset of the Load", effect.offset, -b, b, "m")
+                require_within(f"effects[{i}], offset of the Load", effect.offset, inner, b, "m")
         for side, name in ((1.0, "outwards"), (-1.0, "inwards")):
             held = side > 0 and self.overturning_rotation > 0  # by ties
             if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0 and not held:

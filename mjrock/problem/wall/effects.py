@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from ...notebook import Drawn
-from ...quantities import Within, keep, keep_declared, require_kind, require_sequence, short_repr
+from ...quantities import Within, keep, keep_declared, named, require_kind, require_sequence, short_repr
 from ..ground.motion import GroundMotion
 from .effect import (
     HIGHEST_WALL,
@@ -273,18 +273,18 @@ class SideStop:
         keep_declared(self, "side stop")
 
 
-def required_loads(loads: Any, takes: str) -> tuple[Thrust | Load, ...]:
-    """Loads that grow, or a single one, as a tuple; a TypeError says what they should be."""
-    given = (loads,) if isinstance(loads, Thrust | Load) else () if loads is None else loads
-    require_sequence("loads", given, takes)
-    for i, load in enumerate(given):
-        require_kind(f"loads[{i}]", load, Thrust, Load)
-    return tuple(given)
-
-
 EFFECT_KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, AddedMass)
 """The kinds of effects, in the order in which scenes, pictures and reports name them."""
 Kind = TypeVar("Kind", bound=Effect)
+
+
+def required_effects(name: str, values: Any, kinds: tuple[type[Kind], ...], takes: str = "") -> tuple[Kind, ...]:
+    """Effects of some kinds, or a single one, as a tuple; a TypeError with their name says what they should be."""
+    given = (values,) if isinstance(values, kinds) else values
+    require_sequence(name, given, takes or f"a sequence of {named([kind.__name__ for kind in kinds])}")
+    for i, one in enumerate(given):
+        require_kind(f"{name}[{i}]", one, *kinds)
+    return tuple(given)
 
 
 def named_effects(effects: Sequence[Effect]) -> dict[str, Effect]:

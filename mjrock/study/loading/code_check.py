@@ -494,7 +494,7 @@ def _mechanism_of(case: Checked, code: Code) -> _Mechanism:
         return _of_bending(case)
     if isinstance(case, LimitCurve):
         return _of_blocks(case, code)
-    return _of_wall(Case(case.block, 0.0, 1.0, effects=case.masses) if isinstance(case, Corner) else case, code)
+    return _of_wall(case.case if isinstance(case, Corner) else case, code)
 
 
 def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:

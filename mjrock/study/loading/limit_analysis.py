@@ -24,7 +24,7 @@ from ...problem.masonry.lines import free_numbers, mean_slip_rates
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.case import Case
 from ...problem.wall.effect import Effect
-from ...problem.wall.effects import Load, Thrust, link_effects, required_loads
+from ...problem.wall.effects import Load, Thrust, link_effects, required_effects
 from ...problem.wall.restoring_moment import moment_at_strength, of_force
 from ...quantities import (
     Array,
@@ -62,6 +62,8 @@ TANGENT, FARTHER = 1e-4, 10
 steps that are expected a curve may take until nothing is borne any more [-]."""
 Loads = Mapping[str, ArrayLike] | Sequence[Thrust | Load] | Thrust | Load
 """Loads that grow, see `collapse_multiplier`."""
+GROWING: tuple[type[Thrust | Load], ...] = (Thrust, Load)
+"""Effects that may grow."""
 MOVED = "moved by"
 """How the reason begins why a curve ends at the displacement to which it was to go."""
 HALVINGS = 40
@@ -205,7 +207,7 @@ def overturned(case: Case, direction: object, loads: Any) -> Collapse:
     way = 0.0 if direction is None else require_real("direction", direction)
     if way not in (-1.0, 0.0, 1.0) or way == direction == 0:
         raise ValueError(f"direction = {way:g} is not a direction; the valid ones are 1, -1 and None")
-    grown = required_loads(loads, "Thrust, Load or a sequence of them")
+    grown = required_effects("loads", () if loads is None else loads, GROWING, "Thrust, Load or a sequence of them")
     wall, top = case.wall, 2 * case.wall.h * (1 + 1e-12)
     forces = [(0.0, wall.centroid_height, way * wall.weight, 0.0)]
     for i, load in enumerate(grown):
@@ -300,7 +302,8 @@ def _growing(masonry: Masonry, loads: Any) -> Mapping[str, tuple[float, ...]] | 
     if loads is None:
         return ()
     if not isinstance(loads, Mapping):
-        effects = required_loads(loads, "Thrust, Load, a sequence of them, or a mapping of blocks to forces [N]")
+        takes = "Thrust, Load, a sequence of them, or a mapping of blocks to forces [N]"
+        effects = required_effects("loads", loads, GROWING, takes)
         try:
             return MasonryCase(masonry, 1.0, effects=effects, settled=False).effects
         except (TypeError, ValueError) as error:
