@@ -167,9 +167,11 @@ class Plan:
     def _variants(self, tables: list[tuple[str, Schema]], here: str) -> tuple[Variant, ...]:
         """What a table may be."""
         found = []
+        kinds = {one["properties"].get("kind", {}).get("const") for _, one in tables}
+        chosen = NAMES if len(kinds) > 1 else NAMES[1:]
         for i, (name, one) in enumerate(tables):
             properties = one["properties"]
-            consts = {key: properties[key] for key in NAMES if "const" in properties.get(key, {})}
+            consts = {key: properties[key] for key in chosen if "const" in properties.get(key, {})}
             names = {key: str(given["const"]) for key, given in consts.items()}
             usual = all("default" in given for given in consts.values())
             id = name if name and one is self.schema["$defs"].get(name) else f"{here}/{i}"

@@ -24,7 +24,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from ..assessment.assessment import Assessment, assessment_of
-from ..assessment.schema import toml_schema
+from ..assessment.schema import whole_schema
 from ..assessment.tables import AssessmentError, Fault, spelt_place
 from ..assessment.templates import seeds
 from ..assessment.writing import toml_text
@@ -58,7 +58,7 @@ def words_of(language: object) -> Words:
 @cache
 def plan_of(language: str) -> Plan:
     """The plan of the form in a language."""
-    return Plan(toml_schema(), words_of(language))
+    return Plan(whole_schema(), words_of(language))
 
 
 def form(request: Mapping[str, Any], send: Send) -> None:

@@ -63,13 +63,13 @@ class Shaking:
 @cache
 def run_maker(solver: str) -> Maker:
     """The keys of `[run]` for a solver: its options, and those that all have."""
-    from ..study.analysis import SOLVERS as SOLVING
+    from ..study.analysis import solver_named
 
     own = {
         "solver": Key("solver", Annotated[str, OneOf(SOLVERS)], "analytical", "by which the motion is solved"),
         "polarities": Key("polarities", bool, True, "whether each record is run in both polarities"),
     }
-    call = SOLVING[solver]
+    call = solver_named(solver)
     return Maker(call, own | dict(maker_of(call).without(*GIVEN).keys), "How the mechanism is run.")
 
 

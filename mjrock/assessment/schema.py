@@ -28,8 +28,8 @@ from .declarations import (
 from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, SECTIONS, SITES
 from .reading import NUMERIC, is_mapping, parted
 from .running import DYNAMIC, RECORDS, SCALED, SOLVERS, run_maker
+from .sharing import Schema, Shared
 
-Schema = dict[str, Any]
 STATES = "SLV", "SLC", "SLD"
 """Limit states that an editor proposes; a code of one's own may have others."""
 
@@ -37,9 +37,15 @@ STATES = "SLV", "SLC", "SLD"
 def toml_schema() -> Schema:
     """The JSON schema of the file of an assessment, draft 2020-12, as `python -m mjrock schema` prints it.
 
-    Each class, constructor and function that a table stands for is one of `$defs`. A number has its `minimum` and
-    `maximum`, and beside them its `unit` in SI, empty for a plain number; a text is a number with a unit.
+    Each class, constructor and function that a table stands for is one of `$defs`, and so is each key that several of
+    them have. A number has its `minimum` and `maximum`, and beside them its `unit` in SI, empty for a plain number; a
+    text is a number with a unit.
     """
+    return Shared(whole_schema()).schema
+
+
+def whole_schema() -> Schema:
+    """The same schema for forms and templates: each table has all of its keys, which stand in others too."""
     return SchemaWriter().whole()
 
 
@@ -157,7 +163,7 @@ class SchemaWriter:
         if full not in self.parts:
             self.parts[full] = {}  # of a class within itself
             one = self._table(maker, partial=partial)
-            given = {"kind": {"const": kind}} if named else {}
+            given = {"kind": {"const": kind} | ({} if named else {"default": kind})}
             needed = ["kind"] if named else []
             if make != usual or make:
                 given["make"] = {"const": make or kind} | ({"default": make} if make == usual else {})
@@ -237,6 +243,11 @@ def _number(kinds: tuple[Any, ...], within: Within | None) -> Schema:
     whole = within.whole if within else int in kinds and float not in kinds
     found: Schema = {"type": "integer"} if whole else {"type": ["number", "string"]}
     if within is not None:
-        found |= {"minimum": within.low} | ({} if within.infinite else {"maximum": within.high})
+        found |= {"minimum": _short(within.low)} | ({} if within.infinite else {"maximum": _short(within.high)})
         found |= {"unit": "" if within.whole else within.unit}
     return found
+
+
+def _short(end: float) -> float:
+    """An end of a range as it is written with the fewest characters."""
+    return int(end) if float(end).is_integer() else end

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from .schema import toml_schema
+from .schema import whole_schema
 from .writing import toml_key, toml_value
 
 FILE = Path(__file__).with_name("templates.toml")
@@ -151,12 +151,12 @@ def comment(text: str) -> list[str]:
 
 def template(name: str) -> str:
     """The text of a template."""
-    return written(seeds()[name], toml_schema())
+    return written(seeds()[name], whole_schema())
 
 
 def templates() -> dict[str, str]:
     """The texts of all templates by name."""
-    schema = toml_schema()
+    schema = whole_schema()
     return {name: written(values, schema) for name, values in seeds().items()}
 
 

@@ -12,4 +12,4 @@ from ..command_line import Answer, parser
 def answer(argv: Sequence[str]) -> Answer:
     """The JSON schema of files."""
     parser("schema", "Print the JSON schema of files, which editors complete and check TOML by.").parse_args(argv)
-    return Answer(json.dumps(toml_schema(), indent=1, ensure_ascii=False))
+    return Answer(json.dumps(toml_schema(), ensure_ascii=False, separators=(",", ":")))

@@ -5,6 +5,7 @@ Effects, contacts, motions, solvers and versions are written alike for both.
 
 from __future__ import annotations
 
+import importlib.metadata
 import math
 import platform
 from collections.abc import Mapping, Sequence
@@ -13,7 +14,6 @@ from textwrap import fill
 from typing import Any, ClassVar, Protocol
 
 import matplotlib
-import mujoco
 import numpy as np
 import scipy
 from matplotlib.figure import Figure
@@ -380,7 +380,7 @@ def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
     of what has computed this, and what was drawn by chance."""
     made = {
         "mjrock": __version__,
-        "MuJoCo": mujoco.__version__,
+        "MuJoCo": importlib.metadata.version("mujoco"),
         "NumPy": np.__version__,
         "SciPy": scipy.__version__,
         "matplotlib": matplotlib.__version__,

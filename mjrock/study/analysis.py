@@ -7,6 +7,7 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import ClassVar, Protocol
 
@@ -14,7 +15,6 @@ import numpy as np
 
 from ..contacts.files import write_arrays
 from ..distinct.explicit import solve_explicit
-from ..engine.simulation import simulate
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution
 from ..problem.masonry.case import AnyCase, MasonryCase
@@ -125,14 +125,21 @@ def subject_of(case: AnyCase) -> Subject:
     return OfMasonry(case) if isinstance(case, MasonryCase) else OfWall(case)
 
 
-SOLVERS: dict[str, Callable[..., Response]] = {
-    "analytical": solve_analytical,
-    "compliant": solve_compliant,
-    "MuJoCo": simulate,
-    "explicit": solve_explicit,
-}
-OPTIONS = {name: tuple(inspect.signature(solver).parameters)[2:] for name, solver in SOLVERS.items()}
-"""The options of each solver."""
+@cache
+def solver_named(name: str) -> Callable[..., Response]:
+    """A solver by its name. That of MuJoCo brings MuJoCo, which no other needs."""
+    if name == "MuJoCo":
+        from ..engine.simulation import simulate
+
+        return simulate
+    others: dict[str, Callable[..., Response]] = {
+        "analytical": solve_analytical,
+        "compliant": solve_compliant,
+        "explicit": solve_explicit,
+    }
+    return others[name]
+
+
 TIE_COLUMNS = ("elongation_m", "force_N", "energy_J", "broken_s")
 """Columns of each tie, after its name: how far it has yielded, its largest force, what yielding and breaking took, and
 when it broke, empty where it did not."""
@@ -183,9 +190,8 @@ class Analysis:
         if not isinstance(self.solver, str) or self.solver not in solvers:
             raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(solvers)}{whom}")
         subject.require(self.solver, self.e, self.contacts)
-        valid = OPTIONS[self.solver]
-        unknown = self.options.keys() - set(valid)
-        if unknown:
+        valid = tuple(inspect.signature(solver_named(self.solver)).parameters)[2:]
+        if unknown := self.options.keys() - set(valid):
             raise ValueError(
                 f"{self.solver} has no option {', '.join(sorted(map(str, unknown)))}; it has {', '.join(valid)}"
             )
@@ -219,10 +225,10 @@ class Analysis:
     def solve(self) -> Response:
         """The response."""
         if self.solver != "analytical":
-            return SOLVERS[self.solver](self.case, self.contacts, **self.options)
+            return solver_named(self.solver)(self.case, self.contacts, **self.options)
         with warnings.catch_warnings():  # the warning came when the analysis was made
             warnings.filterwarnings("ignore", message="the restitution is that of ", category=Implausible)
-            return SOLVERS[self.solver](self.case, self.e, **self.options)
+            return solver_named(self.solver)(self.case, self.e, **self.options)
 
     def __call__(self, history: Path | None = None) -> Row:
         """Solve, keep the history in the file given, and return the columns of the row."""

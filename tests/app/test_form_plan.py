@@ -10,7 +10,7 @@ import mjrock as mr
 from mjrock.app import tasks
 from mjrock.app.form import TEXTS, Plan, state_of, text_of, texts_of, typed
 from mjrock.assessment.assessment import assessment_of
-from mjrock.assessment.schema import toml_schema
+from mjrock.assessment.schema import whole_schema
 from mjrock.assessment.writing import toml_text
 from mjrock.reporting.texts import Words, languages, texts
 
@@ -27,12 +27,12 @@ OF_TABLES = {"table", "list", "named", "pairs"}
 
 @pytest.fixture(scope="module")
 def plan():
-    return Plan(toml_schema(), Words("it", TEXTS))
+    return Plan(whole_schema(), Words("it", TEXTS))
 
 
 @pytest.fixture(scope="module")
 def english():
-    return Plan(toml_schema(), Words("en", TEXTS))
+    return Plan(whole_schema(), Words("en", TEXTS))
 
 
 def shown(field):
@@ -204,7 +204,7 @@ def test_input_becomes_an_assessment(plan):
 def test_every_argument_of_walls_has_words_in_each_language():
     """English ones may be those of the program; every other language has its own."""
     for language in languages():
-        plan = Plan(toml_schema(), Words(language, TEXTS))
+        plan = Plan(whole_schema(), Words(language, TEXTS))
         wanted = {id: fields for id, fields in plan.tables.items() if id.partition(".")[0].rstrip("!?*") in ITALIAN}
         assert len(wanted) > 15
         words = plan.words.texts
@@ -228,7 +228,7 @@ def test_the_texts_of_the_form_are_in_every_language_and_none_of_the_report_is_h
 @pytest.mark.parametrize("language", languages())
 def test_a_range_stands_once_with_its_unit(language):
     """A description that repeats the ends of the schema is without them; the rest of it stays as it is."""
-    plan = Plan(toml_schema(), Words(language, TEXTS))
+    plan = Plan(whole_schema(), Words(language, TEXTS))
     twice = re.compile(r", (above )?-?[\d.e-]+\d to -?[\d.e-]*\d([.;,:](?!\d)| and |$)")
     found = {
         f"{place}.{one.key}": one.help + one.english

@@ -93,17 +93,6 @@ def test_files_are_written_and_read_again(path, tmp_path):
     assert all(one.problem == other.problem for one, other in pairs)
 
 
-@pytest.mark.parametrize("path", sorted(FILES.glob("*.toml")), ids=lambda path: path.stem)
-def test_files_fit_the_schema(path):
-    jsonschema = pytest.importorskip("jsonschema")
-    schema = mr.toml_schema()
-    jsonschema.Draft202012Validator.check_schema(schema)
-    document = tomllib.loads(path.read_text(encoding="utf-8"))
-    assert jsonschema.Draft202012Validator(schema).is_valid(document)
-    for wrong in ({"language": "fr"}, {"wal": {}}, {"mechanisms": {"a": {"wall": {"thicknes": 0.3}}}}):
-        assert not jsonschema.Draft202012Validator(schema).is_valid(document | wrong)
-
-
 def test_a_report_has_the_checks_and_the_runs(tmp_path):
     assessment = mr.from_toml(FILES / "gable.toml")
     page = assessment.report(tmp_path / "gable.html").read_text(encoding="utf-8")

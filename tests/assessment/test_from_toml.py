@@ -336,11 +336,16 @@ def test_every_public_effect_and_builder_is_in_the_schema():
     assert {"Tie.of_bar", "Wedge", "EarthPressure", "Block.from_slenderness!"} <= set(parts)
 
 
-def test_a_kinematic_check_brings_no_mujoco():
+@pytest.mark.parametrize(
+    "section", ["", "[report]\ntitle = 'x'\n", "[run]\nsolver = 'explicit'\n", "[run]\nrtol = 1e-8\n"]
+)
+def test_a_kinematic_check_brings_no_mujoco(section):
+    """Whatever the file has for reports and for runs by other solvers."""
     code = f"""
 import sys
 import mjrock as mr
-print(mr.from_toml(text={f"{SITE}{WALL}{EFFECTS}"!r}).check()[""].table())
-assert not [name for name in ("mujoco", "matplotlib", "pandas") if name in sys.modules]
+print(mr.from_toml(text={f"{SITE}{WALL}{section}{EFFECTS}"!r}).check()[""].table())
+unneeded = "mujoco", "pandas", *(["matplotlib"] if "report" not in {section!r} else [])
+assert not [name for name in unneeded if name in sys.modules]
 """
     subprocess.run([sys.executable, "-W", "error", "-W", "ignore::UserWarning", "-c", code], check=True)

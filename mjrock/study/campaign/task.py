@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import importlib.metadata
 import math
 import time
 import zlib
@@ -13,7 +14,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, cast, overload
 
-import mujoco
 import numpy as np
 
 from ..._version import __version__
@@ -102,7 +102,7 @@ def _compared(kind: type) -> tuple[str, ...]:
     return tuple(field.name for field in dataclasses.fields(kind) if field.compare)
 
 
-VERSION = f"mjrock {__version__}, MuJoCo {mujoco.__version__}"
+VERSION = f"mjrock {__version__}, MuJoCo {importlib.metadata.version('mujoco')}"
 """The programs that made a row; its task has another key with other versions."""
 
 Row = dict[str, Any]
