@@ -28,7 +28,7 @@ from .declarations import (
 from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, SECTIONS, SITES
 from .reading import NUMERIC, is_mapping, parted
 from .running import DYNAMIC, RECORDS, SCALED, SOLVERS, run_maker
-from .sharing import Schema, Shared
+from .sharing import Schema, shared
 
 STATES = "SLV", "SLC", "SLD"
 """Limit states that an editor proposes; a code of one's own may have others."""
@@ -37,11 +37,11 @@ STATES = "SLV", "SLC", "SLD"
 def toml_schema() -> Schema:
     """The JSON schema of the file of an assessment, draft 2020-12, as `python -m mjrock schema` prints it.
 
-    Each class, constructor and function that a table stands for is one of `$defs`, and so is each key that several of
-    them have. A number has its `minimum` and `maximum`, and beside them its `unit` in SI, empty for a plain number; a
+    Each class, constructor and function that a table stands for is one of `$defs`, and so is each part that occurs
+    again. A number has its `minimum` and `maximum`, and beside them its `unit` in SI, empty for a plain number; a
     text is a number with a unit.
     """
-    return Shared(whole_schema()).schema
+    return shared(whole_schema())
 
 
 def whole_schema() -> Schema:
