@@ -87,7 +87,7 @@ if TYPE_CHECKING:
     from .result.ending import Outcome
     from .result.ledger import Ledger
     from .result.problem import scene_of
-    from .result.response import MasonryResponse, Response
+    from .result.response import MasonryResponse, Response, load
     from .result.rocking import Impact
     from .scene.fixed_step import automatic_timestep
     from .scene.masonry import masonry_scene
@@ -130,8 +130,8 @@ __all__ = [
     "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "components_in",
     "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "design",
     "dynamic_check", "fit_capacities", "fit_fragility", "from_toml", "hertz_stiffness", "ida", "inspect_contacts",
-    "inspect_flexes", "joint_stiffness", "layered_stiffness", "limit_curve", "load_check", "lost", "masonry_mjcf",
-    "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
+    "inspect_flexes", "joint_stiffness", "layered_stiffness", "limit_curve", "load", "load_check", "lost",
+    "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
     "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
     "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
     "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",

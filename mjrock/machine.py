@@ -35,6 +35,7 @@ def kernels() -> dict[str, str]:
     return found
 
 
+@cache
 def description() -> str:
     """The processor, Python, and the versions and kernels of what computes, in one line."""
     versions = [f"Python {platform.python_version()} on {platform.machine()}"]

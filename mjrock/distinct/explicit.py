@@ -16,7 +16,7 @@ from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.motion import required_spacing
 from ..result.problem import problem_of, required_start
-from ..result.response import End, Response, State
+from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
 from ..scene.explicit_step import warn_if_tiny
 from .following import Stepping, follow, warn_if_long
@@ -86,7 +86,7 @@ def solve_explicit(
         >>> mr.solve_explicit(mr.MasonryCase(column, duration=0.1)).outcome.value
         'at rest'
     """
-    watch = Stopwatch()
+    given, watch = locals().copy(), Stopwatch()
     problem_of(case, contacts)
     require_flag("ledger", ledger)
     require_flag("forces", forces)
@@ -133,7 +133,7 @@ def solve_explicit(
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
-    return response
+    return recorded(response, given)
 
 
 def solve_shortly(case: AnyCase, contacts: Contacts | None) -> None:

@@ -14,7 +14,7 @@ from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.ledger import StepError
 from ..result.problem import Problem, problem_of, require_in_text, required_start
-from ..result.response import End, Response, State
+from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
@@ -131,7 +131,7 @@ def simulate(
         if collisions:
             response = simulate_plain(problem, options, state)
             response.stats.update(watch.took())
-            return response
+            return recorded(response, given)
         scene = problem.scene(method)
         warn_if_sheared(scene)
         course = problem.course(scene)
@@ -153,7 +153,7 @@ def simulate(
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
-    return response
+    return recorded(response, given)
 
 
 def require_left_out(**given: object) -> None:

@@ -23,7 +23,7 @@ from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require
 from ..result.ending import Stopwatch
 from ..result.motion import SampledMotion, intervals, required_spacing, thinned
 from ..result.reading import wall_reading
-from ..result.response import Response
+from ..result.response import Response, recorded
 from ..result.ties import Plastic
 from .equations import Wall
 
@@ -59,6 +59,7 @@ def solve_compliant(
         >>> answer.outcome.value
         'at rest'
     """
+    given = locals().copy()
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("contacts", contacts, Contacts)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
@@ -78,7 +79,7 @@ def solve_compliant(
     sampled, history, evaluations, switches = _integrated(system, case, output, period, rtol, atol)
     motion = SampledMotion(history[:, None, :3], history[:, None, 3:6], system.energy(history))
     reading, kept = wall_reading(case, contacts, sampled, motion), thinned(len(sampled), parts)
-    return Response(
+    response = Response(
         case=case,
         solver="compliant",
         t=sampled[kept],
@@ -99,6 +100,7 @@ def solve_compliant(
             "atol": atol,
         },
     )
+    return recorded(response, given)
 
 
 def _integrated(

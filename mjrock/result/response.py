@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ..notebook import Drawn
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.standing import in_space
-from ..quantities import Array, require_path, require_within
+from ..quantities import Array, keep, require_path, require_within
 from .bodies import Moving, bodies_of, frames_at, openings
 from .ending import Outcome
 from .files import results_text, texts_of_bodies, texts_of_joints, write_gltf, write_series
@@ -25,8 +25,14 @@ from .forces import Forces
 from .joint_motion import JointMotion
 from .ledger import Ledger
 from .motion import Motion, sample_at
+from .origin import Origin
 from .rocking import Impact, Rocking, largest_rotations, restitution_of
+from .saved import read_answer, write_answer
 from .ties import Plastic, TieMotion, motion_of_ties
+from .variables import attributes_of, variables_of
+
+if TYPE_CHECKING:
+    import xarray
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
@@ -38,7 +44,7 @@ class End:
     """The end of a run, from which another one starts. It unpacks into pose and velocity.
 
     Args:
-        pose, velocity: of each body, see `State`.
+        pose, velocity: of each body [m and rad, m/s and rad/s], see `State`.
         memory: what explicit steps know beside them, so that a run carries on to rounding, or None.
     """
 
@@ -81,6 +87,7 @@ class Response(Drawn):
             block along its direction.
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
         kept_forces: what `forces` and `reactions` give, or None where they were not asked for.
+        origin: what the solver was given beside the case, and versions and processor, see `Origin`.
     """
 
     case: AnyCase
@@ -97,6 +104,7 @@ class Response(Drawn):
     actuators: Mapping[str, Array] = field(default_factory=dict)
     end: End | None = None
     kept_forces: Forces | None = None
+    origin: Origin | None = None
 
     @property
     def pose(self) -> Array:
@@ -396,6 +404,44 @@ class Response(Drawn):
             write_text(require_path("path", path), text)
         return text
 
+    def save(self, path: str | Path) -> Path:
+        """Write all of it to a file of HDF5, from which `mjrock.load` reads it to the bit.
+
+        Opened by h5py or xarray the file says itself what is in it, see docs/results.md. It needs h5py, the extra
+        `hdf5`.
+
+        Args:
+            path: where to, such as "run.h5". The file takes the place of an older one when it is whole.
+
+        Returns:
+            The path that was written.
+
+        Raises:
+            ImportError: without h5py.
+            OSError: if the file cannot be written.
+
+        Warns:
+            UserWarning: of what no file can hold, such as a function for pairs of blocks; all else is kept. Functions
+                of the joint are kept by what they gave for each joint.
+        """
+        return write_answer(self, path)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The arrays at the top of a saved file, with their dimensions, units and descriptions.
+
+        Raises:
+            ImportError: without xarray.
+        """
+        try:
+            import xarray  # an extra
+        except ImportError as error:
+            raise ImportError(f"{error}; to_xarray needs it: pip install xarray") from None
+        variables = {
+            name: (one.dims, one.values, {"units": one.units, "description": one.text})
+            for name, one in variables_of(self).items()
+        }
+        return xarray.Dataset(variables, attrs=attributes_of(self))
+
     def to_gltf(self, path: str | Path, fps: float = 25.0) -> Path:
         """Write the motion as glTF in one .glb, which Blender and viewers on the web open.
 
@@ -506,3 +552,35 @@ class Response(Drawn):
 
 MasonryResponse = Response
 """The response of masonry, which is like that of a wall."""
+
+
+def recorded(response: Response, given: Mapping[str, Any]) -> Response:
+    """A response that was just made, with what its solver was given, by the names of its arguments."""
+    options = {name: value for name, value in given.items() if name not in ("case", "contacts", "e")}
+    if isinstance(start := options.get("start"), End):
+        options["start"] = replace(start, memory=None)
+    keep(response, origin=Origin(given.get("contacts"), given.get("e"), options))
+    return response
+
+
+def load(path: str | Path, laws: Iterable[type] = ()) -> Response:
+    """The response of a file of `Response.save`, to the bit, from whose `end` runs go on as from the one that was
+    saved.
+
+    Nothing in the file is executed or unpickled.
+
+    Args:
+        path: the file.
+        laws: classes of your own that the case has, such as laws of joints: dataclasses and NamedTuples.
+
+    Raises:
+        ImportError: without h5py.
+        OSError: if there is no such file.
+        ValueError: for another file, a damaged one, one of a newer or older format, or a class that is not known.
+
+    Warns:
+        UserWarning: where the file has a memory of explicit steps that this version of mjrock does not read. All else
+            is there, and a run goes on from pose and velocity.
+    """
+    answer: Response = read_answer(path, laws)
+    return answer

@@ -21,7 +21,7 @@ from ..problem.wall.restoring_moment import broken_energy, tie_energy
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, Stopwatch, describe
 from ..result.motion import intervals, required_spacing
-from ..result.response import Response
+from ..result.response import Response, recorded
 from ..result.rocking import Impact, Rocking
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .arcs import RockingMotion, rock
@@ -68,6 +68,7 @@ def solve_analytical(
         >>> answer.outcome.value
         'at rest'
     """
+    given = locals().copy()
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution, ScatteredRestitution)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
@@ -79,7 +80,7 @@ def solve_analytical(
         warnings.warn(unlike, Implausible, stacklevel=2)
     warn_if_still(case)
     watch = Stopwatch()
-    with first_answer(solve_analytical, case=case, e=e, rtol=rtol, output_step=output_step, rest=rest):
+    with first_answer(solve_analytical, **given):
         motion = _rocking(case, e, rtol, rest)
         outcome = _outcome(case, motion)
         t_end = motion.end.t if outcome is Outcome.OVERTURNED else case.duration
@@ -89,7 +90,7 @@ def solve_analytical(
     stretched, plastic = _with_ties(case, motion, samples, theta)
     if outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, plastic)
-    return Response(
+    response = Response(
         case=case,
         solver="analytical",
         t=samples,
@@ -100,6 +101,7 @@ def solve_analytical(
         message=describe(outcome, case, t_end, float(theta[-1])) + told_of_ties(plastic),
         stats={**watch.took(), "evaluations": motion.evaluations, "rtol": rtol},
     )
+    return recorded(response, given)
 
 
 @dataclass(frozen=True, eq=False)

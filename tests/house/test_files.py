@@ -31,8 +31,14 @@ def answer():
     return mr.solve_analytical(CASE, E)
 
 
+def saved(path):
+    pytest.importorskip("h5py")
+    answer().save(path)
+
+
 WRITERS = {
     "Response.csv": ("a.csv", lambda path: answer().csv(path)),
+    "Response.save": ("a.h5", saved),
     "Fragility.csv": ("f.csv", lambda path: mr.fit_fragility(range(1, 7), [0, 0, 1, 0, 1, 1], resamples=20).csv(path)),
     "law.save": ("a.toml", mr.CALIBRATED.save),
     "to_obj": ("a.obj", BOX.to_obj),

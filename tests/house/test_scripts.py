@@ -94,6 +94,7 @@ WRITES = {
     "vaults": {"vaults.png", "vaults.txt"},
     "mechanisms": {"mechanisms.png", "mechanisms.txt", "axle.png"},
     "your_geometry": {"your_geometry.png", "your_geometry.txt"},
+    "result_files": {"result_files.csv", "result_files.txt"},
     "throughput": {"throughput.txt"},
     "first_minute": {"first_minute.csv", "first_minute.txt"},
     "form_times": {"form_times.csv", "form_times.txt"},

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Self, Unpack
+from typing import Annotated, Any, Self, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -97,6 +97,7 @@ from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
     ByKind,
+    ByName,
     ByWord,
     Halved,
     JointOptions,
@@ -112,6 +113,7 @@ from .laws.joint_table import (
     OfStiffness,
     OrElse,
     OtherOptions,
+    has_function,
     keywords_checked,
     one_by_one,
     properties_of,
@@ -367,6 +369,25 @@ class Masonry(Drawn):
             raise ValueError(f"frequency = {known[0]:g} rad/s is given with a law, which has its own; leave it")
         xi, frequency = damping_by_law(self.blocks, self.joints, table.k_n, table.points, self.law)
         return table._replace(xi=xi, frequency=frequency)
+
+    def without_functions(self) -> Self:
+        """The same with the values of its joints by their names in the place of functions of the joint, which no file
+        can hold. What a file can hold is left as it is, and so is `pairs`."""
+        given = {name: getattr(self, name) for name in PROPERTIES}
+        held: dict[str, ByName | None] = {
+            name: self._by_name(map(value, self.joints)) for name, value in given.items() if has_function(value)
+        }
+        if has_function(self.law):
+            known = {name: self._by_name(getattr(self.table, name).tolist()) for name in ("xi", "frequency")}
+            held |= {"law": None, **known}
+        if not held:
+            return self
+        same = object.__new__(type(self))
+        keep(same, **{each.name: getattr(self, each.name) for each in fields(self)} | held)
+        return same
+
+    def _by_name(self, values: Iterable[Any]) -> ByName:
+        return ByName(tuple((joint.name, value) for joint, value in zip(self.joints, values, strict=True)))
 
     @property
     def joint_stiffness(self) -> Array:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import difflib
 import inspect
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import wraps
+from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cached_property, wraps
 from typing import Annotated, Any, NamedTuple, TypedDict, TypeVar
 
 import numpy as np
@@ -75,6 +75,15 @@ def properties_of(joints: AnyJoints | None, given: Properties) -> Properties:
     return joints.properties
 
 
+def has_function(value: object) -> bool:
+    """Whether a value is, or has in its fields, a function, which has no content to compare or to write."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return any(has_function(getattr(value, each.name)) for each in fields(value))
+    if isinstance(value, tuple | list):
+        return any(map(has_function, value))
+    return callable(value)
+
+
 @dataclass(frozen=True)
 class Choice:
     """A function of the joint that gives what it is, which is asked once of each joint."""
@@ -138,15 +147,17 @@ class ByName:
     Unlike a function it has content, by which masonry can be compared and a campaign can tell its tasks apart.
     """
 
-    values: tuple[tuple[str, float], ...]
+    values: tuple[tuple[str, Any], ...]
 
-    def __call__(self, joint: AnyJoint) -> float:
+    @cached_property
+    def _by_name(self) -> dict[str, Any]:
+        return dict(self.values)
+
+    def __call__(self, joint: AnyJoint) -> Any:
         """The value of a joint; a ValueError says if it has none."""
-        for name, value in self.values:
-            if name == joint.name:
-                return value
-        names = ", ".join(name for name, _ in self.values)
-        raise ValueError(f"the joint {joint.name} has no value among those of {names}")
+        if joint.name not in self._by_name:
+            raise ValueError(f"the joint {joint.name} has no value among those of {', '.join(self._by_name)}")
+        return self._by_name[joint.name]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,316 @@
+"""Objects as trees of plain values, which JSON holds, and as arrays beside them; and back to the bit.
+
+Nothing is pickled: a tree has the names of classes and the values of their fields. Reading takes only classes of
+mjrock that hold values, and classes that the reader gives.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import importlib
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from copy import deepcopy
+from functools import cached_property, partial
+from itertools import takewhile
+from typing import Any
+
+import numpy as np
+
+from ..quantities import shown, spelt
+
+Tree = Any
+"""None, a truth value, a number, a text, a list of trees or a dictionary of them by text."""
+OWN_PACKAGE = __name__.partition(".")[0]
+FOLDERS = ("problem", "scene", "geometry", "result", "theory", "distinct", "method", "contacts")
+"""Where classes may stand that a file names. No example or command is imported."""
+SINGLE = (bool, int, str, type(None))
+BRACKETS = re.compile(r"\s\[([^\]:]+)\]")
+"""A unit in a docstring."""
+ARGUMENT = re.compile(r"^ +(?P<names>\w+(?:, \w+)*): (?P<text>.*)")
+"""The first line of what a docstring says of arguments."""
+INLINE = 100
+"""Most numbers of an array that stands in the tree itself."""
+
+
+class UnreadableError(ValueError):
+    """A tree that does not stand for an object."""
+
+
+@dataclasses.dataclass(frozen=True)
+class NotKept:
+    """What stands in the place of a value that a file cannot hold, such as a function. It cannot be called.
+
+    Args:
+        what: the value in words.
+    """
+
+    what: str
+
+    def __call__(self, *given: object) -> Any:
+        """Refuse.
+
+        Raises:
+            ValueError: always, with what was lost.
+        """
+        raise ValueError(f"{self.what} was not kept in the file; build the case again to go on from it")
+
+
+def is_named_tuple(kind: type) -> bool:
+    """Whether a class is a NamedTuple."""
+    return issubclass(kind, tuple) and hasattr(kind, "_fields")
+
+
+def fields_of(kind: type) -> tuple[str, ...]:
+    """Names of the fields of a dataclass or a NamedTuple."""
+    if is_named_tuple(kind):
+        return tuple(kind._fields)  # type: ignore[attr-defined]
+    return tuple(each.name for each in dataclasses.fields(kind))
+
+
+def name_of(kind: type) -> str:
+    """The name by which a tree has a class: its public one, or with its module."""
+    public = getattr(importlib.import_module(OWN_PACKAGE), kind.__qualname__, None)
+    return kind.__qualname__ if public is kind else f"{kind.__module__}.{kind.__qualname__}"
+
+
+def unit_and_text(kind: type, name: str) -> tuple[str, str]:
+    """The unit of a field and what it is, from the docstring of its class; empty where that does not say."""
+    lines = (kind.__doc__ or "").split("\n")
+    for i, line in enumerate(lines):
+        if (head := ARGUMENT.match(line)) and name in (names := head["names"].split(", ")):
+            below = takewhile(partial(_is_below, _indent(line)), lines[i + 1 :])
+            text = " ".join([head["text"], *filter(None, map(str.strip, below))])
+            unit = next(iter([*BRACKETS.findall(text), *BRACKETS.findall(" ".join(lines[:3]))]), "")
+            units = unit.split(", ")
+            return units[names.index(name)] if len(units) == len(names) else unit, text
+    return "", ""
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip())
+
+
+def _is_below(indent: int, line: str) -> bool:
+    return not line.strip() or _indent(line) > indent
+
+
+class Writer:
+    """What turns objects into trees.
+
+    Args:
+        keep: takes the path of an array, the array, and the class and field that it is of, and returns the name by
+            which the array is found again.
+        has_place: whether an array has such a name already.
+
+    Attributes:
+        lost: what could not be kept, by its path.
+    """
+
+    def __init__(
+        self,
+        keep: Callable[[str, np.ndarray[Any, Any], type, str], str],
+        has_place: Callable[[object], bool] = lambda array: False,
+    ) -> None:
+        self._keep, self._has_place, self.lost = keep, has_place, dict[str, str]()
+        self._known: dict[int, str] = {}
+        self._held: list[object] = []  # an identity is that of one object only while it lives
+
+    def tree(self, value: object, path: str, of: type = object, field: str = "") -> Tree:
+        """The tree of a value at a path, such as "case.motion", which is a field of a class."""
+        if isinstance(value, np.generic):
+            return {"scalar": value.dtype.str, "value": self.tree(value.item(), path)}
+        if isinstance(value, float):
+            return value if math.isfinite(value) else {"number": repr(value)}
+        if type(value) in SINGLE:
+            return value
+        if isinstance(value, enum.Enum):
+            return {"class": name_of(type(value)), "member": value.name}
+        if isinstance(value, dict | list | set | frozenset) or type(value) is tuple:
+            return self._collected(value, path, of, field)
+        if isinstance(value, Mapping):
+            return self._collected(dict(value), path, of, field)
+        if id(value) in self._known:
+            return {"same": self._known[id(value)]}
+        self._known[id(value)] = path
+        self._held.append(value)
+        if isinstance(value, np.ndarray) and not value.dtype.hasobject:
+            return self._of_array(value, path, of, field)
+        is_object = dataclasses.is_dataclass(value) and not isinstance(value, type)
+        if is_object or is_named_tuple(type(value)):
+            return self._of_object(value, path)
+        return self._lose(value, path)
+
+    def _collected(self, value: Any, path: str, of: type, field: str) -> Tree:
+        """The tree of a tuple, a list, a set or a dictionary."""
+        if isinstance(value, dict):
+            if all(type(name) is str for name in value):
+                return {"mapping": {k: self.tree(one, f"{path}[{k!r}]", of, field) for k, one in value.items()}}
+            pairs = enumerate(value.items())
+            return {"pairs": [[self.tree(part, f"{path}.{i}.{j}") for j, part in enumerate(pair)] for i, pair in pairs]}
+        ordered = sorted(value, key=repr) if isinstance(value, set | frozenset) else value
+        items = [self.tree(one, f"{path}.{i}", of, field) for i, one in enumerate(ordered)]
+        return items if isinstance(value, tuple) else {type(value).__name__: items}
+
+    def _of_array(self, value: np.ndarray[Any, Any], path: str, of: type, field: str) -> Tree:
+        """The tree of an array: its numbers, or its name among those that are kept beside the tree."""
+        layout: dict[str, Tree] = {"rows": True} if isinstance(value, np.recarray) else {}
+        layout |= {"fixed": True} if not value.flags.writeable else {}
+        layout |= {"order": "F"} if value.flags.fnc else {}
+        plain = value.dtype.kind in "biuU" or (value.dtype.kind == "f" and np.isfinite(value).all())
+        if value.dtype.kind == "U" or (plain and value.size <= INLINE and not self._has_place(value)):
+            held = {"values": value.ravel().tolist(), "shape": list(value.shape), "type": value.dtype.str}
+            return held | layout
+        return {"array": self._keep(path, value, of, field), **layout}
+
+    def _of_object(self, value: Any, path: str) -> Tree:
+        """The tree of an object by its fields. One that may have functions has a method that puts values there."""
+        kind, plain = type(value), getattr(value, "without_functions", None)
+        held = value if plain is None else plain()
+        parts = {name: self.tree(getattr(held, name), f"{path}.{name}", kind, name) for name in fields_of(kind)}
+        if not is_named_tuple(kind):
+            cached = {name for base in kind.__mro__ for name, one in vars(base).items() if _is_cached(one)}
+            for name in sorted(vars(value).keys() - parts.keys() - cached):
+                self._lose(getattr(value, name), f"{path}.{name}")
+        return {"class": name_of(kind)} | parts
+
+    def _lose(self, value: object, path: str) -> Tree:
+        what = f"{type(value).__name__} {getattr(value, '__qualname__', '') or spelt(value)[:60]}"
+        self.lost[path] = what
+        return {"class": name_of(NotKept), "what": what}
+
+
+def _is_cached(one: object) -> bool:
+    return isinstance(one, cached_property)
+
+
+class Reader:
+    """What turns trees into objects again.
+
+    Args:
+        arrays: the arrays by their names.
+        own: classes from outside mjrock that may be made, such as laws of joints of a user.
+    """
+
+    def __init__(self, arrays: Mapping[str, Any], own: Iterable[type] = ()) -> None:
+        self._arrays, self._own = arrays, {kind.__qualname__: kind for kind in own}
+        self._known: dict[str, object] = {}
+
+    def value(self, tree: Tree, path: str) -> Any:
+        """The value of a tree at a path.
+
+        Raises:
+            UnreadableError: where it stands for none.
+        """
+        if isinstance(tree, float) or type(tree) in SINGLE:
+            return tree
+        if isinstance(tree, list):
+            return tuple(self.value(one, f"{path}.{i}") for i, one in enumerate(tree))
+        if not isinstance(tree, dict):
+            raise UnreadableError(f"{path} is {shown(tree)}")
+        if "class" in tree:
+            return self._object(tree, path)
+        for kind, read in self._readers.items():
+            if kind in tree:
+                return read(tree, path)
+        raise UnreadableError(f"{path} is of no kind that is known: {', '.join(tree)}")
+
+    @property
+    def _readers(self) -> dict[str, Callable[[dict[str, Tree], str], Any]]:
+        def items(tree: dict[str, Tree], path: str) -> Any:
+            return self.value(next(iter(tree.values())), path)
+
+        return {
+            "array": self._of_array,
+            "values": self._of_array,
+            "same": lambda tree, path: self._same(tree["same"], path),
+            "number": lambda tree, path: float(tree["number"]),
+            "scalar": lambda tree, path: np.dtype(tree["scalar"]).type(self.value(tree["value"], path)),
+            "mapping": lambda tree, path: {k: self.value(one, f"{path}[{k!r}]") for k, one in tree["mapping"].items()},
+            "pairs": lambda tree, path: dict(self.value(tree["pairs"], path)),
+            "list": lambda tree, path: list(items(tree, path)),
+            "set": lambda tree, path: set(items(tree, path)),
+            "frozenset": lambda tree, path: frozenset(items(tree, path)),
+        }
+
+    def _same(self, known: str, path: str) -> Any:
+        if known not in self._known:
+            raise UnreadableError(f"{path} is the same as {known}, which is not there")
+        return self._known[known]
+
+    def _of_array(self, tree: dict[str, Tree], path: str) -> np.ndarray[Any, Any]:
+        if "values" in tree:
+            values = np.array(tree["values"], dtype=tree["type"]).reshape(tree["shape"])
+        elif tree["array"] not in self._arrays:
+            raise UnreadableError(f"{path} is the array {tree['array']}, which is not there")
+        else:
+            values = np.asarray(self._arrays[tree["array"]])
+        values = np.asarray(values, order=tree.get("order", "C"))
+        if tree.get("rows"):
+            values = values.view(np.recarray)
+        values.setflags(write=not tree.get("fixed", False))
+        self._known[path] = values
+        return values
+
+    def _object(self, tree: dict[str, Tree], path: str) -> Any:
+        """An object of a class, by the fields of it. Fields that the file lacks have their usual values."""
+        kind = self._class(tree["class"], path)
+        if issubclass(kind, enum.Enum):
+            if tree.get("member") not in kind.__members__:
+                raise UnreadableError(f"{path} is {tree.get('member')!r}, which {tree['class']} does not know")
+            return kind[tree["member"]]
+        given, known = tree.keys() - {"class"}, fields_of(kind)
+        usual = _usual(kind)
+        odd = [*sorted(given - set(known)), *(name for name in known if name not in given and name not in usual)]
+        if odd:
+            said = f"{path} is of the class {tree['class']}, which has other fields in this version of mjrock"
+            raise UnreadableError(f"{said}: {', '.join(odd)}")
+        at = f"{path}." if path else ""
+        values = {name: self.value(tree[name], at + name) if name in given else usual[name]() for name in known}
+        if is_named_tuple(kind):
+            made = kind(**values)
+        else:
+            made = object.__new__(kind)
+            for name, value in values.items():
+                object.__setattr__(made, name, value)
+        self._known[path] = made
+        return made
+
+    def _class(self, name: str, path: str) -> type:
+        """The class of a name.
+
+        Raises:
+            UnreadableError: for one that is not known, or holds no values.
+        """
+        module, _, own = name.rpartition(".")
+        kind: Any = self._own.get(own)
+        if kind is None and not module:
+            public = importlib.import_module(OWN_PACKAGE)
+            kind = getattr(public, own, None) if own in public.__all__ else None
+        elif kind is None and module.split(".")[0] == OWN_PACKAGE and module.split(".")[1] in FOLDERS:
+            try:
+                kind = getattr(importlib.import_module(module), own, None)
+            except ImportError:
+                kind = None
+        elif kind is None:
+            raise UnreadableError(f"{path} is of the class {name} of a user; give it as laws=[{own}]")
+        if not isinstance(kind, type) or not (
+            dataclasses.is_dataclass(kind) or is_named_tuple(kind) or issubclass(kind, enum.Enum)
+        ):
+            raise UnreadableError(f"{path} is of the class {name}, which this version of mjrock does not have")
+        return kind
+
+
+def _usual(kind: type) -> dict[str, Callable[[], Any]]:
+    """What gives the usual value of each field of a class that has one."""
+    if is_named_tuple(kind):
+        return {name: partial(deepcopy, one) for name, one in kind._field_defaults.items()}  # type: ignore[attr-defined]
+    usual: dict[str, Callable[[], Any]] = {}
+    for each in dataclasses.fields(kind):
+        if each.default_factory is not dataclasses.MISSING:
+            usual[each.name] = each.default_factory
+        elif each.default is not dataclasses.MISSING:
+            usual[each.name] = partial(deepcopy, each.default)
+    return usual
