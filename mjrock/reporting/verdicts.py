@@ -58,6 +58,11 @@ class Mechanism(NamedTuple):
         return sum(verdict.holds for verdict in self.verdicts)
 
     @property
+    def kind(self) -> str:
+        """The key of the word for its verdict: "holds", "part" where some conditions hold, or "fails"."""
+        return "holds" if self.held == len(self.verdicts) else "part" if self.held else "fails"
+
+    @property
     def verdicts(self) -> tuple[Verdict, ...]:
         """All conditions."""
         first = self.kinematic.verdicts if self.kinematic else ()
@@ -154,7 +159,7 @@ class Sentence(NamedTuple):
     """What holds of a mechanism.
 
     Args:
-        kind: "holds", "part" or "fails".
+        kind: of its verdict, see `Mechanism.kind`.
         start: the name, whether it holds, and the conditions that refuse it.
         end: the least ratio.
     """
@@ -172,8 +177,7 @@ def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
         key: of the words that it starts with.
         words: of the language.
     """
-    least, verdicts = mechanism.least, mechanism.verdicts
-    kind = "holds" if mechanism.held == len(verdicts) else "part" if mechanism.held else "fails"
+    least, verdicts, kind = mechanism.least, mechanism.verdicts, mechanism.kind
     refused = "; ".join(_of(verdict, words) for verdict in verdicts if not verdict.holds)
     numbers = {"ratio": words.ratio(least.ratio), "check": _of(least, words)}
     end = words("lead_ratio", held=mechanism.held, count=len(verdicts), **numbers)
