@@ -34,6 +34,7 @@ from ..quantities import require_kind, shown
 from ..reporting.drawings import drawn
 from ..reporting.markup import Markup, element
 from ..reporting.page import Asked, every_run, outcomes, required_runs
+from ..reporting.parts import parts_of
 from ..reporting.subject import reported
 from ..reporting.texts import FOUND, Words, languages
 from ..reporting.verdicts import Mechanism, answers, kinematic_steps, ranked, required_checks
@@ -218,10 +219,10 @@ def dynamic(assessment: Assessment, responses: Mapping[str, Sequence[Response]],
 
 def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Markup]:
     """How many of the runs of a mechanism overturn, and a table of them."""
-    whole = reported(responses[0].case)
-    runs = required_runs(Asked(responses[0].case, responses, None, False), whole, words)
+    case = responses[0].case
+    runs = required_runs(Asked(case, responses), words)
     heading = [element("h3", name)] if name else []
-    return [*heading, element("p", outcomes(runs, words)), *every_run(whole, runs, words)]
+    return [*heading, element("p", outcomes(runs, words)), *every_run(parts_of("", case, [], runs), words)]
 
 
 def farthest(responses: Sequence[Response]) -> Response:

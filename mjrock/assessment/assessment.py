@@ -139,11 +139,11 @@ class Assessment:
         """
         from ..reporting.page import report
 
-        first = next(iter(self.mechanisms.values())).case
+        first: Any = next(iter(self.mechanisms.values())).problem
         checks: dict[str, Any] = {name: [one] for name, one in self.check().items()} if self.has_site else {}
         for name, one in (self.dynamic_check(runs) if runs else {}).items():
             checks.setdefault(name, []).append(one)
-        shown = {name: of for name, of in (runs or {}).items() if self.mechanisms[name].case.built == first.built}
+        shown = dict(runs or {})
         impacts = {name: self.mechanisms[name].shaking for name in shown}
         given: dict[str, Any] = {
             "checks": checks or None,

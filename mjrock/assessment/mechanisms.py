@@ -13,7 +13,6 @@ from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.case import Case
-from ..problem.wall.wedge import Corner
 from ..result.response import Response
 from ..study.loading.code import USUAL_CODE, code_of
 from ..study.loading.code_check import (
@@ -21,6 +20,7 @@ from ..study.loading.code_check import (
     Demand,
     DynamicCheck,
     MechanismCheck,
+    case_of,
     dynamic_check,
     mechanism_check,
     required_demands,
@@ -77,7 +77,7 @@ class Mechanism:
 
     @property
     def case(self) -> Case | MasonryCase:
-        """The case that is drawn and run: of a corner its wall and masses, of a wall that bends the wall."""
+        """The case that is run, see `case_of`."""
         return case_of(self.problem)
 
     def check(self) -> MechanismCheck:
@@ -132,15 +132,6 @@ class Mechanism:
         """
         options = dict(self.shaking.dynamic) | {name: one for name, one in self.options.items() if name == "code"}
         return dynamic_check(runs, curve=self.limit_curve, store=store, **options)
-
-
-def case_of(problem: Any) -> Case | MasonryCase:
-    """The case that stands for a problem in pictures and runs."""
-    if isinstance(problem, Corner):
-        return problem.case
-    if isinstance(problem, VerticalBending | HorizontalBending):
-        return Case(problem.wall)
-    return problem  # type: ignore[no-any-return]
 
 
 def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:

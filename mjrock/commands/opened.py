@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..assessment.assessment import Assessment, assessment_of_text, decoded, from_toml
 from ..reporting.texts import Words
+from ..reporting.verdicts import kind_of
 from ..study.loading.code_check import MechanismCheck
 
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a check does not need
@@ -41,8 +42,8 @@ def opened(file: str, language: str | None = None) -> Assessment:
 
 
 def named_checks(checks: Mapping[str, MechanismCheck], words: Words) -> dict[str, MechanismCheck]:
-    """Checks by the names of their mechanisms; one that has none is that of the wall or of the masonry."""
-    return {name or words(f"kind_{'masonry' if one.moving else 'wall'}"): one for name, one in checks.items()}
+    """Checks by the names of their mechanisms; one that has none is that of the wall, the corner or the masonry."""
+    return {name or words(f"kind_{kind_of(one.mechanism)}"): one for name, one in checks.items()}
 
 
 def tasks_of(assessment: Assessment) -> dict[str, list[Analysis]]:

@@ -16,6 +16,7 @@ from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.effects import link_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import Array
+from ..study.loading.load_check import Borne
 from .pictures import FAILS, SMALL, TALL, WIDE
 from .subject import reported
 from .texts import FOUND, Words
@@ -29,10 +30,16 @@ OTHERS = Corner, VerticalBending, HorizontalBending
 Colour = str | tuple[float, float, float]
 
 
-def drawn(problem: Any, words: Words) -> tuple[Figure, str]:
-    """The drawing of what is checked, a case or one of `OTHERS`, with the mechanism in it, and its caption."""
+def drawn(problem: Any, words: Words, borne: Sequence[Borne] = ()) -> tuple[Figure, str]:
+    """The drawing of what is checked or run, with the mechanism in it, and its caption.
+
+    Args:
+        problem: a case, a limit curve, what bears a load, or one of `OTHERS`.
+        words: of the report.
+        borne: of masonry, results whose loads are drawn.
+    """
     if not isinstance(problem, OTHERS):
-        return reported(problem).at_rest(words, ())
+        return reported(problem).at_rest(words, borne)
     figure = Figure(figsize=(WIDE, TALL), layout="constrained")
     if isinstance(problem, Corner):
         _corner(figure.subplots(1, 2), problem, words)

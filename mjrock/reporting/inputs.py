@@ -16,7 +16,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
-from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.laws.dry import Dry, asked_pair
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
@@ -134,16 +134,18 @@ class Listing(NamedTuple):
     rows: list[tuple[str, ...]]
 
 
-def subjects(own: str, case: AnyCase, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[tuple[str, object]]:
-    """What a report is of, each with its name: the case, whose own name is given, what its checks are of, and what its
-    runs are of."""
-    called: list[tuple[str, object]] = [(own, case)]
-    called += [(mechanism.name, subject) for mechanism in mechanisms for subject in mechanism.subjects]
-    return called + [(variant or own, some[0].response.case) for variant, some in by_variant(runs).items()]
+def subjects(own: str, case: object, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[tuple[str, object]]:
+    """What a report is of, each with its name: what its checks are of, what its runs are of but for the wall that
+    stands for a corner in them, and the case, whose own name is given."""
+    called = [(mechanism.name, subject) for mechanism in mechanisms for subject in mechanism.subjects]
+    corners = {name for name, subject in [*called, (own, case)] if isinstance(subject, Corner)}
+    shaken = [(name or own, some[0].response.case) for name, some in by_variant(runs).items()]
+    called += [(name, of) for name, of in shaken if name not in corners]
+    return [*called, (own, case)]
 
 
-def merged(sections: Iterable[Section]) -> list[Section]:
-    """Sections with the same inputs as one, with all of their names."""
+def merged(sections: Iterable[Section], own: str = "") -> list[Section]:
+    """Sections with the same inputs as one, with all of their names, of which `own` is left out beside others."""
     found: list[tuple[dict[str, None], list[Input]]] = []
     for heading, rows in sections:
         names = next((names for names, others in found if others == rows), None)
@@ -151,12 +153,12 @@ def merged(sections: Iterable[Section]) -> list[Section]:
             found.append(({heading: None}, rows))
         else:
             names[heading] = None
-    return [Section("; ".join(names), rows) for names, rows in found]
+    return [Section("; ".join([name for name in names if name != own] or names), rows) for names, rows in found]
 
 
-def of_subject(subject: object, words: Words) -> list[Input]:
-    """What a mechanism is of, with what acts on it."""
-    return INPUTS_OF[type(subject)](subject, words)
+def of_subjects(subjects: Sequence[tuple[str, object]], own: str, words: Words) -> list[Section]:
+    """What a report is of, with what acts on it, each under its names; see `merged`."""
+    return merged((Section(name, INPUTS_OF[type(one)](one, words)) for name, one in subjects), own)
 
 
 def of_vertical_bending(bending: VerticalBending, words: Words) -> list[Input]:

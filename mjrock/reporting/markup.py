@@ -39,6 +39,7 @@ body { font: 10pt/1.38 "Source Serif 4", Georgia, "DejaVu Serif", serif; color: 
   margin: 1.5em auto; padding: 0 1em; overflow-wrap: anywhere }
 h1 { font-size: 1.5em; line-height: 1.2; margin: 0 0 .4em; padding-bottom: .2em; border-bottom: 2px solid #12406b }
 h2 { font-size: 1.15em; margin: 1.2em 0 .4em; color: #12406b; break-after: avoid }
+h3 { font-size: 1em; margin: 1em 0 .2em; break-after: avoid }
 p { margin: .4em 0 }
 .wide { overflow-x: auto; margin: .4em 0 .7em }
 table { border-collapse: collapse; width: 100%; font: .8em/1.3 Helvetica, Arial, "DejaVu Sans", sans-serif }

@@ -18,17 +18,20 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.case import Case
+from ..problem.wall.wedge import Corner
 from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code import code_of
-from ..study.loading.code_check import signals_of
+from ..study.loading.code_check import case_of, signals_of
 from ..study.loading.design import Design
 from ..study.loading.load_check import Borne
 from . import inputs, subject, verdicts
-from .drawings import OTHERS, drawn
+from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf
+from .parts import Part, is_of, parts_of, sketches
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strip
 from .subject import Reported, reported
 from .texts import DASH, FOUND, MINUS, Words
@@ -40,7 +43,7 @@ Responses = Response | Sequence[Response] | Mapping[str, Response | Sequence[Res
 
 
 def report(
-    case: AnyCase,
+    case: AnyCase | Corner | VerticalBending | HorizontalBending,
     responses: Responses,
     path: str | Path,
     *,
@@ -63,15 +66,18 @@ def report(
     the inputs with their units and what they rest on, every run, and the versions of the programs.
 
     Args:
-        case: the wall or masonry and its effects, for the drawing and the inputs.
+        case: the wall or masonry and its effects, for the drawing and the inputs; or the corner or the wall that bends
+            that is checked.
         responses: of walls of this size or of this masonry, by any solver, under any motions. A mapping gives those of
-            each variant, such as a wall without ties and with them. None, `()`, for a report of checks alone.
+            each variant, such as a wall without ties and with them, or of each mechanism by its name in `checks`. None,
+            `()`, for a report of checks alone.
         path: where to, an .html, or a .pdf, which WeasyPrint makes.
         title: of the page; None is that of the language.
         labels: what each response is called, one for each; variants need none.
         e, contacts: what the responses were computed with, for the inputs, or a mapping of those of each variant.
         checks: of `mechanism_check`, `dynamic_check` and `load_check`, by the names of their mechanisms or variants:
-            one or several of each, at most one of them kinematic.
+            one or several of each, at most one of them kinematic. Those of several walls have a section each, with
+            drawing, steps and curve.
         project: "project", "client", "author", "date" and "place" of the title block, which leaves room for what is not
             given.
         language: "en" or "it". Texts of yours stay as they are. `mjrock/reporting/texts.toml` has all others.
@@ -92,41 +98,42 @@ def report(
             page does not have.
         ImportError: for a PDF without WeasyPrint.
     """
-    require_kind("case", case, Case, MasonryCase)
+    require_kind("case", case, Case, MasonryCase, *OTHERS)
     path = require_path("path", path)
     if path.suffix.lower() not in (".html", ".pdf"):
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html or .pdf")
     words = Words(language)
     require_text("notes", notes, 100_000)
-    whole = reported(case)
-    heading = words(f"title_{whole.KIND}") if title is None else require_text("title", title)
-    runs = required_runs(Asked(case, responses, labels, not (checks or sections)), whole, words)
-    mechanisms = required_checks(checks, words(f"kind_{whole.KIND}"))
-    parts_of = inputs.subjects(words(f"kind_{whole.KIND}"), case, mechanisms, runs)
-    standing = inputs.merged(inputs.Section(name, inputs.of_subject(one, words)) for name, one in parts_of)
+    own = words(f"kind_{verdicts.kind_of(case)}")
+    mechanisms = required_checks(checks, own)
+    runs = required_runs(Asked(case, responses, labels, mechanisms, not (checks or sections)), words)
+    parts = parts_of(own, case, mechanisms, runs)
+    kind = "several" if parts[1:] else verdicts.kind_of(parts[0].subjects[0].subject)
+    head = words(f"title_{kind}") if title is None else require_text("title", title)
+    subjects = inputs.subjects(own, case, mechanisms, runs)
     given = {
         words("seismic_action"): inputs.of_demands(mechanisms, words),
-        words("what_stands"): standing,
-        words("contacts"): of_impacts(case, e, contacts, words),
+        words("what_stands"): inputs.of_subjects(subjects, own, words),
+        words("contacts"): of_impacts(case, e, contacts, runs, words),
     }
     keys = [row.key for sections in given.values() for section in sections for row in section.rows]
     rests = required_texts("basis", basis, keys)
-    lists = lists_of([one for _, one in parts_of], path, words)
+    lists = lists_of([one for _, one in subjects], path, words)
     block = required_texts("project", project, HEADS)
-    parts = [
-        element("h1", heading),
+    pieces = [
+        element("h1", head),
         title_block(block, words),
         *([element("p", element("b", words("question")), " ", notes)] if notes else []),
-        *answered(whole, runs, mechanisms, words),
-        *checked(mechanisms, words),
-        *shaken(whole, runs, mechanisms, words),
-        *[part for name, pieces in required_sections(sections).items() for part in section(name, pieces, words)],
-        *judged(whole, runs, mechanisms, words, inputs.loads_in([one for _, one in parts_of], words)),
+        *answered(parts, runs, mechanisms, words),
+        *checked(parts, mechanisms, words),
+        *shaken(parts, words),
+        *[piece for name, some in required_sections(sections).items() for piece in section(name, some, words)],
+        *judged(parts, runs, mechanisms, words, inputs.loads_in([one for _, one in subjects], words)),
         *appendix(given, rests, words),
-        *(part for one in lists for part in listed_blocks(one, words)),
-        *every_run(whole, runs, words),
+        *(piece for one in lists for piece in listed_blocks(one, words)),
+        *every_run(parts, words),
     ]
-    text = page(words, heading, block.get("project", ""), f"mjrock {__version__}", parts)
+    text = page(words, head, block.get("project", ""), f"mjrock {__version__}", pieces)
     if path.suffix.lower() == ".pdf":
         write_pdf(path, text)
     else:
@@ -143,19 +150,21 @@ class Asked(NamedTuple):
     Args:
         case: the wall or masonry.
         responses, labels: as they are given.
+        mechanisms: that are checked.
         bare: whether neither checks nor sections are given, so that responses have to be.
     """
 
-    case: AnyCase
+    case: Any
     responses: object
-    labels: object
-    bare: bool
+    labels: object = None
+    mechanisms: Sequence[Mechanism] = ()
+    bare: bool = False
 
 
-def required_runs(asked: Asked, whole: Reported, words: Words) -> list[Run]:
-    """The runs of the responses, each of what the case is of; TypeError or ValueError for others, or for none in a
-    report without checks."""
-    case, responses, labels, bare = asked
+def required_runs(asked: Asked, words: Words) -> list[Run]:
+    """The runs of the responses, each of what the case or a mechanism is of; TypeError or ValueError for others, or for
+    none in a report without checks."""
+    _, responses, labels, _, bare = asked
     if isinstance(responses, Mapping) and labels is not None:
         raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
     given: list[tuple[str, Response]] = []
@@ -167,7 +176,7 @@ def required_runs(asked: Asked, whole: Reported, words: Words) -> list[Run]:
             raise TypeError(f"{name} = {shown(of)} is neither a Response nor a sequence of them")
         for i, response in enumerate(several):
             require_kind(f"{name}[{i}]", response, Response)
-            require_same(f"{name}[{i}]", response, case)
+            require_same(f"{name}[{i}]", response, asked)
         given += [(variant, response) for response in several]
     if not given and bare:
         raise ValueError("responses is empty; give responses, or checks or sections, of which a report may be alone")
@@ -181,9 +190,10 @@ def required_runs(asked: Asked, whole: Reported, words: Words) -> list[Run]:
         own = names or [response.solver for response in answers]
         names = [in_words(name, response.solver, words) for name, response in zip(own, answers, strict=True)]
     signals = signals_of([response.case for response in answers])
+    largest = [reported(response.case).largest(response) for response in answers]
     turned = [motion.endswith(REVERSED) for motion in motions]
     return [
-        Run(response, variant, names[i], signals[i][0], records[i], turned[i], whole.largest(response))
+        Run(response, variant, names[i], signals[i][0], records[i], turned[i], largest[i])
         for i, (variant, response) in enumerate(given)
     ]
 
@@ -201,12 +211,13 @@ def in_words(name: str, solver: str, words: Words) -> str:
     return known + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
 
 
-def require_same(name: str, response: Response, case: AnyCase) -> None:
-    """Raise a ValueError for a response of another wall or of other masonry than the case."""
-    if response.case.built != case.built:
-        own, asked = response.case.said, case.said
-        other = "other " if own == asked else ""
-        raise ValueError(f"{name} is of {own}, and the case of {other}{asked}")
+def require_same(name: str, response: Response, asked: Asked) -> None:
+    """Raise a ValueError for a response of another wall or of other masonry than the case and what is checked."""
+    subjects = [asked.case, *(one for mechanism in asked.mechanisms for one in mechanism.subjects)]
+    if not any(is_of(response.case, subject) for subject in subjects):
+        own, due = response.case.said, case_of(asked.case).said
+        other = "other " if own == due else ""
+        raise ValueError(f"{name} is of {own}, and the case of {other}{due}")
 
 
 def required_texts(name: str, given: object, known: Sequence[str]) -> dict[str, str]:
@@ -233,22 +244,17 @@ def title_block(block: Mapping[str, str], words: Words) -> Markup:
     return table((), [cells[i : i + 4] for i in range(0, len(cells), 4)], kind="block")
 
 
-def answered(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """The answer and the drawing."""
-    others = [whole.case, *(some[0].response.case for some in by_variant(runs).values())]
+def answered(parts: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The answer, and the first drawing of a report of one wall; several walls are drawn with their checks."""
+    others = [one.subject for part in parts for one in part.subjects]
     found = verdicts.answers(mechanisms, others, words) if mechanisms else []
     codes = verdicts.codes_of(mechanisms, words.language)
     borne = any(mechanism.loads for mechanism in mechanisms)
     methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
     methods += [words("borne")] * borne
     said = [*methods, *([outcomes(runs, words)] if runs else [])]
-    ranked = verdicts.ranked(mechanisms)
-    other = next((one for mechanism in ranked for one in mechanism.subjects if isinstance(one, OTHERS)), None)
-    figure, caption = whole.at_rest(words, [one.result for each in ranked for one in each.loads])
-    if other is not None:
-        figure, caption = drawn(other, words)
-    drawing = picture(figure, caption, words)
-    return [element("h2", words("answer")), *found[:-1], drawing, *found[-1:], *(element("p", one) for one in said)]
+    drawing = sketches(parts[0], parts, words)[:1] if len(parts) == 1 else []
+    return [element("h2", words("answer")), *found[:-1], *drawing, *found[-1:], *(element("p", one) for one in said)]
 
 
 def outcomes(runs: Sequence[Run], words: Words) -> str:
@@ -260,17 +266,17 @@ def outcomes(runs: Sequence[Run], words: Words) -> str:
     return f"{words('falls')} {'; '.join(said)}."
 
 
-def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """The checks, step by step, and their curves."""
+def checked(wholes: Sequence[Part], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The checks, of each wall with its drawings, its curves and its steps."""
     parts: list[Markup] = []
-    if (figure := capacity_curves(mechanisms, words)) is not None:
+    several, kinematic = len(wholes) > 1, any(one.kinematic for one in mechanisms)
+    drawings = [sketches(one, wholes, words)[not several :] for one in wholes]
+    if any(drawings) or kinematic:
         codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
-        parts += [element("h2", words("checks"))]
+        parts += [element("h2", words("checks" if kinematic else "drawings"))]
         parts += [element("p", said) for said in verdicts.sentences(codes, "kinematic", words)]
-        parts += verdicts.kinematic_steps(mechanisms, words)
-        cut = [(one.name, one.kinematic.d_0) for one in mechanisms if one.kinematic and one.kinematic.ended]
-        parts += [element("p", words("curve_cut", name=name, d=words.quantity(d, "m", FOUND))) for name, d in cut]
-        parts.append(picture(figure, words("curves_said"), words))
+    for one, drawing in zip(wholes, drawings, strict=True):
+        parts += [*[element("h3", one.names)] * several, *drawing, *stepped(one.mechanisms, words)]
     if loaded := [(one.name, check.result) for one in mechanisms for check in one.loads]:
         parts.append(element("h2", words("loaded")))
         parts += [part for name, result in loaded for part in of_borne(name, result, words)]
@@ -281,28 +287,46 @@ def checked(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     return parts
 
 
-def shaken(whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """The runs as pictures; nothing without runs."""
-    if not runs:
+def stepped(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+    """The curves of kinematic checks, and their steps; nothing where there are none."""
+    figure = capacity_curves(mechanisms, words)
+    if figure is None:
         return []
+    cut = [(one.name, one.kinematic.d_0) for one in mechanisms if one.kinematic and one.kinematic.ended]
+    said = [element("p", words("curve_cut", name=name, d=words.quantity(d, "m", FOUND))) for name, d in cut]
+    return [picture(figure, words("curves_said"), words), *said, *verdicts.kinematic_steps(mechanisms, words)]
+
+
+def shaken(parts: Sequence[Part], words: Words) -> list[Markup]:
+    """The runs as pictures, those of each wall for themselves; nothing without runs."""
+    moved = [part for part in parts if part.runs]
+    found = [element("h2", words("runs"))] if moved else []
+    for part in moved:
+        found += [*[element("h3", part.names_run)] * (len(moved) > 1), *shaken_part(part, words)]
+    return found
+
+
+def shaken_part(part: Part, words: Words) -> list[Markup]:
+    """The runs of a wall or masonry as pictures."""
+    whole, runs, mechanisms = part.whole, part.runs, part.mechanisms
     limits, limit = {}, whole.limit()
     if limit is not None:
         limits[words("limit_d_0")] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     solved = subject.solved_with([run.response for run in runs], words)
-    parts = [element("h2", words("runs")), *[element("p", said) for said in solved]]
+    found = [element("p", said) for said in solved]
     drawing = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
-    parts.append(picture(drawing, words(f"strip_{whole.KIND}"), words))
+    found.append(picture(drawing, words(f"strip_{whole.KIND}"), words))
     drawing = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
     count = len({run.record for run in runs})
-    parts.append(picture(drawing, words("histories_said", count=min(count, PANELS), of=count), words))
+    found.append(picture(drawing, words("histories_said", count=min(count, PANELS), of=count), words))
     end = whole.at_end(runs, words)
-    return parts if end is None else [*parts, picture(end, words("ends_said"), words)]
+    return found if end is None else [*found, picture(end, words("ends_said"), words)]
 
 
 def judged(
-    whole: Reported, runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, loads: Sequence[str]
+    wholes: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, loads: Sequence[str]
 ) -> list[Markup]:
     """What governs, what the results do not say, also of the loads, and what the code asks to be said of a program."""
     parts = []
@@ -312,7 +336,8 @@ def judged(
         parts += [element("h2", words("governing")), verdicts.governing(verdicts.ranked(mechanisms), records, words)]
     if broken := subject.broken_ties(runs, words):
         parts.append(listed(broken))
-    limits = [*verdicts.limits(mechanisms, words), *whole.limits(runs, words)]
+    limits = [*verdicts.limits(mechanisms, words)]
+    limits += dict.fromkeys(said for part in wholes for said in part.whole.limits(part.runs, words))
     limits += [words("limit_load", names=words.named(loads))] if loads else []
     parts += [element("h2", words("limits")), listed(limits)]
     solvers = list(dict.fromkeys(run.response.solver for run in runs))
@@ -322,10 +347,27 @@ def judged(
     codes = verdicts.codes_of(mechanisms, words.language) or [code_of()]
     heading = "; ".join(verdicts.sentences(codes, "program", words)) or words("program")
     parts += [element("h2", heading), table((), subject.code_chapter(used, words), kind="block")]
-    if by_hand := whole.by_hand(words):
-        parts += [element("p", words("hand"), kind="head"), table((), by_hand, right=(1,))]
+    parts += by_hand(wholes, words)
     judgement = element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))
     return [*parts, element("div", *judgement, kind="whole")]
+
+
+def by_hand(parts: Sequence[Part], words: Words) -> list[Markup]:
+    """Checks by hand of walls that overturn, a column each."""
+    walls = [one for part in parts for one in part.subjects if verdicts.kind_of(one.subject) == "wall"]
+    found: list[tuple[list[str], list[tuple[str, ...]]]] = []
+    for names, wall in walls:
+        rows = reported(wall).by_hand(words)
+        same = next((called for called, other in found if other == rows), None)
+        found += [(list(names), rows)] * (same is None)
+        (same or []).extend(names)
+    made = []
+    for start in range(0, len(found), verdicts.ABREAST):
+        some = found[start : start + verdicts.ABREAST]
+        rows = [(one[0][0], *(value for _, value in one)) for one in zip(*(rows for _, rows in some), strict=True)]
+        heads = ("", *("; ".join(names) for names, _ in some)) if found[1:] else ()
+        made.append(table(heads, rows, right=range(1, 1 + len(some))))
+    return [element("p", words("hand"), kind="head"), *made] if made else []
 
 
 def of_borne(name: str, result: Borne, words: Words) -> list[Markup]:
@@ -376,15 +418,16 @@ def tables(text: str) -> list[Markup]:
     return parts
 
 
-def of_impacts(case: AnyCase, e: object, contacts: object, words: Words) -> list[inputs.Section]:
+def of_impacts(case: Any, e: object, contacts: object, runs: Sequence[Run], words: Words) -> list[inputs.Section]:
     """Restitution and contacts, of all responses or of each variant; TypeError for anything else."""
+    cases = {run.variant: run.response.case for run in runs}
     given = {"e": (e, Restitution), "contacts": (contacts, Contacts)}
     found: dict[str, dict[str, Any]] = {}
     for name, (one, kind) in given.items():
         found[name] = dict(one) if isinstance(one, Mapping) else {"": one}
         for variant, own in found[name].items():
             require_kind(f"{name}[{variant!r}]" if variant else name, own, kind, type(None))
-            case.require_own_joints(own)
+            cases.get(variant, case_of(case)).require_own_joints(own)
     sections = []
     for variant in dict.fromkeys((*found["e"], *found["contacts"])):
         rows = inputs.of_contacts(found["e"].get(variant), found["contacts"].get(variant), words)
@@ -446,21 +489,38 @@ def alike(values: Sequence[str]) -> Sequence[str]:
     return [element("td", values[0], colspan=str(len(values)), kind="all")]
 
 
-def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup]:
-    """The records, and every run."""
+def every_run(parts: Sequence[Part], words: Words) -> list[Markup]:
+    """The records, and every run, those of each wall in a table."""
+    runs = [run for part in parts for run in part.runs]
     if not runs:
         return []
-    parts = []
-    grounds = [run.response.case.grounds for run in runs]
-    motions = [motion for ground in grounds for motion in ground.values()]
-    called = dict(
-        zip((motion.name.removesuffix(REVERSED) for motion in motions), named_records(motions, words), strict=True)
-    )
-    if motions:
+    grounds, called = [run.response.case.grounds for run in runs], records_called(runs, words)
+    found = []
+    if called:
         keys = ("name", "direction", "peak", "peak_g", "duration", "step", "origin")
         heads = [words(f"motion_{key}") for key in keys]
-        told = subject.of_motions(grounds, called, words)
-        parts += [element("h2", words("motions")), table(heads, told, right=(2, 3, 4, 5))]
+        rows = subject.of_motions(grounds, called, words)
+        found += [element("h2", words("motions")), table(heads, rows, right=(2, 3, 4, 5))]
+    moved = [part for part in parts if part.runs]
+    found.append(element("h2", words("every_run")))
+    for part in moved:
+        found += [*[element("h3", part.names_run)] * (len(moved) > 1), *runs_of(part.whole, part.runs, called, words)]
+    if forces := subject.forces_kept(runs, words):
+        heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
+        found.append(table(heads, forces, right=(1, 2)))
+    return found
+
+
+def records_called(runs: Sequence[Run], words: Words) -> dict[str, str]:
+    """What the records of runs are called, by their own names."""
+    motions = [motion for run in runs for motion in run.response.case.grounds.values()]
+    own = (motion.name.removesuffix(REVERSED) for motion in motions)
+    return dict(zip(own, named_records(motions, words), strict=True))
+
+
+def runs_of(whole: Reported, runs: Sequence[Run], called: Mapping[str, str], words: Words) -> list[Markup]:
+    """The table of the runs of a wall or masonry, with what their records are called."""
+    grounds = [run.response.case.grounds for run in runs]
     beside = [name for name in ("vertical", "transverse") if any(name in ground for ground in grounds)]
     variants, ties = any(run.variant for run in runs), any(run.response.ties for run in runs)
     columns = ["variant"] * variants + ["run", *beside, "polarity", *whole.COLUMNS] + ["force", "drawn", "broke"] * ties
@@ -474,8 +534,4 @@ def every_run(whole: Reported, runs: Sequence[Run], words: Words) -> list[Markup
         columns.index(name) for name in ("variant", "run", *beside, "polarity", "outcome", "fallen") if name in columns
     }
     right = sorted(set(range(len(columns))) - left)
-    parts += [element("h2", words("every_run")), table(heads, rows, right=right, kind="runs")]
-    if forces := subject.forces_kept(runs, words):
-        heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
-        parts.append(table(heads, forces, right=(1, 2)))
-    return parts
+    return [table(heads, rows, right=right, kind="runs")]

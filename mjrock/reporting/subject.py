@@ -19,9 +19,9 @@ import scipy
 from matplotlib.figure import Figure
 
 from .._version import __version__
-from ..plotting.masonry import blocks, laden
+from ..plotting.masonry import blocks, laden, mechanism
 from ..problem.ground.motion import GroundMotion
-from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
@@ -30,7 +30,8 @@ from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
 from ..study.intensity.fragility import Fragility
-from ..study.loading.code_check import d_0_of, displaced
+from ..study.loading.code_check import case_of, d_0_of, displaced
+from ..study.loading.limit_analysis import LimitCurve
 from ..study.loading.load_check import Borne
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
@@ -172,9 +173,14 @@ class ReportedWall(Reported):
 
 @dataclass(frozen=True)
 class ReportedMasonry(Reported):
-    """Masonry, see `Reported`."""
+    """Masonry, see `Reported`.
+
+    Args:
+        curve: of its mechanism, where it is checked by one.
+    """
 
     case: MasonryCase
+    curve: LimitCurve | None = None
     KIND = "masonry"
     COLUMNS = "outcome", "largest", "opening", "sliding", "fallen"
 
@@ -213,12 +219,15 @@ class ReportedMasonry(Reported):
 
     def at_rest(self, words: Words, borne: Sequence[Borne]) -> tuple[Figure, str]:
         """The blocks with their loads, and the loads that grow of what bears least."""
-        figure, masonry = self._drawn([(self.case.masonry, "")]), self.case.masonry
+        masonry, moved = self.case.masonry, []
+        if self.curve is not None and self.curve.start.moving:
+            moved = [(self.curve.start, words("mechanism_opens"))]
+        figure = self._drawn([(masonry, words("at_rest") if moved else ""), *moved])
         if not masonry.in_space:
             growing = [one.loads for one in borne if isinstance(one, Collapse) and one.masonry == masonry]
             laden(figure.axes[0], masonry, self.case.effects, *growing[:1])
-            sized(figure, 1, TALLEST_BLOCKS)
-        return figure, words("drawing_masonry")
+            sized(figure, len(figure.axes), TALLEST_BLOCKS)
+        return figure, words("drawing_masonry_mechanism" if moved else "drawing_masonry")
 
     def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
         """The blocks as the runs with the largest motion end."""
@@ -227,14 +236,14 @@ class ReportedMasonry(Reported):
         said = [words("at_time", run=_polar(run, words), t=t) for run, t in zip(worst, ends, strict=True)]
         return self._drawn([(run.response, text) for run, text in zip(worst, said, strict=True)])
 
-    def _drawn(self, pieces: Sequence[tuple[Masonry | Response, str]]) -> Figure:
-        """Masonry at rest, or as responses of it end, in panels with titles."""
+    def _drawn(self, pieces: Sequence[tuple[Masonry | Response | Collapse, str]]) -> Figure:
+        """Masonry at rest, in its mechanism, or as responses of it end, in panels with titles."""
         columns = min(2, len(pieces))
         rows = -(-len(pieces) // columns)
         figure = Figure(figsize=(WIDE, rows * TALLEST_BLOCKS), layout="constrained")
         for i, (piece, title) in enumerate(pieces):
             ax = figure.add_subplot(rows, columns, i + 1, projection="3d" if self.case.in_space else None)
-            blocks(ax, piece)
+            mechanism(ax, piece) if isinstance(piece, Collapse) else blocks(ax, piece)
             ax.set_title(fill(title, TITLE), fontsize=SMALL)
             small(ax)
         if not self.case.in_space:
@@ -312,9 +321,14 @@ def _polar(run: Run, words: Words) -> str:
     return f"{run.label} ({words('reversed')})" if run.turned else run.label
 
 
-def reported(case: AnyCase) -> Reported:
-    """A case as a report sees it."""
-    return ReportedMasonry(case) if isinstance(case, MasonryCase) else ReportedWall(case)
+def reported(subject: Any) -> Reported:
+    """What is checked or run as a report sees it."""
+    curve = subject if isinstance(subject, LimitCurve) else None
+    if isinstance(subject, Collapse):
+        masonry = subject.masonry
+        subject = subject.case if masonry is None else MasonryCase(masonry, 1.0, effects=subject.effects)
+    case = case_of(subject)
+    return ReportedMasonry(case, curve) if isinstance(case, MasonryCase) else ReportedWall(case)
 
 
 def of_motions(

@@ -8,8 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import link_effects
+from ..problem.wall.wedge import Corner
 from ..quantities import require_kind, require_text, shown
 from ..study.loading.code import OF_MECHANISM, Code
 from ..study.loading.code_check import DynamicCheck, MechanismCheck, Step, Verdict
@@ -99,6 +101,15 @@ def required_checks(checks: object, alone: str) -> list[Mechanism]:
         called = require_text("a name of checks", name)
         found.append(Mechanism(called, kinematic[0] if kinematic else None, dynamic, loads))
     return found
+
+
+def kind_of(subject: object) -> str:
+    """The end of the key of the word for what is checked: "wall", "bending", "corner" or "masonry"."""
+    if isinstance(subject, Corner):
+        return "corner"
+    if isinstance(subject, VerticalBending | HorizontalBending):
+        return "bending"
+    return "wall" if hasattr(getattr(subject, "case", None) or subject, "block") else "masonry"
 
 
 def codes_of(mechanisms: Sequence[Mechanism], language: str) -> list[Code]:

@@ -200,7 +200,7 @@ def test_one_page_that_needs_no_other_file_and_is_read_on_paper_and_phones(langu
     assert not re.search(r"https?://|<script|<link|src=\"(?!data:)", text)
     assert '<meta name="viewport" content="width=device-width' in text
     assert text.count("<table") == text.count('<div class="wide"><table')
-    assert len(pictures) == 4  # the drawing, the curves, the strip and the histories
+    assert len(pictures) == 6  # the case, its two variants, the curves, the strip and the histories
     assert all(min(picture.size) > 280 and picture.size[0] == 1190 for picture in pictures)
     style = text[text.index("<style>") : text.index("</style>")]
     assert "counter(page)" in style

@@ -76,6 +76,19 @@ Checked = Case | Corner | VerticalBending | HorizontalBending | LimitCurve
 """What the check is of."""
 
 
+def case_of(problem: Checked | AnyCase) -> AnyCase:
+    """The case that stands for a mechanism where it is run: of a corner its wall and masses, of a wall that bends the
+    wall, of a limit curve its masonry and effects."""
+    if isinstance(problem, Corner):
+        return problem.case
+    if isinstance(problem, VerticalBending | HorizontalBending):
+        return Case(problem.wall)
+    if isinstance(problem, LimitCurve):
+        assert problem.start.masonry is not None
+        return MasonryCase(problem.start.masonry, 1.0, effects=problem.effects)
+    return problem
+
+
 class Step(NamedTuple):
     """One step of a check.
 
@@ -494,7 +507,7 @@ def _mechanism_of(case: Checked, code: Code) -> _Mechanism:
         return _of_bending(case)
     if isinstance(case, LimitCurve):
         return _of_blocks(case, code)
-    return _of_wall(case.case if isinstance(case, Corner) else case, code)
+    return _of_wall(cast(Case, case_of(case)), code)
 
 
 def _of_bending(bending: VerticalBending | HorizontalBending) -> _Mechanism:

@@ -1,0 +1,137 @@
+"""The parts of a report: each wall, corner or masonry with its checks, its runs and its drawings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, NamedTuple
+
+from ..problem.masonry.case import AnyCase
+from ..study.loading.code_check import case_of
+from . import verdicts
+from .drawings import OTHERS, drawn
+from .inputs import masonry_in
+from .markup import Markup, picture
+from .pictures import Run, by_variant
+from .subject import Reported, reported
+from .texts import Words
+from .verdicts import Mechanism
+
+
+class Named(NamedTuple):
+    """What is checked or run, such as a case, with the names of its mechanisms and variants."""
+
+    names: list[str]
+    subject: Any
+
+
+@dataclass
+class Part:
+    """What a report has of one wall, corner or masonry.
+
+    Args:
+        body: the same without its effects.
+        subjects: what is checked and run of it, each with its effects once.
+        mechanisms: whose checks are of it.
+        runs: of it.
+    """
+
+    body: object
+    subjects: list[Named] = field(default_factory=list)
+    mechanisms: list[Mechanism] = field(default_factory=list)
+    runs: list[Run] = field(default_factory=list)
+
+    def add(self, name: str, subject: object) -> None:
+        """Add a subject, or a further name of one that is drawn alike."""
+        for one in self.subjects:
+            if _looks(one.subject) == _looks(subject):
+                one.names.extend([name] * (name not in one.names))
+                return
+        self.subjects.append(Named([name], subject))
+
+    def is_of(self, subject: object) -> bool:
+        """Whether a subject is of it."""
+        body = body_of(subject)
+        return type(body) is type(self.body) and body == self.body
+
+    @property
+    def names(self) -> str:
+        """The names of all that it has."""
+        return "; ".join(dict.fromkeys(name for one in self.subjects for name in one.names))
+
+    @property
+    def names_run(self) -> str:
+        """The names of what is run of it."""
+        return "; ".join(filter(None, by_variant(self.runs))) or self.names
+
+    @property
+    def whole(self) -> Reported:
+        """It as the report sees it, by the first of its subjects."""
+        return reported(self.subjects[0].subject)
+
+
+def parts_of(own: str, case: Any, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[Part]:
+    """The parts of a report, that with the least ratio first.
+
+    Args:
+        own: the name of the case where nothing else is of it.
+        case: the wall, corner or masonry that the report is of.
+        mechanisms: with their checks.
+        runs: each of the case, or of the mechanism that its variant is named after.
+    """
+    parts: list[Part] = []
+    by_name: dict[str, Part] = {}
+    for mechanism in verdicts.ranked(mechanisms):
+        subjects = mechanism.subjects or [case]
+        part = by_name[mechanism.name] = _of(subjects[0], parts)
+        part.mechanisms.append(mechanism)
+        for subject in subjects:
+            part.add(mechanism.name, subject)
+    for variant, some in by_variant(runs).items():
+        shaken = case if not variant and isinstance(case, OTHERS) else some[0].response.case
+        part = by_name[variant or own] if (variant or own) in by_name else _of(shaken, parts)
+        part.runs += some
+        part.add(variant or own, part.body if isinstance(part.body, OTHERS) else shaken)
+    for part in [part for part in parts if part.is_of(case)] if parts else [_of(case, parts)]:
+        if all(_looks(one.subject) != _looks(case) for one in part.subjects):
+            part.subjects.insert(0, Named([own], case))
+    return parts
+
+
+def body_of(subject: Any) -> Any:
+    """A wall, corner or masonry without its effects."""
+    if isinstance(subject, OTHERS):
+        none: dict[str, Any] = {one.name: () for one in fields(subject) if one.name == "effects"}
+        return replace(subject, **none)
+    return masonry_in(subject) or getattr(subject, "case", subject).built
+
+
+def is_of(case: AnyCase, subject: Any) -> bool:
+    """Whether a case is of the wall, corner or masonry of a subject."""
+    return bool(case.built == (case_of(subject).built if isinstance(subject, OTHERS) else body_of(subject)))
+
+
+def _of(subject: object, parts: list[Part]) -> Part:
+    """The part of a subject, which is added where there is none."""
+    found = next((part for part in parts if part.is_of(subject)), None)
+    if found is None:
+        parts.append(found := Part(body_of(subject)))
+    return found
+
+
+def _looks(subject: Any) -> tuple[object, ...]:
+    """What a drawing shows of a subject."""
+    one = subject if isinstance(subject, OTHERS) else getattr(subject, "case", None) or subject
+    return body_of(one), getattr(one, "effects", ()), getattr(one, "side_stop", None)
+
+
+def sketches(part: Part, parts: Sequence[Part], words: Words) -> list[Markup]:
+    """The drawings of a part, each with its mechanism or variant in the caption where there are several."""
+    several = len(parts) > 1 or len(part.subjects) > 1
+    borne = [one.result for mechanism in part.mechanisms for one in mechanism.loads]
+    found = []
+    for names, subject in part.subjects:
+        figure, caption = drawn(subject, words, borne)
+        named = f"{'; '.join(names)}: {caption[0].lower()}{caption[1:]}" if several else caption
+        found.append(picture(figure, named, words))
+    return found
