@@ -87,7 +87,7 @@ calibrate: $(READY) # the laws that ship, and what they are worth on walls they 
 models: $(READY)
 	$(BIN)/python scripts/models/make_models.py
 
-figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
+figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does, SAMPLES=folder those of compas_cra
 	$(BIN)/python -m mjrock demo --force --output docs/figures/demo
 	$(BIN)/python scripts/paper/sketch.py --out docs/figures
 	$(BIN)/python scripts/studies/first_pictures.py --out docs/figures
@@ -111,6 +111,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/measure/work_precision.py --out docs/figures
 	$(BIN)/python scripts/measure/records_accuracy.py --out docs/figures
 	$(BIN)/python scripts/peers/peers.py --out docs/figures
+	$(BIN)/python scripts/peers/other_codes.py $(if $(SAMPLES),--samples $(SAMPLES)) --out docs/figures
 	$(BIN)/python scripts/measure/masonry_precision.py --out docs/figures
 	$(BIN)/python scripts/measure/stack_losses.py --out docs/figures
 	$(BIN)/python scripts/studies/thresholds.py --out docs/figures
@@ -121,6 +122,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/studies/town.py --out docs/figures
 	$(BIN)/python scripts/studies/sensitivity.py --out docs/figures
 	$(BIN)/python scripts/studies/limestone_blocks.py --out docs/figures
+	$(BIN)/python scripts/studies/maxima.py --out docs/figures
 	$(BIN)/python scripts/studies/restitution_spread.py --out docs/figures
 	$(BIN)/python scripts/studies/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/measure/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures

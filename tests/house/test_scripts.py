@@ -87,6 +87,9 @@ WRITES = {
     "limestone_blocks": {f"limestone_blocks.{ending}" for ending in ("png", "csv", "txt")},
     "restitution_spread": {f"restitution_spread.{ending}" for ending in ("png", "csv", "txt")},
     "cracked_damping": {f"cracked_damping.{ending}" for ending in ("png", "csv", "txt")},
+    "maxima": {f"maxima.{ending}" for ending in ("png", "csv", "txt")},
+    "other_codes": {f"other_codes.{ending}" for ending in ("png", "csv", "txt", "sqlite")}
+    | {"other_codes_choices.png"},
     "shaken_wall": {f"shaken_wall.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
@@ -240,6 +243,7 @@ LONG = {
     "ida",
     "effect_costs",
     "peers",
+    "other_codes",
     "cracked_facade",
     "granite_walls",
     "granite_variants",
