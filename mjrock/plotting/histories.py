@@ -112,7 +112,7 @@ def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
     """
     for name, (label, color) in GROUNDS.items():
         if (motion := case.grounds.get(name)) is not None:
-            t = np.append(motion.dt * np.arange(len(motion.accel)), [motion.duration, max(until, motion.duration)])
+            t = np.append(motion.times, [motion.duration, max(until, motion.duration)])
             ax.plot(t, np.append(motion.accel, [0.0, 0.0]), color=color, linewidth=0.8, label=label)
     if len(case.grounds) > 1 or case.vertical is not None:
         _legend_above(ax)

@@ -74,9 +74,9 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
     figure = Figure(figsize=(6.4, 5.4 + 0.4 * len(given)), layout="constrained")
     axes = figure.subplots(3, sharex=True)
     for i, motion in enumerate(given):
-        t = motion.dt * np.arange(len(motion.accel))
-        histories = (motion.accel, motion.velocities, motion.displacements)
-        for ax, history, unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
+        t = np.sort(np.append(motion.times, np.linspace(0.0, motion.duration, 400)))  # also where it has few samples
+        histories = (motion.times, motion.accel), (t, motion.velocity(t)), (t, motion.displacement(t))
+        for ax, (t, history), unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
             said = f"{motion.name[:90]}: " if ax is axes[0] else f"ends at {history[-1]:.2g}, "
             peak = float(np.abs(history).max())
             label = f"{said}peak {peak:.3g}{f' {unit}' if ax is axes[0] else ''}"

@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 
 from ..bars import Bar
 from ..problem.damping.contacts import Contacts
+from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
@@ -109,7 +110,8 @@ def _integrated(
     """The times of the output up to the end [s] and states, and how many evaluations and switches they took.
 
     States have the shape (n, 6 + sliders): behind them stand the places of the sliders of friction dampers. The
-    integration is split where friction catches or releases the base, and where a slider begins to slip or to stick.
+    integration is split where friction catches or releases the base, where a slider begins to slip or to stick, and
+    where the ground jumps.
     """
 
     def switch(t: float, y: Array) -> float:
@@ -118,8 +120,6 @@ def _integrated(
     def overturning(t: float, y: Array) -> float:
         return abs(float(y[2])) - ON_ITS_FACE
 
-    shaking = [motion.dt for motion in (case.motion, case.vertical) if motion is not None]
-    longest = min(10 * period, *shaking, math.inf)
     switch.terminal = overturning.terminal = True  # type: ignore[attr-defined]
     t, y = 0.0, system.released()
     held, changes = system.edge_load(t, y) > 0, [slider_event(system, i) for i in range(len(system.sliders))]
@@ -133,22 +133,27 @@ def _integrated(
                 y = system.caught(y)
             system.settle(y, fired)
             switch.direction = -1 if held else 1  # type: ignore[attr-defined]
+            end = system.begin_arc(t)
+            inside = output[(output > t) & (output <= end)]
             arc = solve_ivp(
                 system.held if held else system.free,
-                (t, case.duration),
+                (t, end),
                 y,
                 method="DOP853",
-                t_eval=output[output > t],
+                t_eval=np.unique(np.append(inside, end)),
                 events=(switch, overturning, *changes),
                 rtol=rtol,
                 atol=atol,
-                max_step=longest,
+                max_step=min([10 * period, *(motion.dt for motion in system.grounds if _bends(motion, t, end))]),
             )
             if arc.status < 0:
                 raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
             evaluations += arc.nfev
-            times.append(arc.t)
-            states.append(system.with_places(np.reshape(arc.y, (6, -1))))
+            times.append(arc.t[: len(inside)])
+            states.append(system.with_places(np.reshape(arc.y, (6, -1))[:, : len(inside)]))
+            if arc.status == 0 and end < case.duration:
+                t, y, fired = end, arc.y[:, -1], [False] * len(changes)
+                continue
             if arc.status == 0 or arc.t_events[1].size:
                 system.settle(arc.y_events[1][0] if arc.t_events[1].size else arc.y[:, -1], fired)
                 return np.concatenate(times), np.concatenate(states, axis=1).T, evaluations, switches
@@ -159,6 +164,11 @@ def _integrated(
             held = held != bool(arc.t_events[0].size)
             switches += 1
     raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")
+
+
+def _bends(motion: GroundMotion, t: float, end: float) -> bool:
+    """Whether a motion has samples within an arc, which its steps then resolve."""
+    return motion.instants is None or bool(((motion.instants > t) & (motion.instants < end)).any())
 
 
 def slider_event(system: Wall, i: int) -> Callable[[float, Array], float]:

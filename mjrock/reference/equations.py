@@ -39,6 +39,8 @@ class Wall:
                     "it none, or take simulate or solve_analytical"
                 )
         wall, self.case = case.wall, case
+        self.grounds = [motion for motion in (case.motion, case.vertical) if motion is not None]
+        self.arc = -math.inf, math.inf  # from one jump of the ground to the next [s]
         self.mass, self.inertia, self.weight = wall.mass, wall.inertia, wall.weight
         self.base, self.up, off = contacts.base, wall.centroid_height, wall.centroid_offset
         self.edges = wall.half_base - off, -wall.half_base - off
@@ -76,6 +78,17 @@ class Wall:
             pz = self._face(height) * np.cos(theta) - height * np.sin(theta)
             found.append((longer, across * (vx + omega * px) + up * (vz + omega * pz)))
         return found
+
+    def begin_arc(self, t: float) -> float:
+        """Begin an arc at a time, with the jumps of the ground on either side; the end of the arc [s]."""
+        jumps = [time for motion in self.grounds for time in motion.jumps.tolist()]
+        before, after = [time for time in jumps if time <= t], [time for time in jumps if time > t]
+        self.arc = max(before, default=-math.inf), min(after, default=math.inf)
+        return min(self.arc[1], self.case.duration)
+
+    def within_arc(self, t: float) -> float:
+        """The time at which the ground is taken: just within the arc at its ends, where the ground jumps [s]."""
+        return min(max(t, math.nextafter(self.arc[0], math.inf)), math.nextafter(self.arc[1], 0.0))
 
     def settle(self, y: Array, fired: Sequence[bool]) -> None:
         """Let the sliders of friction dampers stick or slip from here on; `fired` says whose event has ended an arc."""
@@ -236,9 +249,9 @@ class Wall:
             Fx, Fz = Fx + fx, Fz + fz
             moment += fx * (pz * cosine - px * sine) - fz * (px * cosine + pz * sine)
         if shaken and self.case.motion is not None:
-            Fx -= self.mass * float(self.case.motion(t))
+            Fx -= self.mass * float(self.case.motion(self.within_arc(t)))
         if shaken and self.case.vertical is not None:
-            Fz -= self.mass * float(self.case.vertical(t))
+            Fz -= self.mass * float(self.case.vertical(self.within_arc(t)))
         return np.array([y[3], y[4], y[5], Fx / self.mass, Fz / self.mass - GRAVITY, moment / self.inertia])
 
     def held(self, t: float, y: Array, shaken: bool = True) -> Array:

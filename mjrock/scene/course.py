@@ -25,18 +25,20 @@ class Shaking(NamedTuple):
     Args:
         accel, velocity: at the samples [m/s2, m/s], shape (samples,).
         dt: time step of the samples [s].
+        instants: times of the samples where they are not every dt, one twice at a jump [s], shape (samples,), or none.
     """
 
     accel: Array
     velocity: Array
     dt: float
+    instants: Array
 
     @classmethod
     def of(cls, motion: GroundMotion | None) -> Shaking:
         """The arrays of a motion."""
         if motion is None:
-            return cls(np.empty(0), np.empty(0), 1.0)
-        return cls(motion.accel.copy(), motion.velocities, motion.dt)
+            return cls(np.empty(0), np.empty(0), 1.0, np.empty(0))
+        return cls(motion.accel.copy(), motion.velocities, motion.dt, instants_of(motion))
 
 
 class Ground(NamedTuple):
@@ -57,9 +59,29 @@ class Ground(NamedTuple):
         return cls(Shaking.of(motion), Shaking.of(vertical), Shaking.of(transverse))
 
 
+def instants_of(motion: GroundMotion) -> Array:
+    """The times of the samples of a motion that are not evenly apart [s], for compiled functions; none of others."""
+    return np.empty(0) if motion.instants is None else motion.instants.copy()
+
+
+@inlined
+def last_before(instants: Array, t: float) -> int:
+    """The last of the instants that is not later than t; -1 where all are later."""
+    low, high = -1, len(instants)
+    while high - low > 1:
+        middle = (low + high) // 2
+        if instants[middle] <= t:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
 @inlined
 def ground_velocity(shaking: Shaking, t: float) -> float:
     """Exact integral of the acceleration from zero to t, constant after the last sample [m/s]."""
+    if len(shaking.instants) > 0:
+        return ground_velocity_by_pieces(shaking, t)
     position, last = t / shaking.dt, len(shaking.accel) - 1
     if position <= 0:
         return 0.0
@@ -69,6 +91,19 @@ def ground_velocity(shaking: Shaking, t: float) -> float:
     s = position - i
     rise = shaking.accel[i + 1] - shaking.accel[i]
     return shaking.velocity[i] + shaking.dt * s * (shaking.accel[i] + 0.5 * s * rise)
+
+
+@inlined
+def ground_velocity_by_pieces(shaking: Shaking, t: float) -> float:
+    """The same between samples that are not evenly apart [m/s]."""
+    i, last = last_before(shaking.instants, t), len(shaking.instants) - 1
+    if i < 0:
+        return 0.0
+    if i >= last:
+        return shaking.velocity[last]
+    length, since = shaking.instants[i + 1] - shaking.instants[i], t - shaking.instants[i]
+    rise = shaking.accel[i + 1] - shaking.accel[i]
+    return shaking.velocity[i] + since * (shaking.accel[i] + 0.5 * since / length * rise)
 
 
 @inlined

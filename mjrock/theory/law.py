@@ -21,6 +21,7 @@ from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
 from ..problem.wall.restoring_moment import TiePull, pulled
 from ..quantities import GRAVITY, Array, Integers
+from ..scene.course import instants_of, last_before
 
 SMALL = 0.05
 """Largest change of an angle in a step for which its sine and cosine are taken from series [rad]."""
@@ -31,15 +32,19 @@ SLACK, TAUT, YIELDING, BROKEN = 0, 1, 2, 3
 
 
 class Shaken(NamedTuple):
-    """A ground motion in one direction: a_g / g at the samples [-], and their time step [s]."""
+    """A ground motion in one direction: a_g / g at the samples [-], and their time step or instants [s], see
+    `mjrock.scene.course.Shaking`."""
 
     shares: Array
     dt: float
+    instants: Array
 
     @classmethod
     def of(cls, motion: GroundMotion | None) -> Shaken:
         """The arrays of a motion; empty ones stand for a base at rest."""
-        return cls(np.empty(0), 1.0) if motion is None else cls(motion.accel / GRAVITY, motion.dt)
+        if motion is None:
+            return cls(np.empty(0), 1.0, np.empty(0))
+        return cls(motion.accel / GRAVITY, motion.dt, instants_of(motion))
 
 
 class Toe(NamedTuple):
@@ -131,11 +136,23 @@ class Push(NamedTuple):
 @inlined
 def piece(shaken: Shaken, t: float) -> tuple[float, float, float]:
     """a_g / g at a time [-], its rate [1/s], and the end of the interval in which it is linear [s]."""
+    if len(shaken.instants) > 0:
+        return piece_between(shaken, last_before(shaken.instants, t + 1e-9 * shaken.dt), t)
     i, last = int(t / shaken.dt + 1e-9), len(shaken.shares) - 1
     if i >= last:
         return 0.0, 0.0, math.inf
     rate = (shaken.shares[i + 1] - shaken.shares[i]) / shaken.dt
     return shaken.shares[i] + rate * (t - i * shaken.dt), rate, (i + 1) * shaken.dt
+
+
+@inlined
+def piece_between(shaken: Shaken, i: int, t: float) -> tuple[float, float, float]:
+    """The same in the interval that begins at instant i."""
+    if i >= len(shaken.instants) - 1:
+        return 0.0, 0.0, math.inf
+    start, end = shaken.instants[i], shaken.instants[i + 1]
+    rate = (shaken.shares[i + 1] - shaken.shares[i]) / (end - start)
+    return shaken.shares[i] + rate * (t - start), rate, end
 
 
 @inlined

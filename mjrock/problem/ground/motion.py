@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -19,13 +20,16 @@ from ...quantities import (
     GRAVITY,
     MOST_SAMPLES,
     Array,
+    Integers,
     Within,
+    frozen,
     keep,
     require_flag,
     require_kind,
     require_one_of,
     require_path,
     require_reals,
+    require_sequence,
     require_size,
     require_whole,
     require_within,
@@ -41,10 +45,12 @@ from .oscillator import (
     ModeShape,
     Participation,
     building_modes,
+    of_pieces,
     oscillator_steps,
     total_acceleration,
 )
 from .records import COARSEST, FINEST, Parse, Trace, Wanted, checked_record, read, table_traces, text_lines
+from .vertices import Vertices
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
@@ -52,6 +58,10 @@ FAINT_FILE = 1e-3 * GRAVITY
 """A file whose peak acceleration is below this is probably in another unit [m/s2]."""
 DRIFT = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
+IMPULSE = 1e-3
+"""A piece that is no longer than this is an impulse, whose acceleration says nothing about its unit [s]."""
+UNIT = "peak beyond 3 g"
+"""What a line of a script is warned of once."""
 NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
 """Fields of a header that name its record."""
 Amplitude = Annotated[float, Within(-1e4, 1e4, "m/s2")]
@@ -69,7 +79,7 @@ class GroundMotion:
     """Horizontal acceleration of the base with the sign of Eq. 1: a negative one opens the wall.
 
     Between samples it is linear, before the first and after the last the ground is quiet. A one-sided wall takes the
-    two polarities differently: run both of `polarities`.
+    two polarities differently: run both of `polarities`. `pieces` makes motions that jump, and `+` adds two motions.
 
     Args:
         accel: accelerations [m/s2], shape (n,), n at least 2.
@@ -77,6 +87,10 @@ class GroundMotion:
         name: its name in tables and pictures.
         header: the fields of the header of its file, such as the event and the station, where that has some; FLOOR has
             the modes of the building that it came through, and SCALED_TO the spectrum that it was scaled to.
+
+    Attributes:
+        instants: times of the accelerations [s], shape (n,), where they are not evenly apart; None where they are. One
+            that stands twice is a jump. `dt` is the shortest piece then, and of a sum the shorter of both.
 
     Raises:
         TypeError, ValueError: for accelerations, a step or a name that are not valid.
@@ -91,12 +105,13 @@ class GroundMotion:
     dt: float
     name: str = field(default="ground motion", compare=False)
     header: Mapping[str, str] = field(default_factory=dict, compare=False)
+    instants: Array | None = None
 
     def __init__(
         self, accel: ArrayLike, dt: float, name: str = "ground motion", header: Mapping[str, str] | None = None
     ) -> None:
         self._fill(accel, dt, name, header)
-        self._doubt_of_unit(once="peak beyond 3 g")
+        self._doubt_of_unit(once=UNIT)
 
     @classmethod
     def _of_file(cls, accel: ArrayLike, dt: float, name: str, header: Mapping[str, str]) -> GroundMotion:
@@ -106,33 +121,67 @@ class GroundMotion:
         motion._doubt_of_unit()
         return motion
 
+    @classmethod
+    def _through(cls, vertices: Vertices, dt: float, name: str) -> Self:
+        """The motion through vertices, of even samples where they are those of a record; `dt` resolves it [s]."""
+        vertices = vertices.tidied()
+        even = vertices.even_step(dt)
+        motion = cls.__new__(cls)
+        if even is not None and FINEST <= even <= COARSEST:
+            motion._fill(vertices.values, even, name, None)
+        else:
+            motion._fill(vertices.values, min(dt, COARSEST), name, None)
+            keep(motion, instants=frozen(vertices.times))
+        motion._doubt_of_unit(once=UNIT)
+        return motion
+
     def _fill(self, accel: ArrayLike, dt: float, name: str, header: Mapping[str, str] | None) -> None:
         require_kind("name", name, str)
         require_kind("header", header, Mapping, type(None))
         values, step = checked_record(accel, dt)
-        keep(self, accel=values, dt=step, name=name, header=dict(header or {}))
+        keep(self, accel=values, dt=step, name=name, header=dict(header or {}), instants=None)
+
+    def _with(self, accel: Array, name: str) -> GroundMotion:
+        """Other accelerations at the same instants."""
+        motion = GroundMotion.__new__(GroundMotion)
+        motion._fill(accel, self.dt, name, self.header)
+        keep(motion, instants=self.instants)
+        motion._doubt_of_unit(once=UNIT)
+        return motion
 
     def _doubt_of_unit(self, once: str = "") -> None:
         """Warn of a peak beyond 3 g, with `once` a line of a script once."""
-        if self.peak > SUSPICIOUS:
+        if self.peak > SUSPICIOUS and (self.instants is None or self.dt > IMPULSE):
             said = f"{self.name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2"
             warn_of(said, once=once)
 
     def __repr__(self) -> str:
-        return f"<GroundMotion {self.name!r}: {len(self.accel)} samples, dt = {self.dt:g} s, peak {self.peak:.3g} m/s2>"
+        step = f"dt = {self.dt:g} s" if self.instants is None else f"{self.duration:g} s by pieces"
+        return f"<GroundMotion {self.name!r}: {len(self.accel)} samples, {step}, peak {self.peak:.3g} m/s2>"
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, GroundMotion) and self.dt == other.dt and np.array_equal(self.accel, other.accel)
+        if not isinstance(other, GroundMotion) or self.dt != other.dt or not np.array_equal(self.accel, other.accel):
+            return False
+        return np.array_equal(self.times, other.times)
 
     def __hash__(self) -> int:
         return hash((self.dt, (self.accel + 0.0).tobytes()))  # -0.0 equals 0.0, and must hash as it does
+
+    def __add__(self, other: object) -> GroundMotion:
+        """The sum of two motions, exact at the samples and jumps of both."""
+        if not isinstance(other, GroundMotion):
+            return NotImplemented
+        total, finest = self.vertices.plus(other.vertices), min(self.dt, other.dt)
+        return GroundMotion._through(total, finest, f"{self.name} + {other.name}")
 
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}  # without cached values
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
-        self.accel.setflags(write=False)
+        for array in (self.accel, self.instants):
+            if array is not None:
+                array.setflags(write=False)
 
     def __call__(self, t: float | Array) -> Array:
         """Acceleration at any time [m/s2]."""
@@ -140,33 +189,66 @@ class GroundMotion:
 
     def velocity(self, t: ArrayLike) -> Array:
         """Integral of the acceleration from zero to any time, exact, constant after the last sample [m/s]."""
-        steps = len(self.accel) - 1
-        positions = np.clip(_instants(t) / self.dt, 0, steps)
-        j = np.minimum(positions.astype(int), steps - 1)
-        parts = positions - j
-        means = self.accel[j] + 0.5 * parts * (self.accel[j + 1] - self.accel[j])
-        return np.asarray(self.velocities[j] + self.dt * parts * means)
+        j, within, rise = self._place(t)
+        return np.asarray(self.velocities[j] + within * (self.accel[j] + 0.5 * rise))
+
+    def displacement(self, t: ArrayLike) -> Array:
+        """Integral of the velocity from zero to any time, exact [m]."""
+        j, within, rise = self._place(t)
+        inside = self.displacements[j] + within * (self.velocities[j] + within * (self.accel[j] / 2 + rise / 6))
+        return np.asarray(inside + self.residual_velocity * np.maximum(_instants(t) - self.duration, 0.0))
+
+    def _place(self, t: ArrayLike) -> tuple[Integers, Array, Array]:
+        """The samples before some times, held within the motion, the times since them [s], and by how much the
+        acceleration has changed there [m/s2]."""
+        last = len(self.accel) - 2
+        if self.instants is None:
+            positions = np.clip(_instants(t) / self.dt, 0, last + 1)
+            j = np.minimum(positions.astype(int), last)
+            parts, length = positions - j, self.dt
+        else:
+            held = np.clip(_instants(t), 0, self.duration)
+            j = np.minimum(np.searchsorted(self.instants, held, "right") - 1, last)
+            length = self.instants[j + 1] - self.instants[j]
+            parts = (held - self.instants[j]) / length
+        return j, length * parts, parts * (self.accel[j + 1] - self.accel[j])
+
+    @property
+    def vertices(self) -> Vertices:
+        """Times of the samples [s] and accelerations at them [m/s2], with two of them at a jump."""
+        return Vertices(self.times, self.accel)
 
     @cached_property
     def times(self) -> Array:
         """Times of the samples [s], shape (n,)."""
-        return self.dt * np.arange(len(self.accel), dtype=float)
+        return self.dt * np.arange(len(self.accel), dtype=float) if self.instants is None else self.instants
+
+    @property
+    def steps(self) -> Array | float:
+        """Lengths between the samples [s], one for all where they are the same, zero at a jump."""
+        return self.dt if self.instants is None else np.diff(self.instants)
+
+    @property
+    def jumps(self) -> Array:
+        """Times at which the acceleration jumps, also from and to the quiet ground [s], increasing."""
+        jumps = np.append(self.accel[0] != 0, np.diff(self.times) == 0)
+        return np.concatenate((self.times[jumps], self.times[-1:] if self.accel[-1] else []))
 
     @cached_property
     def velocities(self) -> Array:
         """Velocity of the ground at each sample [m/s], shape (n,)."""
-        return integral(self.accel, self.dt)
+        return integral(self.accel, self.steps)
 
     @cached_property
     def displacements(self) -> Array:
         """Displacement of the ground at each sample [m], shape (n,)."""
-        within = self.dt * (2 * self.accel[:-1] + self.accel[1:]) / 6
-        return np.concatenate(([0.0], np.cumsum(self.dt * (self.velocities[:-1] + within))))
+        within = self.steps * (2 * self.accel[:-1] + self.accel[1:]) / 6
+        return np.concatenate(([0.0], np.cumsum(self.steps * (self.velocities[:-1] + within))))
 
     @property
     def duration(self) -> float:
         """Time of the last sample [s]."""
-        return self.dt * (len(self.accel) - 1)
+        return float(self.times[-1])
 
     @property
     def peak(self) -> float:
@@ -178,7 +260,8 @@ class GroundMotion:
         """Largest |velocity|, between samples too [m/s]."""
         a, b = self.accel[:-1], self.accel[1:]
         i = np.flatnonzero(a * b < 0)
-        turns = self.velocity(self.dt * (i + a[i] / (a[i] - b[i])))
+        steps = np.broadcast_to(self.steps, a.shape)[i]
+        turns = self.velocities[i] + 0.5 * steps * a[i] ** 2 / (a[i] - b[i])
         return float(np.abs(np.concatenate((self.velocities, turns))).max())
 
     @property
@@ -194,8 +277,14 @@ class GroundMotion:
     @property
     def arias_intensity(self) -> float:
         """pi / (2 g) times the integral of the squared acceleration [m/s]."""
+        return float(self.arias_intensities[-1])
+
+    @property
+    def arias_intensities(self) -> Array:
+        """The Arias intensity up to each sample [m/s], shape (n,)."""
         a, b = self.accel[:-1], self.accel[1:]
-        return float(math.pi / (2 * GRAVITY) * self.dt * (a * a + a * b + b * b).sum() / 3)
+        squares = np.cumsum(self.steps * (a * a + a * b + b * b) / 3)
+        return np.concatenate(([0.0], math.pi / (2 * GRAVITY) * squares))
 
     @property
     def polarities(self) -> tuple[GroundMotion, GroundMotion]:
@@ -212,11 +301,25 @@ class GroundMotion:
             raise ValueError(f"factor = {spelt(factor)}, peak = {spelt(peak)}: give either a factor or a peak [m/s2]")
         if peak is None:
             multiple = require_within("factor", factor, -1e6, 1e6)
-            return GroundMotion(multiple * self.accel, self.dt, f"{self.name} x {multiple:g}", self.header)
+            return self._with(multiple * self.accel, f"{self.name} x {multiple:g}")
         peak = require_within("peak", peak, 0.0, 1e3, "m/s2")
         if self.peak == 0:
             raise ValueError(f"{self.name} is at rest: no factor gives it peak = {peak:g} m/s2")
-        return GroundMotion(peak / self.peak * self.accel, self.dt, f"{self.name} to {peak:g} m/s2", self.header)
+        return self._with(peak / self.peak * self.accel, f"{self.name} to {peak:g} m/s2")
+
+    def delayed(self, time: float) -> GroundMotion:
+        """The motion after `time` of quiet ground [s], 0 to 1e4.
+
+        Raises:
+            TypeError, ValueError: for a value outside its range, or one that makes more than MOST_SAMPLES.
+        """
+        time = require_within("time", time, 0.0, 1e4, "s")
+        quiet = max(math.floor(time / self.dt + 1e-9), 1) if self.instants is None else 1
+        require_size("the number of samples with the delay", quiet + len(self.accel), "choose a shorter delay")
+        times = np.concatenate((self.dt * np.arange(quiet), [time], time + self.times))
+        accel = np.concatenate((np.zeros(quiet + 1), self.accel))
+        later = GroundMotion._through(Vertices(times, accel), self.dt, f"{self.name} after {time:g} s")
+        return later.headed(self.header)
 
     def along(self, other: GroundMotion, azimuth: float) -> GroundMotion:
         """The component along an azimuth of a record of which this component points north and `other` east.
@@ -236,36 +339,41 @@ class GroundMotion:
         """
         require_kind("other", other, GroundMotion)
         angle = require_within("azimuth", azimuth, -2 * math.pi, 2 * math.pi, "rad")
-        if (self.dt, len(self.accel)) != (other.dt, len(other.accel)):
+        if not np.array_equal(self.times, other.times):
             raise ValueError(
                 f"other has {len(other.accel)} samples at dt = {other.dt:g} s; the valid one has {len(self.accel)} at "
                 f"{self.dt:g} s, as the component that points north"
             )
         accel = math.cos(angle) * self.accel + math.sin(angle) * other.accel
-        return GroundMotion(accel, self.dt, f"{self.name} and {other.name} along {angle:.4g} rad", self.header)
+        return self._with(accel, f"{self.name} and {other.name} along {angle:.4g} rad")
 
     def reversed(self) -> GroundMotion:
         """The motion of the other polarity."""
-        return GroundMotion(-self.accel, self.dt, f"{self.name}, reversed", self.header)
+        return self._with(-self.accel, f"{self.name}, reversed")
 
     def resampled(self, dt: float) -> GroundMotion:
         """The motion at another time step `dt` [s], as long as before within half of it, linear between its samples.
 
         Before a coarser step it goes through an eighth-order Butterworth filter, forwards and backwards: 0.7 of the new
         Nyquist frequency keeps half its amplitude, the Nyquist frequency 0.3 %. A finer step that divides the old one
-        to rounding is made to divide it exactly.
+        to rounding is made to divide it exactly. Of pieces the samples at a jump have the mean of both sides.
 
         Raises:
-            ValueError: for a step below 1e-5 s, beyond 1 s or the duration, or that makes more than MOST_SAMPLES.
+            ValueError: for a step below 1e-5 s, beyond 1 s, the duration or the shortest piece, or that makes more than
+                MOST_SAMPLES.
         """
-        new = require_within("time step dt", dt, FINEST, min(COARSEST, self.duration), "s")
+        longest = self.duration if self.instants is None else self.dt
+        new = require_within("time step dt", dt, FINEST, min(COARSEST, longest), "s")
         accel, last, parts, name = self.accel, len(self.accel) - 1, round(self.dt / new), f"{self.name} at {new:g} s"
-        if parts and math.isclose(parts * new, self.dt):
+        if self.instants is None and parts and math.isclose(parts * new, self.dt):
             new, steps = self.dt / parts, parts * last
         else:
-            steps = round(last * self.dt / new)
-        remedy = f"make dt longer than {last * self.dt / MOST_SAMPLES:.3g} s"
-        require_size(f"the number of samples of {last * self.dt:g} s at dt = {new:g} s", steps + 1, remedy)
+            steps = round(self.duration / new)
+        remedy = f"make dt longer than {self.duration / MOST_SAMPLES:.3g} s"
+        require_size(f"the number of samples of {self.duration:g} s at dt = {new:g} s", steps + 1, remedy)
+        if self.instants is not None:
+            sides = self.vertices.sides(new * np.arange(1, steps, dtype=float))
+            return GroundMotion([accel[0], *sides.mean(axis=1), accel[-1]], new, name, self.header)
         if new > self.dt:
             low_pass = scipy.signal.butter(8, 0.7 * self.dt / new, output="sos")
             accel = scipy.signal.sosfiltfilt(low_pass, accel, padlen=min(last, math.ceil(10 * new / self.dt)))
@@ -287,10 +395,12 @@ class GroundMotion:
                 (0.1, 25.0); one of them may be None. A corner keeps half of the amplitude.
 
         Raises:
-            TypeError, ValueError: for neither of both, another baseline, or corners outside 0.001 Hz to 0.49 / dt.
+            TypeError, ValueError: for neither of both, another baseline, corners outside 0.001 Hz to 0.49 / dt, or
+                pieces, which have no even samples.
         """
         if baseline is None and band is None:
             raise ValueError("corrected takes a baseline, a band, or both")
+        self._require_even("corrected takes even samples")
         accel = self.accel if baseline is None else without_baseline(self.accel, self.dt, baseline)
         if band is not None:
             accel = within_band(accel, self.dt, band)
@@ -299,6 +409,18 @@ class GroundMotion:
         if band is not None:
             done += [f"{side} {corner:g} Hz" for side, corner in zip(("above", "below"), band, strict=True) if corner]
         return GroundMotion(accel, self.dt, ", ".join([self.name, *done]), self.header)
+
+    def _require_even(self, takes: str) -> None:
+        """Raise ValueError with what is taken for a motion by pieces."""
+        if self.instants is not None:
+            finest = min(self.dt, 0.001)
+            raise ValueError(f"{takes}, and {self.name} is by pieces; take .resampled({finest:g}), in s, first")
+
+    def headed(self, header: Mapping[str, str]) -> GroundMotion:
+        """The same motion with another header."""
+        named_so = copy.copy(self)
+        keep(named_so, header=dict(header))
+        return named_so
 
     def through_building(
         self,
@@ -327,15 +449,23 @@ class GroundMotion:
         periods, xi, motions = modes.period, modes.damping, modes.motion
         parts = oscillator_steps(self.dt, float(periods.min()))
         h, rings = self.dt / parts, math.log(100.0) * float(periods.max()) / (2 * math.pi * xi)
-        steps = parts * (len(self.accel) - 1 + math.ceil(rings / self.dt))
+        steps = parts * (math.ceil(self.duration / self.dt - 1e-9) + math.ceil(rings / self.dt))
         require_size(
             f"the number of samples of {steps * h:g} s at dt = {h:g} s", steps + 1, "leave out the short periods"
         )
-        ground = self(h * np.arange(steps + 1, dtype=float))
-        floor = (1 - motions.sum()) * ground
+        at, rigid, name = h * np.arange(steps + 1, dtype=float), 1 - motions.sum(), f"{self.name} on a floor"
+        ground = self(at)
+        floor = rigid * ground if self.instants is None else np.zeros(steps + 1)
         for Tk, motion in zip(periods.tolist(), motions.tolist(), strict=True):
-            floor = floor + motion * total_acceleration(ground, h, Tk, xi)
-        return GroundMotion(floor, h, f"{self.name} on a floor", {**self.header, "FLOOR": modes.label})
+            if self.instants is None:
+                floor = floor + motion * total_acceleration(ground, h, Tk, xi)
+            else:
+                floor = floor + motion * of_pieces(self.vertices, at, Tk, xi).acceleration
+        moved = GroundMotion(floor, h, name, {**self.header, "FLOOR": modes.label})
+        if self.instants is None:
+            return moved
+        total = moved.vertices.plus(Vertices(self.times, rigid * self.accel))
+        return GroundMotion._through(total, h, name).headed(moved.header)
 
     @classmethod
     @within_ranges
@@ -387,9 +517,47 @@ class GroundMotion:
         Raises:
             ValueError: for a value outside its range.
         """
-        steps = math.ceil(duration)
+        steps = math.ceil(duration / COARSEST)
         name = f"rectangular {amplitude:g} m/s2, {duration:g} s"
-        return cls(np.full(steps + 1, amplitude), duration / steps, name)
+        return cls._of_pieces([(duration / steps, amplitude)] * steps, name)
+
+    @classmethod
+    def pieces(cls, pieces: Sequence[tuple[float, float]]) -> Self:
+        """Constant accelerations one after another, exact where they jump, in every solver.
+
+        A step that spans a jump takes its impulse exactly. A short piece is an impulse: (1e-4, 1e4 v) changes the
+        velocity of the ground by v [m/s].
+
+        Args:
+            pieces: duration [s], 1e-5 to 1e3, and acceleration [m/s2], -1e4 to 1e4, of each.
+
+        Raises:
+            TypeError, ValueError: for what is not at least one pair of them, or a value outside its range.
+
+        Examples:
+            >>> pulse = mr.GroundMotion.pieces([(0.3, 2.0), (0.6, -1.0)])
+            >>> round(pulse.peak_velocity, 9), round(pulse.residual_velocity, 9)
+            (0.6, 0.0)
+        """
+        takes = "pairs of a duration [s] and an acceleration [m/s2], at least one"
+        require_sequence("pieces", pieces, takes)
+        require_size("the number of samples", 2 * len(pieces), "give fewer pieces")
+        found = []
+        for i, piece in enumerate(pieces):
+            if not isinstance(piece, Sequence) or isinstance(piece, str) or len(piece) != 2:
+                raise TypeError(f"pieces[{i}] = {shown(piece)} is no pair; pieces takes {takes}")
+            duration = require_within(f"duration of pieces[{i}]", piece[0], FINEST, 1e3, "s")
+            found.append((duration, require_within(f"acceleration of pieces[{i}]", piece[1], -1e4, 1e4, "m/s2")))
+        if not found:
+            raise ValueError(f"pieces is empty; it takes {takes}")
+        return cls._of_pieces(found, f"{len(found)} pieces, {sum(duration for duration, _ in found):g} s")
+
+    @classmethod
+    def _of_pieces(cls, pieces: Sequence[tuple[float, float]], name: str) -> Self:
+        durations, accel = np.array(pieces, dtype=float).T
+        ends = np.cumsum(durations)
+        times = np.column_stack((np.append(0.0, ends[:-1]), ends)).ravel()
+        return cls._through(Vertices(times, np.repeat(accel, 2)), float(durations.min()), name)
 
     @classmethod
     @within_ranges
@@ -543,8 +711,9 @@ class GroundMotion:
 
         Raises:
             OSError: if the file cannot be written.
-            ValueError: for a field that a file of ESM cannot have.
+            ValueError: for a field that a file of ESM cannot have, or pieces, which have no even samples.
         """
+        self._require_even("a file of ESM takes even samples")
         for name, value in header.items():
             require_kind(name, value, str)
         return write_text(require_path("path", path), esm_text(self.accel, self.dt, {**self.header, **header}))
@@ -649,8 +818,9 @@ def _samples(value: int, span: float, least: int) -> int:
     return require_whole("samples", value, max(least, math.ceil(span / COARSEST)), math.floor(span / FINEST))
 
 
-def integral(accel: Array, dt: float) -> Array:
-    """Integral from zero of a motion that is linear between its samples, at each of them, shape (n,)."""
+def integral(accel: Array, dt: float | Array) -> Array:
+    """Integral from zero of a motion that is linear between its samples, at each of them, shape (n,); `dt` is the step
+    between all or between each two [s]."""
     return np.concatenate(([0.0], np.cumsum(0.5 * dt * (accel[1:] + accel[:-1]))))
 
 

@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from ...quantities import Array, Within, require_reals, require_row, require_within, within_ranges
+from .vertices import Vertices
 
 FINENESS = 20
 """Steps to a period at least, between which the peak of a sine is missed by at most 1.2 %."""
@@ -47,6 +48,41 @@ def _answer(accel: Array, h: float, period: float, damping: float, reading: tupl
     A, B, C, D, _ = scipy.signal.cont2discrete(system, h, method="foh")
     upper, lower = scipy.signal.ss2tf(A, B, C, D)
     return np.asarray(scipy.signal.lfilter(upper[0], lower, accel))
+
+
+class Oscillation(NamedTuple):
+    """The motion of an oscillator on moving ground, each of shape (n,).
+
+    Args:
+        displacement: relative to the ground [m].
+        acceleration: that of the ground included [m/s2].
+    """
+
+    displacement: Array
+    acceleration: Array
+
+
+def of_pieces(ground: Vertices, at: Array, period: float, damping: float) -> Oscillation:
+    """The motion of an oscillator at increasing times [s] on ground that is linear between vertices [m/s2], in closed
+    form from vertex to vertex."""
+    omega = 2 * math.pi / period
+    decay, free = damping * omega, omega * math.sqrt(1 - damping**2)
+    place = np.append(np.searchsorted(at, ground.times), len(at))
+    lengths, rises = np.append(np.diff(ground.times), math.inf), np.append(np.diff(ground.values), 0.0)
+    found, u, v = np.zeros((2, len(at))), 0.0, 0.0
+    for k, (start, length) in enumerate(zip(ground.times.tolist(), lengths.tolist(), strict=True)):
+        if length == 0:
+            continue
+        accel, rate = (0.0, 0.0) if math.isinf(length) else (float(ground.values[k]), float(rises[k]) / length)
+        steady = np.array([-accel / omega**2 + 2 * damping * rate / omega**3, -rate / omega**2])
+        c, d = u - steady[0], v - steady[1]
+        tau = np.append(at[place[k] : place[k + 1]] - start, 0.0 if math.isinf(length) else length)
+        shrink, cosine, sine = np.exp(-decay * tau), np.cos(free * tau), np.sin(free * tau) / free
+        us = steady[0] + steady[1] * tau + shrink * (c * cosine + (d + decay * c) * sine)
+        vs = steady[1] + shrink * (d * cosine - (omega**2 * c + decay * d) * sine)
+        found[:, place[k] : place[k + 1]] = us[:-1], vs[:-1]
+        u, v = float(us[-1]), float(vs[-1])
+    return Oscillation(found[0], -(omega**2) * found[0] - 2 * decay * found[1])
 
 
 def one_or_row(name: str, values: ArrayLike, low: float, high: float, unit: str = "") -> Array:

@@ -6,7 +6,6 @@ A vertical component never counts as a horizontal one.
 
 from __future__ import annotations
 
-import copy
 import fnmatch
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -20,7 +19,6 @@ from numpy.typing import ArrayLike
 
 from ...quantities import (
     Array,
-    keep,
     named,
     require_kind,
     require_path,
@@ -389,9 +387,7 @@ def _directed(motion: GroundMotion, token: str) -> GroundMotion:
     """A motion whose header has its direction in STREAM."""
     if motion.header.get("STREAM", "") == token:
         return motion
-    named_so = copy.copy(motion)
-    keep(named_so, header={**motion.header, "STREAM": token})
-    return named_so
+    return motion.headed({**motion.header, "STREAM": token})
 
 
 def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:

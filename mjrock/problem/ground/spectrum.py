@@ -39,6 +39,7 @@ from .oscillator import (
     ModeShape,
     Participation,
     building_modes,
+    of_pieces,
     one_or_row,
     oscillator_steps,
     relative_displacement,
@@ -79,6 +80,8 @@ FIRM = 10.0
 """T_F, beyond which the displacement is that of the ground [s]."""
 PLATEAU_FROM, PLATEAU_TO = 0.8, 1.1
 """a and b, the periods between which a mode amplifies most, over its own [-], Circolare 2019 n. 7, C7.2.3."""
+FINER = 200
+"""Steps to a period on ground that moves by pieces, between which the peak of a sine is missed by at most 1e-4."""
 PROBABLY_IN_G = 0.35
 """a_g below which it was probably given in g [m/s2]."""
 
@@ -425,8 +428,8 @@ class ResponseSpectrum:
 def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float = 0.05) -> ResponseSpectrum:
     """The response spectrum of a ground motion.
 
-    Each oscillator is solved exactly for an acceleration that is linear between its samples, and followed for one
-    period after the last of them.
+    Each oscillator is solved exactly for an acceleration that is linear between its samples, or jumps, and followed for
+    one period after the last of them.
 
     Args:
         motion: the ground motion.
@@ -445,6 +448,10 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
 
 def _largest(motion: GroundMotion, period: float, damping: float) -> float:
     """The largest displacement of an oscillator relative to the ground [m]."""
+    if motion.instants is not None:
+        until = motion.duration + period
+        at = np.linspace(0.0, until, math.ceil(FINER * until / period) + 1)
+        return float(np.abs(of_pieces(motion.vertices, at, period, damping).displacement).max())
     parts = oscillator_steps(motion.dt, period)
     h = motion.dt / parts
     steps = parts * (len(motion.accel) - 1) + math.ceil(period / h)
@@ -498,9 +505,8 @@ def scaled_by(
     given = f"{ground.code}, ag = {ground.ag:.6g} m/s2" if isinstance(ground, CodeSpectrum) else "spectrum of points"
     given += " on a floor" if isinstance(target, FloorSpectrum) else ""
     at = ", ".join(f"{period:.6g}" for period in np.atleast_1d(np.asarray(periods, dtype=float)))
-    scaled = motion.scaled(factor)
-    header = {**motion.header, "SCALED_TO": f"{given}; factor {factor:.6g} over T = {at} s"}
-    return GroundMotion(scaled.accel, scaled.dt, scaled.name, header)
+    made = f"{given}; factor {factor:.6g} over T = {at} s"
+    return motion.scaled(factor).headed({**motion.header, "SCALED_TO": made})
 
 
 def factor_to_spectrum(

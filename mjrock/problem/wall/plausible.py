@@ -122,8 +122,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
             "Accelerations are in m/s2"
         )
     if duration < motion.duration:
-        steps = max(round(duration / motion.dt), 1)
-        total, kept = float((motion.accel**2).sum()), float((motion.accel[: steps + 1] ** 2).sum())
+        total, kept = motion.arias_intensity, float(np.interp(duration, motion.times, motion.arias_intensities))
         if kept < (1 - CUT_OFF) * total:
             found.append(
                 f"the run of {duration:g} s ends before the record of {motion.duration:g} s, and leaves out "
