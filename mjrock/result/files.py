@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..contacts.files import quoted, replacing, write_text
 from ..geometry.poses import rotations
@@ -80,8 +81,14 @@ def linear(colour: Array) -> list[float]:
     return [float(f"{part:.4g}") for part in parts]
 
 
-def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
-    """Write bodies at their times [s] to a .glb, one node each; those that move are animated.
+def comments_text(record: Mapping[str, Json]) -> str:
+    """A record as comments of a table, a line each. A text stands as it is, and all else as JSON."""
+    said = {name: one if isinstance(one, str) else json.dumps(one) for name, one in record.items()}
+    return "".join(f"# {name}: {' '.join(text.split())}\n" for name, text in said.items())
+
+
+def write_gltf(path: str | Path, t: Array, bodies: list[Body], record: Json) -> Path:
+    """Write bodies at their times [s] to a .glb, one node each; those that move are animated. A record is beside them.
 
     Raises:
         ValueError: for another ending.
@@ -108,7 +115,7 @@ def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
             channels.append({"sampler": len(samplers), "target": {"node": node, "path": what}})
             samplers.append({"input": times, "output": numbers.add(values, kind), "interpolation": "LINEAR"})
     text = {
-        "asset": {"version": "2.0", "generator": "mjrock"},
+        "asset": {"version": "2.0", "generator": "mjrock", "extras": record},
         "scene": 0,
         "scenes": [{"nodes": list(range(len(nodes)))}],
         "nodes": nodes,
@@ -146,9 +153,10 @@ def write_series(folder: str | Path, name: str, t: Array, texts: Sequence[str]) 
     return write_text(folder / f"{name}.pvd", _file("Collection", "\n".join(rows)))
 
 
-def texts_of_bodies(bodies: Sequence[Body]) -> list[str]:
+def texts_of_bodies(bodies: Sequence[Body], record: Json) -> list[str]:
     """The faces of the bodies at each of their times, with the displacement [m] and the velocity [m/s] of each corner,
-    and with the number of the body, whether it is fixed and its colour, of three bytes, of each face."""
+    and with the number of the body, whether it is fixed and its colour, of three bytes, of each face. The first has a
+    record too, since all say the same."""
     counts = np.cumsum([0, *(len(body.corners) for body in bodies)])
     faces = [tuple(counts[k] + i for i in face) for k, body in enumerate(bodies) for face in body.faces]
     sizes = [len(body.faces) for body in bodies]
@@ -159,8 +167,8 @@ def texts_of_bodies(bodies: Sequence[Body]) -> list[str]:
     rest = np.concatenate([body.rest + body.corners for body in bodies])
     rates = np.concatenate([body.rate(body.corners) for body in bodies], axis=1)
     return [
-        _grid(at, faces, VTK_POLYGON, {"displacement": at - rest, "velocity": rate}, cells)
-        for at, rate in zip(places, rates, strict=True)
+        _grid(at, faces, VTK_POLYGON, {"displacement": at - rest, "velocity": rate}, cells, {} if i else record)
+        for i, (at, rate) in enumerate(zip(places, rates, strict=True))
     ]
 
 
@@ -179,8 +187,9 @@ def _grid(
     kind: int,
     at_points: Mapping[str, Array],
     at_cells: Mapping[str, Array],
+    record: Json | None = None,
 ) -> str:
-    """The text of points and cells of one kind, with values at both."""
+    """The text of points and cells of one kind, with values at both, and with a record where there is one."""
     kinds = np.full(len(cells), kind, dtype=np.uint8)
     ends = np.cumsum([len(cell) for cell in cells])
     tables = {"connectivity": np.concatenate([np.array(cell) for cell in cells]), "offsets": ends, "types": kinds}
@@ -198,12 +207,17 @@ def _grid(
         for part, arrays in parts.items()
     )
     piece = f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n{text}\n</Piece>'
+    if record:  # as bytes, since meshio reads no texts
+        said = np.frombuffer(json.dumps(record).encode(), np.uint8)
+        piece = f"<FieldData>\n{_array('answer', said, tuples=len(said))}\n</FieldData>\n{piece}"
     return _file("UnstructuredGrid", piece)
 
 
-def _array(name: str, values: Array) -> str:
+def _array(name: str, values: Array | NDArray[np.uint8], tuples: int = 0) -> str:
+    """An array. That of no point or cell says how many numbers it has."""
     kind = {"f": "Float64", "i": "Int64", "u": "UInt8"}[values.dtype.kind]
     wide = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    wide += f' NumberOfTuples="{tuples}"' if tuples else ""
     text = " ".join(f"{value:.12g}" for value in values.ravel().tolist())
     return f'<DataArray type="{kind}" Name={quoted(name)}{wide} format="ascii">\n{text}\n</DataArray>'
 

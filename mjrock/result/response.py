@@ -20,7 +20,7 @@ from ..problem.wall.standing import in_space
 from ..quantities import Array, keep, require_path, require_within
 from .bodies import Moving, bodies_of, frames_at, openings
 from .ending import Outcome
-from .files import results_text, texts_of_bodies, texts_of_joints, write_gltf, write_series
+from .files import comments_text, results_text, texts_of_bodies, texts_of_joints, write_gltf, write_series
 from .forces import Forces
 from .joint_motion import JointMotion
 from .ledger import Ledger
@@ -29,7 +29,7 @@ from .origin import Origin
 from .rocking import Impact, Rocking, largest_rotations, restitution_of
 from .saved import read_answer, write_answer
 from .ties import Plastic, TieMotion, motion_of_ties
-from .variables import attributes_of, variables_of
+from .variables import attributes_of, record_of, variables_of
 
 if TYPE_CHECKING:
     import xarray
@@ -370,7 +370,9 @@ class Response(Drawn):
         the force of each actuator [N], the accounts of a ledger where there is one [J], and forces where the run kept
         them: of each fixed block, joint and link [N], and eccentricities [m]. They are those of `Forces`. Mortared
         joints have their damage and the width of their crack too. No name has a comma:
-        `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits are kept.
+        `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits are kept. Comments at the end, lines
+        that begin with #, have the solver, versions, the processor, the case and the options; pandas skips them with
+        comment="#".
 
         Raises:
             OSError: if the file cannot be written.
@@ -399,7 +401,9 @@ class Response(Drawn):
                 name = self.kept_forces.joints[joint]
                 columns[f"damage of {name} [-]"] = self.kept_forces.damage[:, joint]
                 columns[f"crack width of {name} [m]"] = width
-        text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
+        text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist()) + comments_text(
+            record_of(self)
+        )
         if path is not None:
             write_text(require_path("path", path), text)
         return text
@@ -447,7 +451,7 @@ class Response(Drawn):
 
         Each block is a node of its name with its mesh, animated where it moves. Blocks of the plane are prisms of their
         length. A wall has no openings, and stands on a slab, beside another one where it has a side stop. y points
-        upwards in the file, as it does in glTF.
+        upwards in the file, as it does in glTF. `asset.extras` has solver, versions, processor, case and options.
 
         Args:
             path: where to, a .glb.
@@ -461,14 +465,16 @@ class Response(Drawn):
             OSError: if the file cannot be written.
         """
         kept = frames_at(self.t, fps)
-        return write_gltf(path, self.t[kept], bodies_of(self.moving.at(kept), self.velocity[kept]))
+        bodies = bodies_of(self.moving.at(kept), self.velocity[kept])
+        return write_gltf(path, self.t[kept], bodies, record_of(self))
 
     def to_vtk(self, folder: str | Path, fps: float = 25.0) -> Path:
         """Write the motion as a series of files, which ParaView opens by `blocks.pvd`.
 
         Corners have their displacement [m] and velocity [m/s], and faces the number of their block, whether it is
         fixed, and its colour. With forces=True there is `joints.pvd` too: a point in the middle of each joint with the
-        force on the block above and its normal part [N], and of masonry the largest gap at that time [m].
+        force on the block above and its normal part [N], and of masonry the largest gap at that time [m]. The field
+        data `answer` of the first file of blocks is the UTF-8 of solver, versions, processor, case and options in JSON.
 
         Args:
             folder: where to; it is made where there is none.
@@ -493,7 +499,7 @@ class Response(Drawn):
             if self.joints is not None:
                 values["opening"] = openings(self.of_masonry.masonry, bodies)
             write_series(folder, "joints", t, texts_of_joints(in_space(middle), values))
-        return write_series(folder, "blocks", t, texts_of_bodies(bodies))
+        return write_series(folder, "blocks", t, texts_of_bodies(bodies, record_of(self)))
 
     def to_compas(self, path: str | Path, at: float | None = None) -> Path:
         """Write the blocks in space at a time as `Results` of compas_dem, for its viewer and Rhino plug-in.

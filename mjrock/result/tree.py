@@ -102,7 +102,7 @@ class Writer:
 
     Args:
         keep: takes the path of an array, the array, and the class and field that it is of, and returns the name by
-            which the array is found again.
+            which the array is found again; None has all arrays in the tree.
         has_place: whether an array has such a name already.
 
     Attributes:
@@ -111,7 +111,7 @@ class Writer:
 
     def __init__(
         self,
-        keep: Callable[[str, np.ndarray[Any, Any], type, str], str],
+        keep: Callable[[str, np.ndarray[Any, Any], type, str], str] | None = None,
         has_place: Callable[[object], bool] = lambda array: False,
     ) -> None:
         self._keep, self._has_place, self.lost = keep, has_place, dict[str, str]()
@@ -159,10 +159,10 @@ class Writer:
         layout: dict[str, Tree] = {"rows": True} if isinstance(value, np.recarray) else {}
         layout |= {"fixed": True} if not value.flags.writeable else {}
         layout |= {"order": "F"} if value.flags.fnc else {}
-        plain = value.dtype.kind in "biuU" or (value.dtype.kind == "f" and np.isfinite(value).all())
-        if value.dtype.kind == "U" or (plain and value.size <= INLINE and not self._has_place(value)):
-            held = {"values": value.ravel().tolist(), "shape": list(value.shape), "type": value.dtype.str}
-            return held | layout
+        plain = value.dtype.names is None and value.size <= INLINE and not self._has_place(value)
+        if self._keep is None or plain or value.dtype.kind == "U":
+            numbers = [self.tree(one, path) for one in value.ravel().tolist()]
+            return {"values": numbers, "shape": list(value.shape), "type": value.dtype.str} | layout
         return {"array": self._keep(path, value, of, field), **layout}
 
     def _of_object(self, value: Any, path: str) -> Tree:
@@ -242,7 +242,7 @@ class Reader:
 
     def _of_array(self, tree: dict[str, Tree], path: str) -> np.ndarray[Any, Any]:
         if "values" in tree:
-            values = np.array(tree["values"], dtype=tree["type"]).reshape(tree["shape"])
+            values = np.array(self.value(tree["values"], path), dtype=tree["type"]).reshape(tree["shape"])
         elif tree["array"] not in self._arrays:
             raise UnreadableError(f"{path} is the array {tree['array']}, which is not there")
         else:

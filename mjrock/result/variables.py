@@ -14,7 +14,7 @@ from .joint_motion import JointMotion
 from .ledger import Ledger
 from .origin import sources
 from .rocking import Impact, Rocking
-from .tree import unit_and_text
+from .tree import Tree, Writer, unit_and_text
 
 HELD_ENERGY = ("kinetic", "potential", "elastic")
 """Accounts of a ledger that are energies of the bodies."""
@@ -53,6 +53,13 @@ def attributes_of(answer: Any) -> dict[str, str]:
     said = {"title": repr(answer), "solver": answer.solver, "outcome": answer.outcome.value, "message": answer.message}
     said |= {"mjrock_version": origin.version, "machine": origin.machine} if origin is not None else {}
     return said | {f"ground_{name}": text for name, text in ground.items()}
+
+
+def record_of(answer: Any) -> dict[str, Tree]:
+    """What files for other programs say of a response: what `attributes_of` gives, its case and its origin, see `tree`,
+    with all their numbers."""
+    writer = Writer()
+    return attributes_of(answer) | {name: writer.tree(getattr(answer, name), name) for name in ("case", "origin")}
 
 
 def _unused(name: str, found: Mapping[str, object]) -> str:

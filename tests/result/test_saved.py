@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result.tree import NotKept
+from mjrock.result.tree import NotKept, Reader
 
 h5py = pytest.importorskip("h5py")
 
@@ -254,6 +254,44 @@ def test_xarray_opens_it(path):
             assert made.attrs.items() <= read.attrs.items()
             x = read.pose.sel(body=found.bodies[0], coordinate="x")
             np.testing.assert_array_equal(x, found.pose[:, 0, 0])
+
+
+@pytest.mark.parametrize("kind", ["wall, MuJoCo", "theory", "mortar", "in space"])
+class TestFilesOfOthers:
+    """Tables, glTF and VTK have the case, the options, versions and the processor, from which the case is read."""
+
+    def is_right(self, said, found):
+        assert said["mjrock_version"] == mr.__version__
+        assert said["machine"] == found.origin.machine
+        assert said["solver"] == found.solver
+        assert Reader({}).value(said["case"], "case") == found.case
+        origin = Reader({}).value(said["origin"], "origin")
+        assert differences(origin, found.origin) == []
+
+    def test_csv(self, kind, path):
+        found = answer(kind)
+        text = found.csv(path)
+        comments = dict(line[2:].split(": ", 1) for line in text.splitlines() if line.startswith("# "))
+        self.is_right(comments | {name: json.loads(comments[name]) for name in ("case", "origin")}, found)
+        assert len(np.genfromtxt(path, delimiter=",", names=True)) == len(found.t)
+        assert len(np.loadtxt(path, delimiter=",", skiprows=1)) == len(found.t)
+        frame = pytest.importorskip("pandas").read_csv(path, comment="#")
+        assert {str(kind) for kind in frame.dtypes} == {"float64"}
+        np.testing.assert_array_equal(frame["t [s]"], found.t)
+
+    def test_gltf(self, kind, path):
+        found, trimesh = answer(kind), pytest.importorskip("trimesh")
+        content = found.to_gltf(path.with_suffix(".glb")).read_bytes()
+        text = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+        self.is_right(text["asset"]["extras"], found)
+        assert len(trimesh.load(path.with_suffix(".glb")).geometry) >= len(found.bodies)
+
+    def test_vtk(self, kind, path):
+        found, meshio = answer(kind), pytest.importorskip("meshio")
+        found.to_vtk(path.parent)
+        first, second = (meshio.read(path.parent / f"blocks_{i:05d}.vtu") for i in range(2))
+        self.is_right(json.loads(bytes(first.field_data["answer"].tolist()).decode()), found)
+        assert "answer" not in second.field_data
 
 
 class TestFunctions:

@@ -28,7 +28,7 @@ def test_numpy_and_pandas_read_a_response(tmp_path):
         np.testing.assert_array_equal(read[name], values)
     np.testing.assert_array_equal(read["x_m"], response.pose[:, 0, 0])
     np.testing.assert_array_equal(read["ground_vertical_ms2"], UP(response.t))
-    frame = pd.read_csv(tmp_path / "response.csv")
+    frame = pd.read_csv(tmp_path / "response.csv", comment="#")
     assert list(frame)[:3] == ["t [s]", "theta [rad]", "omega [rad/s]"]
     np.testing.assert_allclose(frame["energy [J]"], response.energy, rtol=READ, atol=1e-300)
     np.testing.assert_allclose(frame["rotation [rad]"], response.theta, rtol=READ, atol=1e-300)
