@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from .problem.masonry.fill import Fill
     from .problem.masonry.laws.bond import BONDS, Bond
     from .problem.masonry.laws.dry import Dry, Mortar
+    from .problem.masonry.laws.own_law import joint_law
     from .problem.masonry.limit.collapse import Collapse
     from .problem.masonry.masonry import Masonry
     from .problem.wall.bending import HorizontalBending, VerticalBending
@@ -130,7 +131,7 @@ __all__ = [
     "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "components_in",
     "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "design",
     "dynamic_check", "fit_capacities", "fit_fragility", "from_toml", "hertz_stiffness", "ida", "inspect_contacts",
-    "inspect_flexes", "joint_stiffness", "layered_stiffness", "limit_curve", "load", "load_check", "lost",
+    "inspect_flexes", "joint_law", "joint_stiffness", "layered_stiffness", "limit_curve", "load", "load_check", "lost",
     "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
     "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
     "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",

@@ -169,7 +169,7 @@ EQUIVALENT = {
     ),
     **{
         f"joint_law.py: row = Law(k[i], {numbers})": "at rest no dashpot, shear spring or friction of the row is read"
-        for numbers in ("1, 0.0, 0.0", "0.0, 1, 0.0", "0.0, 0.0, 1")
+        for numbers in ("1, 0.0, 0.0, 0.0", "0.0, 1, 0.0, 0.0", "0.0, 0.0, 1, 0.0")
     },
     "joint_law.py: force[i], energy[i] = normal_force(row, gap[i], 1), stored(row, gap[i])": "no dashpot is read",
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",

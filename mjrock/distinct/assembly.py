@@ -89,7 +89,7 @@ def begin_open(lines: Rows, scene: Scene) -> None:
     as drawn: they hold both ways."""
     sizes = np.array([solid.size for solid in scene.standing.solids])
     smaller = np.array([min(sizes[joint.below], sizes[joint.above]) for joint in scene.standing.joints])
-    pulls = np.array([bond is not None and bond.tension > 0 for bond in scene.contacts.bonds])
+    pulls = np.array([bond is not None and bond.pulls for bond in scene.contacts.bonds])
     opening = (FIRST_OPENING * np.where(pulls, 0.0, smaller))[scene.contacts.joint]
     lines["between"] += opening[:, None] * lines["normal"]
 

@@ -78,6 +78,6 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     carried.lines["widest"] = 0.0
     guided_as(carried.bodies, system.bodies)
     links = tuple(table.going_on(before) for table, before in zip(system.links, carried.links, strict=True))
-    laws = tuple(law.going_on() for law in carried.laws)
+    laws = tuple(law.going_on(now) for law, now in zip(carried.laws, system.laws, strict=True))
     carried = system._replace(bodies=carried.bodies, lines=carried.lines, laws=laws, links=links)
     return carried.with_ways()

@@ -12,6 +12,7 @@ from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import applied, laden, place_in_world
 from ..problem.masonry.histories import motions_of_tilt
+from ..problem.masonry.laws.own_law import Own
 from ..problem.masonry.limit.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
@@ -82,6 +83,7 @@ def require_held(scene: Scene, pose: Array) -> None:
     contacts = scene.contacts
     push = scene.potential.pushes(pose.ravel())[: len(contacts.k)]
     limit = np.array([np.inf if bond is None else bond.elastic_limit for bond in contacts.bonds])[contacts.joint]
+    push = np.where([isinstance(contacts.bonds[i], Own) for i in contacts.joint.tolist()], 0.0, push)  # they hold it
     share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / contacts.area / limit)
     torn = np.unique(contacts.joint[share > 1])
     if len(torn):
@@ -169,8 +171,9 @@ def stands_on_stiff_joints(scene: Scene) -> bool:
     """
     k, k_s = scene.contacts.k, np.asarray(scene.contacts.k_s)
     factor = max(1.0, float(scene.bodies.mass.sum()) * GRAVITY / (SETTLEMENT_OF_STIFF * float(k.min())))
+    bonds = tuple(None if isinstance(bond, Own) else bond for bond in scene.contacts.bonds)
     try:
-        _ = replace(scene, contacts=replace(scene.contacts, k=factor * k, k_s=factor * k_s)).at_rest
+        _ = replace(scene, contacts=replace(scene.contacts, k=factor * k, k_s=factor * k_s, bonds=bonds)).at_rest
     except UnsettledError:
         return False
     return True

@@ -19,6 +19,7 @@ from scipy.sparse import csr_array
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
 from ..problem.masonry.laws.dry import Meets
+from ..problem.masonry.laws.own_law import Own
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import constant_forces_of, link_effects
 from ..quantities import Array, Flags, Integers, frozen, shown
@@ -206,7 +207,7 @@ class ContactPoints:
         k_s: spring of each contact along its face [N/m], infinite where it sticks rigidly, shape (m,), or one number
             for all.
         area: what part of its joint each contact stands for [m2], shape (m,), or one number for all.
-        bonds: the bond of each joint, None where a joint is dry; empty where all are.
+        bonds: the bond of each joint, or its own law, None where a joint is dry; empty where all are.
     """
 
     body: Integers
@@ -222,7 +223,7 @@ class ContactPoints:
     holds: Flags | bool = False
     k_s: Array | float = math.inf
     area: Array | float = 0.0
-    bonds: tuple[Bond | None, ...] = ()
+    bonds: tuple[Bond | Own | None, ...] = ()
 
     def __post_init__(self) -> None:
         m, directions = len(self.k), np.shape(self.normal)[-1] if np.size(self.normal) else 2

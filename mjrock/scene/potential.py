@@ -46,6 +46,7 @@ from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
 from ..linear import entries, highest_square, sprung
 from ..problem.masonry.laws.joint_law import Law, resting, stored
+from ..problem.masonry.laws.own_law import OwnSprings
 from ..quantities import GRAVITY, Array, Flags, Integers, frozen
 from .masses import coupling
 
@@ -74,7 +75,7 @@ class Structure(NamedTuple):
 @inlined
 def spring_energy(places: Places, i: int, frames: Array) -> float:
     """Energy in the spring of contact i [J]."""
-    return stored(Law(places.k[i], 0.0, 0.0, 0.0), -depth(places, i, frames))
+    return stored(Law(places.k[i], 0.0, 0.0, 0.0, 0.0), -depth(places, i, frames))
 
 
 @inlined
@@ -173,11 +174,16 @@ class Potential:
     """The energy of a structure at rest at a pose of shape (n nq,), and its derivatives along the velocities."""
 
     structure: Structure
+    own: OwnSprings | None = None
 
     @cached_property
     def bonded(self) -> Flags:
-        """Which contacts and ties pull as they push, shape (m + t,): those with a bond in tension."""
-        return np.append(self.structure.places.tension > 0, np.zeros(len(self.structure.ties.k), dtype=bool))
+        """Which contacts and ties pull as they push, shape (m + t,): those with a bond in tension, or a law that
+        pulls."""
+        pulls = self.structure.places.tension > 0
+        if self.own is not None:
+            pulls[self.own.contacts] = self.own.pulls
+        return np.append(pulls, np.zeros(len(self.structure.ties.k), dtype=bool))
 
     def closed(self, openings: Array) -> Flags:
         """Which springs act at their openings [m], shape (m + t,)."""
@@ -185,7 +191,21 @@ class Potential:
 
     def forces_at(self, openings: Array) -> Array:
         """Force of each spring at its opening, below zero where a bond pulls [N], shape (m + t,)."""
-        return resting(self.springs, openings, self.bonded)[0]
+        return self.resting(openings)[0]
+
+    def resting(self, openings: Array) -> tuple[Array, Array]:
+        """Force [N] and energy [J] of each spring at its opening [m], shape (m + t,) each."""
+        force, energy = resting(self.springs, openings, self.bonded)
+        if self.own is not None:
+            force[self.own.contacts], energy[self.own.contacts] = self.own.answers(openings)
+        return force, energy
+
+    def springs_at(self, openings: Array) -> Array:
+        """Stiffness of contacts and ties at their openings [N/m], shape (m + t,)."""
+        springs = self.springs
+        if self.own is not None:
+            springs[self.own.contacts] = self.own.slopes(openings)
+        return springs
 
     @property
     def springs(self) -> Array:
@@ -262,7 +282,7 @@ class Potential:
     def energy(self, pose: Array) -> float:
         """Energy of springs, weight and constant forces [J]."""
         places, forces, masses = self.structure.places, self.structure.forces, self.structure.masses
-        elastic = float(resting(self.springs, self.openings(pose), self.bonded)[1].sum())
+        elastic = float(self.resting(self.openings(pose))[1].sum())
         weight = weight_energy(masses, pose, places.axes)
         return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom)))
 
@@ -298,8 +318,10 @@ class Potential:
 
     def hessian(self, pose: Array) -> csr_array:
         """Second derivatives of the energy, shape (n nv, n nv)."""
-        closed = self.closed(self.openings(pose))
-        return self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
+        openings = self.openings(pose)
+        return self.stiffness(pose, np.where(self.closed(openings), self.springs_at(openings), 0.0)) + self.curvature(
+            pose
+        )
 
 
 def _turning_forces(forces: AppliedForces, frames: Array, unknowns: int) -> csr_array:

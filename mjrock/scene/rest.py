@@ -149,6 +149,7 @@ class Trial(NamedTuple):
     Args:
         pose: shape (n nq,).
         closed: which springs act, shape (m + t,).
+        springs: their stiffness [N/m], shape (m + t,).
         rates: of their openings for unit velocities, shape (m + t, n nv).
         push: force of each [N], shape (m + t,).
         sliders, grips: the friction.
@@ -157,6 +158,7 @@ class Trial(NamedTuple):
 
     pose: Array
     closed: Flags
+    springs: Array
     rates: csr_array
     push: Array
     sliders: Sliders
@@ -234,7 +236,7 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
         else:
             loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
         last = trial.left
-        springs = np.where(trial.closed, potential.springs, LEANING * potential.springs)
+        springs = np.where(trial.closed, trial.springs, LEANING * trial.springs)
         stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.grips, share)
         motion = solved(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
         trial = tried(potential, search, lowering(potential, trial.pose, motion, trial.sliders))
@@ -295,17 +297,19 @@ def tried(potential: Potential, search: Search, pose: Array, touches: bool = Fal
     sliders = sliders_at(potential.structure.places, search, np.where(closed, push, -1.0)[: len(search.shear)])
     grips = grips_at(potential, pose, sliders)
     missing = (potential.load(pose) + rates.T @ push + grips.held) / sizes(potential)
-    return Trial(pose, closed, rates, push, sliders, grips, missing)
+    return Trial(pose, closed, potential.springs_at(openings), rates, push, sliders, grips, missing)
 
 
 def stiffness_at(potential: Potential, search: Search, trial: Trial) -> csr_array:
     """What is missing more per motion, shape (n nv, n nv): the limit of friction grows with the pressure too."""
     places, slipping, m = potential.structure.places, trial.grips.slipping, len(search.shear)
     # open contacts have next to none: more of it would hide that open joints let go of a structure that stands on few
-    springs = np.where(trial.closed, potential.springs, LEAST_LOOSE * potential.springs)
+    springs = np.where(trial.closed, trial.springs, LEAST_LOOSE * trial.springs)
     stiffness = sprung(trial.rates, springs) + potential.curvature(trial.pose) + shear_stiffness(trial.grips, 0.0)
     pressed = (trial.push[:m] > 0)[slipping]
-    rises = np.where(pressed, shear_limit(Law(friction=places.friction), places.k)[slipping], 0.0)  # with depth [N/m]
+    rises = np.where(
+        pressed, shear_limit(Law(friction=places.friction), trial.springs[:m])[slipping], 0.0
+    )  # with depth [N/m]
     return csr_array(stiffness + trial.grips.along(slipping).T @ times(rises, csr_array(trial.rates[:m][slipping])))
 
 
@@ -386,7 +390,7 @@ def falling_way(potential: Potential, search: Search, trial: Trial) -> Array | N
     """
     presses = (trial.push > tolerance(potential, trial.pose, search)) | potential.bonded
     bent = potential.curvature(trial.pose)
-    stiffness = sprung(trial.rates, np.where(presses, potential.springs, 0.0))
+    stiffness = sprung(trial.rates, np.where(presses, trial.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
     lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(trial.grips, 1.0) + bent), most)
     return way if lowest < -NEGLIGIBLE_STIFFNESS * float(abs(stiffness).max()) else None

@@ -20,8 +20,9 @@ import numpy as np
 
 from ..geometry.frames import Freedom, frames_of
 from ..geometry.kinematics import AppliedForces, LinkEnds, Places, Ties, ends, gaps
+from ..problem.masonry.laws.own_law import OwnSprings
 from ..problem.wall.standing import Standing
-from ..quantities import Array, Integers, frozen
+from ..quantities import GRAVITY, Array, Integers, frozen
 from .dampers import Dampers
 from .masses import kinetic_energies
 from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links, require_on
@@ -161,7 +162,9 @@ class Scene:
         axes, given = self.freedom.axes, self.forces
         vectors = (each.reshape(-1, len(axes)) for each in (given.at, given.force))
         own = self._ties(self.links.bearing), AppliedForces(axes, given.body, *vectors)
-        return Potential(Structure(self.places, *own, self.bodies.masses, self.bodies.products))
+        points, weight = self.contacts, GRAVITY * float(self.bodies.mass.sum())
+        laws = OwnSprings.of(points.bonds, points.joint, np.asarray(points.area), weight)
+        return Potential(Structure(self.places, *own, self.bodies.masses, self.bodies.products), laws)
 
     @cached_property
     def at_rest(self) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...compiled import inlined
 from ...problem.masonry.laws.bond import Bond
-from ...quantities import Array, Flags
+from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
 from ..rows import Fields, Row, Rows, numbers, rows, vectors
 from ..system import Books, System
@@ -113,8 +113,36 @@ class JointLaw:
         for name in ("k", "grip", "dragged", "push"):
             self.rows[name][which] = 0.0
 
-    def going_on(self) -> Self:
-        """The law with which a run starts that carries on the run of this one."""
+    def beyond(self, joint: Integers, found: Rows) -> Rows:
+        """Rows for lines that are found where blocks are beyond their joints, none where the law ends with its joint.
+
+        Args:
+            joint: number of a joint of the two blocks of each, or -1.
+            found: the lines, with the springs of dry ones.
+        """
+        return self.rows[:0]
+
+    def with_found(self, count: int, kept: Flags, added: Rows) -> Self:
+        """The law with these rows after those that are kept of the lines that are found, which follow those of joints.
+
+        A law that ends with its joints has none."""
+        return self
+
+    @staticmethod
+    def stiffest(laws: Rows, springs: dict[str, Array]) -> dict[str, Array]:
+        """The largest springs and dashpots of lines that are found, from those of dry ones by name."""
+        return springs
+
+    @staticmethod
+    def soften(laws: Rows, share: Array) -> None:
+        """Leave lines that are found a share of their law, where the step asks for softer ones [-]."""
+
+    @staticmethod
+    def bend(laws: Rows, lines: Rows, depth: Array) -> None:
+        """Give such lines the springs that the law has at some depths [m]."""
+
+    def going_on(self, now: Self) -> Self:
+        """The law with which a run starts that carries on the run of this one, beside that of a start from rest."""
         return self
 
     def cracked(self, scene: Scene) -> dict[str, float]:

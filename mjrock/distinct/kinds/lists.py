@@ -17,11 +17,12 @@ from .dampers import Dampers
 from .law import JointLaw
 from .link import Kind
 from .mortar import Bonds
+from .own import OwnLaws
 from .ties import Ties
 
 KINDS: tuple[type[Kind], ...] = (Ties, Dampers, Actuators, ConstantForces)
 """The kinds of links, in the order in which they act."""
-LAWS: tuple[type[JointLaw], ...] = (Bonds,)
+LAWS: tuple[type[JointLaw], ...] = (Bonds, OwnLaws)
 """The laws of joints beside the dry one, which all lines have."""
 
 act, settle, hold, stored, lost, holds = (method(name) for name in ("act", "settle", "hold", "stored", "lost", "holds"))

@@ -113,7 +113,7 @@ class Bonds(JointLaw, Table):
         self.rows["secant"][which & (self.rows["k"] > 0)] = 0.0
         super().release(lines, which)
 
-    def going_on(self) -> Self:
+    def going_on(self, now: Self) -> Self:
         """Ages count from the start of each run."""
         self.rows["age"] = 0.0
         return self

@@ -117,6 +117,7 @@ class ContactSearch:
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
         np.minimum.at(left, of, LEFT_JOINT * np.array([joint.width for joint in joints]))
         np.minimum.at(rolled, of, _rolled(scene.standing))
+        self.first_joint = np.unique(of, return_index=True)[1]
         self.jointed, points = _jointed(scene, self.finder, of)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
         self.finder.points = np.maximum.reduceat(points, first)
@@ -232,11 +233,22 @@ class ContactSearch:
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])
         law = self.law.of_places(number, found.share, found.area, self.count)
-        share = np.minimum(share, self._stable(found, law, poses, system, h))
         for name, column in law.items():
-            new.rows[name] = share * column if name in SHARED_COLUMNS else column
+            new.rows[name] = column
+        own = [(each, each.beyond(self._joints_of(number), new.rows)) for each in system.laws]
+        springs = law
+        for each, added in own:
+            springs = each.stiffest(added, springs)
+        share = np.minimum(share, self._stable(found, springs, poses, system, h))
+        for name in SHARED_COLUMNS:
+            new.rows[name] *= share
+        for each, added in own:
+            each.soften(added, share)
+            each.bend(added, new.rows, np.maximum(-found.gap, 0.0))
         blocks = self.blocks._replace(poses=poses)
         hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks)
+        for each, added in own:
+            each.bend(added, new.rows, new.depth)
         for place in unsound(np.asarray(new.rows))[:1]:
             one, other = (self.names[int(block[place])] for block in (found.face, found.other))
             raise ArithmeticError(f"the contact of {one} and {other}")
@@ -251,7 +263,8 @@ class ContactSearch:
         for block in (found.face[pressing], found.other[pressing]):
             np.minimum.at(state.least_share, block, share[pressing])
         lines = joined(joints, chosen(others, kept), np.asarray(new.rows))
-        system = system._replace(lines=lines).with_ways()
+        laws = tuple(each.with_found(count, kept, added) for each, added in own)
+        system = system._replace(lines=lines, laws=laws).with_ways()
         after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
         given = min(before.sheared - after.sheared, 0.0)  # what shear springs lose friction takes, and it gives nothing
         half = 0.5 * h if state.since > 0 else 0.0  # forces change half a step before the pose
@@ -261,6 +274,11 @@ class ContactSearch:
         books.totals[0].friction += half * (before.rubbed - after.rubbed) - given
         books.dashpots[self.group] += half * (before.damped - after.damped)
         return system
+
+    def _joints_of(self, pair: Integers) -> Integers:
+        """Number of the first joint of each pair of blocks, -1 for a pair that has none."""
+        there = np.minimum(np.searchsorted(self.law.jointed, pair), len(self.law.jointed) - 1)
+        return np.where(self.law.jointed[there] == pair, self.first_joint[there], -1)
 
     def _searches_of(self, pair: Integers) -> Integers:
         """How often both blocks of pairs have been searched."""

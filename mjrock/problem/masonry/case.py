@@ -44,6 +44,7 @@ from .effects import (
 )
 from .histories import Support, supports_of, tilt_history
 from .laws.bond import Bond
+from .laws.own_law import Own
 from .limit.collapse import limit_of, pushed
 from .masonry import Masonry
 from .standing import MasonryStanding
@@ -235,7 +236,7 @@ class MasonryCase(Carrying):
         return self.masonry.joints
 
     @property
-    def bonds(self) -> tuple[Bond | None, ...]:
+    def bonds(self) -> tuple[Bond | Own | None, ...]:
         """The bond of each joint, None where it is dry."""
         return self.masonry.bonds
 

@@ -118,6 +118,7 @@ from .laws.joint_table import (
     one_by_one,
     properties_of,
 )
+from .laws.own_law import Own
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
@@ -269,7 +270,8 @@ class Masonry(Drawn):
         said = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in given]
         if self.law is not None:
             said.insert(-1, f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
-        bonded = ", mortar" if any(self.bonds) else ""
+        bonded = ", mortar" if any(isinstance(bond, Bond) for bond in self.bonds) else ""
+        bonded += ", laws of their own" if any(isinstance(bond, Own) for bond in self.bonds) else ""
         return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}{bonded}>"
 
     @property
@@ -308,7 +310,14 @@ class Masonry(Drawn):
             raise ValueError(f"masonry in space: {what} takes blocks in the plane, of the kind Polygon")
 
     def require_dry(self, what: str) -> None:
-        """Raise a ValueError that says what takes joints without bonds alone, if some have one."""
+        """Raise a ValueError that says what takes dry joints alone, if some have a bond or a law of one's own."""
+        own = {joint.name: bond for joint, bond in zip(self.joints, self.bonds, strict=True) if isinstance(bond, Own)}
+        if own:
+            laws = ", ".join(sorted({bond.name for bond in own.values()}))
+            raise ValueError(
+                f"law of {named(list(own))}: {what} knows k_n, xi and friction of a joint, and no {laws}; "
+                "solve_explicit takes laws of your own"
+            )
         if any(self.bonds):
             held = named([joint.name for joint, bond in zip(self.joints, self.bonds, strict=True) if bond is not None])
             raise ValueError(f"bond of {held}: {what} takes joints that push only; solve_explicit takes bonds")
@@ -415,8 +424,8 @@ class Masonry(Drawn):
         return self.table.residual_friction
 
     @property
-    def bonds(self) -> tuple[Bond | None, ...]:
-        """The bond of each joint, None where it is dry."""
+    def bonds(self) -> tuple[Bond | Own | None, ...]:
+        """The bond of each joint, or its law of one's own, None where it is dry."""
         return self.table.bonds
 
     def of_pair(self, one: int, other: int) -> Meets | None:
@@ -434,7 +443,7 @@ class Masonry(Drawn):
     @cached_property
     def lines(self) -> Lines:
         """The contact lines of all joints."""
-        bonded = [bond is not None for bond in self.bonds]
+        bonded = [isinstance(bond, Bond) for bond in self.bonds]
         return lines_of(self.blocks, self.joints, self.joint_stiffness, self.table.points, bonded)
 
     @cached_property

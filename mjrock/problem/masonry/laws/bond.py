@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -149,6 +149,11 @@ class Bond:
         return self.tension == 0 and self.cohesion == 0 and self.crushing is None
 
     @property
+    def pulls(self) -> bool:
+        """Whether it pulls where it is open."""
+        return self.tension > 0
+
+    @property
     def elastic_limit(self) -> float:
         """Pressure that it bears without closing for good [Pa], infinite where it is not crushed."""
         if self.crushing is None:
@@ -172,8 +177,8 @@ class Bond:
         return HARDENED * (self.crushing or 0.0) * (self.hardening or 0.0)
 
 
-def strengths(bonds: Sequence[Bond | None], name: str) -> Array:
-    """A strength of each bond [Pa], zero where there is none, shape (joints,)."""
+def strengths(bonds: Sequence[Any], name: str) -> Array:
+    """A strength of each bond, or of a law of one's own, which has none [Pa], zero where there is none, (joints,)."""
     return np.array([0.0 if bond is None else getattr(bond, name) for bond in bonds])
 
 

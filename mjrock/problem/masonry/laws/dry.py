@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from numbers import Real
 from typing import Annotated, Any, NamedTuple
 
 from ....quantities import Within, keep_declared, require_kind, shown
 from .bond import Bond
+from .own_law import Own, OwnLaw
 
 Properties = dict[str, Any]
 """What a joint has, by the keywords of `Masonry`."""
@@ -29,9 +31,12 @@ class Dry:
             friction, as joints always do in MuJoCo.
         frequency: omega [rad/s], 1e-3 to 1e9; None takes the lowest natural frequency of the masonry, see `Masonry`.
         points: contact lines, 2 to 1000, in space 2 to 50, see `Masonry`.
+        law: a law of your own for its stress, see `joint_law`, for `solve_explicit`. None is the spring of k_n. With a
+            law k_n is the stiffness to which xi refers, and that of contacts that are found where blocks have left
+            their joints.
 
     Raises:
-        TypeError, ValueError: for what is not a number, or lies outside its range.
+        TypeError, ValueError: for what is not a number, or lies outside its range; for a law that is none.
 
     Examples:
         >>> mr.Masonry.arch(radius=5.0, thickness=0.9, joints=mr.Dry(k_n=1e9, friction=0.6)).k_n
@@ -44,18 +49,25 @@ class Dry:
     k_s: Annotated[float | None, Within(1e4, 1e16, "N/m3")] = None
     frequency: Annotated[float | None, Within(1e-3, 1e9, "rad/s")] = None
     points: Annotated[int, Within(2, 1000, whole=True)] = 2
+    law: OwnLaw | None = None
 
     def __repr__(self) -> str:
-        numbers = ((each.name, getattr(self, each.name)) for each in fields(self))
-        return f"Dry({', '.join(f'{name}={value:g}' for name, value in numbers if value is not None)})"
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        said = {name: format(value, "g") if isinstance(value, Real) else repr(value) for name, value in given.items()}
+        return f"Dry({', '.join(f'{name}={value}' for name, value in said.items())})"
 
     def __post_init__(self) -> None:
         keep_declared(self)
+        require_kind("law", self.law, OwnLaw, type(None))
+        if self.law is not None:
+            k_s = math.inf if self.k_s is None else self.k_s
+            Own(self.law, self.k_n, self.friction).require_fit("the joint", self.k_n, k_s, self.friction, self.points)
 
     @property
     def properties(self) -> Properties:
         """The keywords of `Masonry` that stand for it."""
-        return {**vars(self), "bond": None}
+        numbers = dict(vars(self))
+        return {"bond": numbers.pop("law"), **numbers}
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,6 +99,8 @@ class Mortar:
         require_kind("dry", self.dry, Dry)
         require_kind("bond", self.bond, Bond)
         dry = self.dry
+        if dry.law is not None:
+            raise ValueError(f"bond = {self.bond!r} on a joint whose law is {dry.law!r}: give one of both")
         self.bond.require_fit("the joint", dry.k_n, math.inf if dry.k_s is None else dry.k_s, dry.friction, dry.points)
 
     @property

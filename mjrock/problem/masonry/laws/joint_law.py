@@ -3,8 +3,9 @@
 A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit steps and their ledger, the search for the
 pose of rest and limit analysis all take the law from here. MuJoCo has the same law in its rows, see `engine.rows`.
 
-The spring along the normal is linear. `secant_stiffness`, `equivalent_stiffness`, `largest_stiffness`, `depth_of_force`
-and `depth_of_energy` say so, and nothing else in explicit steps does: another spring is another text of these five.
+The spring along the normal is linear, or one whose secant stiffness k is that of the pose, see `kinds.own`: the linear
+spring that holds as much there is stiffer by `bent`. `secant_stiffness`, `equivalent_stiffness`, `largest_stiffness`,
+`depth_of_force` and `depth_of_energy` say so, and nothing else in explicit steps does.
 """
 
 from __future__ import annotations
@@ -28,12 +29,14 @@ class Law(NamedTuple):
         k, c: spring and dashpot along the normal [N/m, N s/m].
         k_s: spring along the face [N/m].
         friction: coefficient of friction [-].
+        bent: stiffness of the linear spring that holds the same energy, less k [N/m].
     """
 
     k: Any = 0.0
     c: Any = 0.0
     k_s: Any = 0.0
     friction: Any = 0.0
+    bent: Any = 0.0
 
 
 @inlined
@@ -45,7 +48,7 @@ def secant_stiffness(row: LawRow, depth: float) -> Any:
 @inlined
 def equivalent_stiffness(row: LawRow, depth: float) -> Any:
     """Stiffness of the linear spring that holds the same energy at a depth [N/m]."""
-    return row.k
+    return row.k + row.bent
 
 
 @inlined
@@ -109,5 +112,5 @@ def resting(k: Array, gap: Array, bonded: Flags) -> tuple[Array, Array]:
 @compiled
 def _resting(k: Array, gap: Array, force: Array, energy: Array) -> None:
     for i in range(len(gap)):
-        row = Law(k[i], 0.0, 0.0, 0.0)
+        row = Law(k[i], 0.0, 0.0, 0.0, 0.0)
         force[i], energy[i] = normal_force(row, gap[i], 0.0), stored(row, gap[i])

@@ -17,6 +17,7 @@ from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 from .bond import Bond
 from .dry import AnyPairs, Dry, Mortar, Properties
+from .own_law import Own, OwnLaw
 
 AnyJoint = Joint | SpaceJoint
 T = TypeVar("T")
@@ -32,8 +33,9 @@ OfShear = Annotated[OfJoint | None, declared(Dry)["k_s"].within]
 OfFrequency = Annotated[OfJoint | None, declared(Dry)["frequency"].within]
 OfPoints = Annotated[OfCount | None, declared(Dry)["points"].within]
 """The properties of joints one by one, in the ranges of a `Dry`."""
-OfBond = Bond | FunctionOfJoint[Bond | None] | None
-"""A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
+OfBond = Bond | OwnLaw | FunctionOfJoint[Bond | OwnLaw | None] | None
+"""A bond or a law of one's own, a function of the joint that gives one or None where the joint is dry, or None where
+all are dry."""
 AnyJoints = Dry | Mortar | FunctionOfJoint[Dry | Mortar]
 """What all joints of masonry are, or a function of the joint that says what it is."""
 PROPERTIES = tuple(Dry().properties)
@@ -180,7 +182,7 @@ class Halved:
     between: OfBond
     within: Bond
 
-    def __call__(self, joint: AnyJoint) -> Bond | None:
+    def __call__(self, joint: AnyJoint) -> Bond | OwnLaw | None:
         """The bond of a joint."""
         first, second = joint.name.split("|")
         if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
@@ -206,7 +208,7 @@ class JointTable(NamedTuple):
         xi: damping ratio [-], shape (joints,).
         frequency: to which it refers [rad/s], NaN for the lowest one of the masonry, shape (joints,).
         points: contact lines, shape (joints,).
-        bonds: what mortar holds, None where a joint is dry.
+        bonds: what mortar holds, or the law of one's own on each joint, None where a joint is dry.
     """
 
     k_n: Array
@@ -215,7 +217,7 @@ class JointTable(NamedTuple):
     xi: Array
     frequency: Array
     points: Integers
-    bonds: tuple[Bond | None, ...]
+    bonds: tuple[Bond | Own | None, ...]
 
     @classmethod
     def of(cls, joints: Sequence[AnyJoint], given: Properties) -> JointTable:
@@ -230,7 +232,8 @@ class JointTable(NamedTuple):
         for joint, count in zip(joints, points.tolist(), strict=True):
             if isinstance(joint, SpaceJoint):
                 POINTS_IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
-        table = cls(**columns, points=points, bonds=_bonds(given["bond"], joints))
+        bonds = _bonds(given["bond"], joints, columns)
+        table = cls(**columns, points=points, bonds=bonds)
         springs = (column.tolist() for column in (table.k_n, table.k_s, table.friction, points))
         for joint, bond, *numbers in zip(joints, table.bonds, *springs, strict=True):
             if bond is not None:
@@ -253,13 +256,16 @@ def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Arr
     return np.array([FOR_NONE[name] if value is None else value for value in found])
 
 
-def _bonds(given: OfBond, joints: Sequence[AnyJoint]) -> tuple[Bond | None, ...]:
-    """The bond of each joint, None where it is dry."""
-    found = []
-    for joint in joints:
+def _bonds(given: OfBond, joints: Sequence[AnyJoint], columns: dict[str, Array]) -> tuple[Bond | Own | None, ...]:
+    """The bond of each joint, or the law of one's own, None where it is dry."""
+    found: list[Bond | Own | None] = []
+    for i, joint in enumerate(joints):
         bond = asked("bond", given, joint) if callable(given) else given
-        require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, type(None))
-        found.append(None if bond is None or bond.is_dry else bond)
+        require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, OwnLaw, type(None))
+        if isinstance(bond, OwnLaw):
+            found.append(Own(bond, float(columns["k_n"][i]), float(columns["friction"][i])))
+        else:
+            found.append(None if bond is None or bond.is_dry else bond)
     return tuple(found)
 
 

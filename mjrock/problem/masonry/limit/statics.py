@@ -13,9 +13,10 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, v
 from ....bars import waited
 from ....geometry.graph import connected_parts
 from ....linear import loose
-from ....quantities import GRAVITY, Array, Flags
+from ....quantities import GRAVITY, Array, Flags, named
 from ..laws.bond import strengths
 from ..laws.joint_law import Law, shear_limit
+from ..laws.own_law import Own
 from ..lines import free_numbers, mean_slip_rates, rates
 from ..masonry import Masonry
 
@@ -191,6 +192,12 @@ def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[c
     directions = np.stack([-lines.normal, *(sign * way for way in ways for sign in (1.0, -1.0))])
     if not any(masonry.bonds):
         return csc_array((len(masonry.free) * masonry.freedom.nv, 0)), np.zeros(0), directions[:0]
+    both = zip(masonry.joints, masonry.bonds, strict=True)
+    if pulling := [joint.name for joint, bond in both if isinstance(bond, Own) and bond.pulls]:
+        raise ValueError(
+            f"law of {named(pulling)} pulls: limit analysis knows friction of a joint, tension and cohesion of a Bond, "
+            "and no law of your own that pulls; solve_explicit takes it"
+        )
     area = masonry.areas_of(lines.k, lines.joint)
     pull, along = (area * strengths(masonry.bonds, name)[lines.joint] for name in ("tension", "cohesion"))
     columns = vstack([rates(masonry.blocks, lines, way) for way in directions]).T

@@ -1,0 +1,328 @@
+"""Own laws of joints, see `own_law`: a class of a user's file answers for each line, wherever the loops ask.
+
+A law that only presses gives its line the spring that it has at the pose: `k` is the secant stiffness there, and `bent`
+what the spring that holds the same energy has more. Friction, dashpots, touches and the ends of faces then follow as
+those of a dry line do. A law that pulls holds its line both ways here, with friction by its own push, until it has lost
+all of its hold; its line then presses as others do.
+
+The loops call a law by the address of its compiled text, so that they are compiled and stored once for all laws.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+from functools import cache
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from ...compiled import by_type, inlined
+from ...geometry.vectors import dot, no_spin, plus, put, read, scaled
+from ...patience import compiles
+from ...problem.masonry.laws.joint_law import normal_force, stored
+from ...problem.masonry.laws.own_law import (
+    ANSWERS,
+    OF_DAMPING,
+    OF_ENERGY,
+    OF_JOINT,
+    OF_K_N,
+    OF_LOST,
+    OF_STRESS,
+    ROOM,
+    Own,
+    answering,
+    layout,
+)
+from ...quantities import GRAVITY, Array, Flags, Integers
+from ...scene.scene import Scene
+from ..contacts.contact import add_force, meeting, relative, where_friction_rubs
+from ..contacts.friction import along_face, as_vector, carried, sprung_friction
+from ..rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
+from ..system import Books, System
+from .law import JointLaw
+from .link import Table
+
+DEEPER = 2.0
+"""Closing for which steps are stable, over the largest at rest [-]."""
+GONE = math.exp(-9)
+"""Share of its hold that a law has left when it pulls no more [-]."""
+NO_RATE = 1e-12
+"""Rate below which a dashpot has no force [m/s]."""
+NO_CLOSING = 1e-20
+"""Closing below which a line keeps the spring that it has [m]."""
+SIGNATURE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)
+AS_PYTHON = "laws"
+"""Value of MJROCK_INTERPRET with which own laws run as plain Python in compiled loops."""
+
+
+def _by_ctypes(values: Array, address: int, closing: float, rate: float) -> None:
+    SIGNATURE(int(address))(values.ctypes.data, closing, rate)
+
+
+def _choice(values: Any) -> Any:
+    if isinstance(values, np.ndarray):
+        return _by_ctypes
+    from .own_calls import called  # which imports numba
+
+    return called
+
+
+answer = by_type(_choice)
+
+
+@cache
+def function_of(kind: Any) -> Any:
+    """What lets a law answer that is given a row by its address, as a function of C. Plain Python where nothing is
+    compiled."""
+    if compiles() and os.environ.get("MJROCK_INTERPRET") != AS_PYTHON:
+        from .own_calls import compiled_text
+
+        return compiled_text(kind)
+    plain, row = answering(kind), layout(kind)
+
+    def text(values: int, closing: float, rate: float) -> None:
+        room = np.ctypeslib.as_array(ctypes.cast(values, ctypes.POINTER(ctypes.c_double)), (ROOM,))
+        try:
+            plain(room[: row.itemsize // 8].view(row).view(np.recarray)[0], closing, rate)
+        except Exception:  # nothing can be raised through the loops, which end where a number is not finite
+            room[OF_STRESS] = math.nan
+
+    return SIGNATURE(text)
+
+
+def address_of(kind: Any) -> int:
+    """The address of the text of a law in this process."""
+    text = function_of(kind)
+    return int(getattr(text, "address", 0) or ctypes.cast(text, ctypes.c_void_p).value or 0)
+
+
+class OwnLaws(JointLaw, Table):
+    """Own laws of joints."""
+
+    own: ClassVar[Fields] = [
+        *integers("address"),  # of its text in this process, zero for a line without an own law
+        *integers("joint"),  # number of the joint that the law is given for
+        *numbers("area"),  # of the line [m2]
+        *numbers("stiffest", "strongest"),  # spring and dashpot for which steps are short enough [N/m, N s/m]
+        *numbers("pulls", "damps", "remembers"),  # 1 where the law does
+        *numbers("kept"),  # how many of its values are no memory
+        ("values", float, (ROOM,)),  # see `own_law.layout`
+    ]
+    bond: ClassVar[Any] = Own
+
+    @classmethod
+    def of(cls, scene: Scene, lines: Rows) -> Self:
+        """Their lines begin with the largest stiffness that they may have."""
+        law = super().of(scene, lines)
+        weight, joint = GRAVITY * float(scene.bodies.mass.sum()), scene.contacts.joint
+        for i, own in enumerate(scene.contacts.bonds):
+            if isinstance(own, Own):
+                which = joint == i
+                law.rows["joint"][which] = i
+                area = np.asarray(scene.contacts.area)[which]
+                deepest = max(float(scene.bears[which].max()), own.closing_at(weight / float(area.sum())))
+                k, c = own.stiffest(DEEPER * deepest)
+                lines["k"][which] = np.where(law.rows["pulls"][which] > 0, 0.0, k * area)
+                law.rows["stiffest"][which] = k * area
+                law.rows["strongest"][which] = c * area if own.damps else law.rows["c"][which]
+        return law
+
+    def begin(self, lines: Rows, which: Flags, bond: Own, area: Array) -> None:
+        """A law that pulls holds its lines alone, and their faces have no end."""
+        columns: dict[str, Any] = {
+            "address": address_of(type(bond.law)),
+            "area": area,
+            "pulls": float(bond.pulls),
+            "damps": float(bond.damps),
+            "remembers": float(bool(bond.law.memory)),
+            "kept": float(ROOM if not bond.law.memory else len(ANSWERS) + len(OF_JOINT) + len(bond.law.numbers)),
+            "values": bond.values,
+        }
+        for name, column in columns.items():
+            self.rows[name][which] = column
+        if bond.damps:
+            lines["c"][which] = 0.0
+        if bond.pulls:
+            lines["k"][which], lines["c"][which], lines["margin"][which] = 0.0, 0.0, np.inf
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """They answer at the pose."""
+        for p in range(len(self.rows)):
+            line, own = system.lines[p], self.rows[p]
+            if own.k > 0:
+                if own.pulls > 0 and own.values[OF_LOST] > 1 - GONE:
+                    press_only(books, line, own)
+                if own.pulls > 0:
+                    hold_by_law(system, books, line, own, h)
+                else:
+                    press_by_law(system, books, line, own, h)
+
+    @inlined
+    def stored(self) -> tuple[float, float]:
+        """Of those that pull; what others store is in their lines."""
+        energy = 0.0
+        for p in range(len(self.rows)):
+            own = self.rows[p]
+            if own.k > 0 and own.pulls > 0:
+                energy += own.area * own.values[OF_ENERGY]
+        return energy, 0.0
+
+    @inlined
+    def lost(self, row: Row) -> float:
+        """As the law says."""
+        share: float = row.values[OF_LOST]
+        return share
+
+    @inlined
+    def holds(self, row: Row) -> bool:
+        """Whether it may still pull."""
+        return bool(row.k > 0 and row.pulls > 0)
+
+    def springs(self) -> dict[str, Array]:
+        """The largest ones up to a multiple of the closing at rest."""
+        dry = super().springs()
+        return dry | {"k": np.asarray(self.rows["stiffest"]), "c": np.asarray(self.rows["strongest"])}
+
+    def release(self, lines: Rows, which: Flags) -> None:
+        """A line that presses has all there is of it."""
+        for name in ("k", "push", "dragged"):
+            self.rows[name][: len(which)][which] = 0.0
+
+    def beyond(self, joint: Integers, found: Rows) -> Rows:
+        """A place has its part of the law in proportion to its spring. It presses only, and its memory is empty."""
+        added = rows(self.rows.dtype, len(joint) if len(self.rows) else 0)
+        for i in np.unique(self.rows["joint"][self.rows["address"] != 0]).tolist():
+            which = joint == i
+            first = np.flatnonzero((self.rows["address"] != 0) & (self.rows["joint"] == i))[:1]
+            law = chosen(self.rows, np.repeat(first, which.sum()))
+            part = found["k"][which] / law["area"] / law["values"][:, OF_K_N]
+            for name in ("area", "stiffest", "strongest"):
+                law[name] *= part
+            law["k"], law["c"], law["pulls"] = found["k"][which], found["c"][which], 0.0
+            law["values"][:, : len(ANSWERS)] = 0.0
+            law["values"] *= np.arange(ROOM) < law["kept"][:, None]
+            for name in ("push", "pressed", "gap", "grip", "dragged"):
+                law[name] = 0.0
+            added[which] = law
+        return added
+
+    def with_found(self, count: int, kept: Flags, added: Rows) -> Self:
+        """All lines have a row."""
+        if not len(self.rows):
+            return self
+        return self._replace(rows=joined(self.rows[:count], chosen(self.rows[count:], kept), added))
+
+    @staticmethod
+    def stiffest(laws: Rows, springs: dict[str, Array]) -> dict[str, Array]:
+        """Those of the law where a place has one."""
+        if not len(laws):
+            return springs
+        k, c = (
+            np.where(laws["k"] > 0, laws[most], springs[name]) for name, most in (("k", "stiffest"), ("c", "strongest"))
+        )
+        return springs | {"k": k, "c": c}
+
+    @staticmethod
+    def soften(laws: Rows, share: Array) -> None:
+        """All of the law is less."""
+        for name in ("k", "c", "area", "stiffest", "strongest") if len(laws) else ():
+            laws[name] *= share
+
+    @staticmethod
+    def bend(laws: Rows, lines: Rows, depth: Array) -> None:
+        """Springs of the law at some depths."""
+        own = laws["k"] > 0 if len(laws) else np.zeros(0, dtype=bool)
+        lines["c"][: len(own)][own & (laws["damps"] > 0)] = 0.0
+        for i in np.flatnonzero(own & (depth[: len(own)] > 0)).tolist():
+            law, closing = laws[i], float(depth[i])
+            answer(law.values, law.address, closing, 0.0)
+            lines["k"][i] = law.area * law.values[OF_STRESS] / closing
+            lines["bent"][i] = 2 * law.area * law.values[OF_ENERGY] / closing**2 - lines["k"][i]
+
+    def going_on(self, now: Self) -> Self:
+        """Addresses are those of this process."""
+        own = self.rows["address"] != 0
+        addresses = dict(zip(now.rows["joint"].tolist(), now.rows["address"].tolist(), strict=True))
+        self.rows["address"][own] = [addresses[joint] for joint in self.rows["joint"][own].tolist()]
+        return self
+
+
+@inlined
+def press_only(books: Books, line: Row, own: Row) -> None:
+    """Make a line press only whose law has lost its hold."""
+    if own.gap > 0:
+        books.totals[0].tension += own.area * own.values[OF_ENERGY]
+    line.margin, own.pulls, own.push, own.pressed = own.margin, 0.0, 0.0, 0.0
+    line.c = own.c if own.damps == 0 else 0.0
+    put(own.dragged, no_spin(read(line.normal)))
+
+
+@inlined
+def take_answer(own: Row, books: Books, closing: float, rate: float, h: float) -> None:
+    """Let a law answer at a closing [m] that grows at a rate [m/s], and book what its memory has taken of the work
+    since the last pose, a time h ago [s]."""
+    stress, energy = own.values[OF_STRESS], own.values[OF_ENERGY]
+    answer(own.values, own.address, closing, rate)
+    if own.remembers > 0 and h > 0:
+        work = 0.5 * h * (stress + own.values[OF_STRESS]) * rate
+        taken = own.area * (work - (own.values[OF_ENERGY] - energy))
+        if closing > 0:
+            books.totals[0].crushing += taken
+        else:
+            books.totals[0].tension += taken
+
+
+@inlined
+def press_by_law(system: System, books: Books, line: Row, own: Row, h: float) -> None:
+    """Give a line the spring and the dashpot that its law has at the pose."""
+    meet = meeting(system, line)
+    if meet.gap >= 0 and (own.remembers == 0 or meet.past):
+        own.values[OF_STRESS] = own.values[OF_ENERGY] = 0.0
+        return
+    rate = -dot(meet.normal, relative(system.bodies, line, system.supports, meet))
+    closing = -meet.gap
+    take_answer(own, books, closing, rate, h)
+    if closing > NO_CLOSING:
+        held, force = stored(line, -line.depth), normal_force(line, -line.depth, 0.0)
+        line.k = own.area * own.values[OF_STRESS] / closing
+        line.bent = 2 * own.area * own.values[OF_ENERGY] / (closing * closing) - line.k
+        if own.damps > 0:
+            line.c = own.area * own.values[OF_DAMPING] / rate if abs(rate) > NO_RATE else 0.0
+        if meet.past or line.past == 1:  # `lost_at_the_end` takes the spring of this pose for that of the last one
+            held -= stored(line, -line.depth)
+            force -= normal_force(line, -line.depth, 0.0)
+            books.totals[0].joint_ends += held + 0.5 * force * h * rate
+
+
+@inlined
+def hold_by_law(system: System, books: Books, line: Row, own: Row, h: float) -> None:
+    """Add the forces of a law that pulls, with its friction."""
+    bodies, supports = system.bodies, system.supports
+    meet = where_friction_rubs(meeting(system, line))
+    velocity = relative(bodies, line, supports, meet)
+    rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
+    take_answer(own, books, -meet.gap, -rate, h)
+    pressed = own.area * own.values[OF_DAMPING]
+    if own.damps == 0:
+        pressed = -own.c * rate
+        if meet.gap > 0:
+            pressed *= min(-own.area * own.values[OF_STRESS] / (own.k * meet.gap), 1.0)
+    push = pressed + own.area * own.values[OF_STRESS]
+    books.dashpots[line.group] -= 0.5 * h * (own.pressed + pressed) * rate
+    last = read(own.dragged)
+    drag = sprung_friction(bodies, line, meet.normal, slip, max(push, 0.0), h)
+    mean = scaled(0.5 * h, plus(last, drag))
+    books.totals[0].friction -= dot(mean, slip)
+    if line.support >= 0:
+        work = plus(scaled(0.5 * h * (own.push + push), meet.normal), as_vector(meet.normal, mean))
+        books.totals[0].ground += carried(line, supports, work)
+    own.gap, own.push, own.pressed = meet.gap, push, pressed
+    line.widest = max(line.widest, meet.gap)
+    put(own.dragged, drag)
+    force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
+    add_force(bodies[line.body], meet.arm, force)
+    if line.face >= 0:
+        add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
