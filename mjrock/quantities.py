@@ -19,6 +19,7 @@ from .contacts.checks import (
     Array,
     Flags,
     Integers,
+    Message,
     OneOf,
     P,
     Result,
@@ -31,6 +32,7 @@ from .contacts.checks import (
     keep_declared,
     listed,
     named,
+    reason,
     require_array,
     require_flag,
     require_kind,
@@ -99,7 +101,8 @@ def require_stiffness(name: str, value: object) -> float:
 def require_one_of(name: str, value: object, known: Collection[str]) -> str:
     """Return `value`, one of the names that are known; a ValueError lists them for any other value."""
     if not isinstance(value, str) or value not in known:
-        raise ValueError(f"{name} = {brief(value)} is not one of {', '.join(known)}")
+        values = {"name": name, "value": brief(value), "known": ", ".join(known)}
+        raise ValueError(Message("{name} = {value} is not one of {known}", **values))
     return value
 
 

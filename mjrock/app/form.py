@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..assessment.tables import Place
+from ..reporting.page import HEADS
 from ..reporting.texts import MINUS, POWERS, Words, languages
 
 TEXTS = Path(__file__).with_name("texts.toml")
@@ -70,7 +71,7 @@ class Field(NamedTuple):
         range: of a number with its unit, in words.
         default: as a text; empty where there is none.
         needed: whether the file has to have it.
-        choices: values and their labels.
+        choices: values and their labels; of "pairs" the names that it has, and their labels.
         variants: what its tables may be.
         several: whether it takes several files.
         types: of the values that it takes, as the schema names them.
@@ -121,6 +122,8 @@ class Plan:
         types = frozenset(name for one in plain for name in _types(one))
         control, variants = self._nested(kinds, f"{place}.{key}")
         choices = self._choices(plain, types)
+        if control == "pairs" and key == "project":
+            choices = tuple((name, self.words(f"head_{name}")) for name in HEADS)
         if not control or (control == "table" and types - {"boolean"}):
             control = self._control(key, plain, types, bool(choices))
         number = next((one for one in plain if "unit" in one or "minimum" in one), {})
@@ -240,7 +243,7 @@ class Plan:
     def _default(self, node: Schema) -> str:
         default = node.get("default")
         if isinstance(default, bool):
-            return self.words(f"form_{str(default).lower()}")
+            return text_of(default)
         return "" if default is None else self.words.marked(text_of(default)) if _is_number(default) else str(default)
 
     def _label(self, key: str, place: str) -> str:

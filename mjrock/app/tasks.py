@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import base64
 import binascii
+import contextlib
 import math
 import pickle
 import time
-import tomllib
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from io import BytesIO
 from pathlib import Path
@@ -25,12 +25,12 @@ from matplotlib.figure import Figure
 
 from ..assessment.assessment import Assessment, assessment_of
 from ..assessment.schema import whole_schema
-from ..assessment.tables import AssessmentError, Fault, spelt_place
+from ..assessment.tables import AssessmentError, Fault, parsed, spelt_place
 from ..assessment.templates import seeds
 from ..assessment.writing import toml_text
 from ..bars import Progress, progress_given_to
 from ..plotting.browser import view
-from ..quantities import require_kind, shown
+from ..quantities import Message, brief, reason, require_kind, shown
 from ..reporting.drawings import drawn
 from ..reporting.markup import Markup, element
 from ..reporting.page import Asked, every_run, outcomes, required_runs
@@ -83,49 +83,35 @@ def templates_of() -> dict[str, dict[str, Any]]:
 
 def open_file(request: Mapping[str, Any], send: Send) -> None:
     """The input of the form that stands for the text of a file, and what is wrong with that."""
-    text = request.get("text")
-    try:
+    text: Any = request.get("text")
+    with faults_sent(send, words_of(request.get("language")), TypeError):
         require_kind("text", text, str)
-        assert isinstance(text, str)
-        state = state_of(tomllib.loads(text))
-    except (TypeError, tomllib.TOMLDecodeError, RecursionError) as error:
-        send({"faults": [{"place": [], "message": str(error)}]})
-        return
-    send({"state": state})
+        send({"state": state_of(parsed(text))})
 
 
 def save(request: Mapping[str, Any], send: Send) -> None:
     """The input as the text of a file, as it is, also where something is wrong with it."""
-    try:
+    with faults_sent(send, words_in(request), TypeError, ValueError):
         send({"name": "mjrock.toml", "text": toml_text(tables_in(request))})
-    except (TypeError, ValueError) as error:
-        send({"faults": [{"place": [], "message": str(error)}]})
 
 
 def check(request: Mapping[str, Any], send: Send) -> None:
     """The verdict clause by clause, the steps, and the sketch; or what is wrong, with the place of each fault."""
     words = words_in(request)
-    with Folder(request) as folder, warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            assessment = folder.assessment()
-        except AssessmentError as error:
-            send({"faults": faults_of(error)})
-            return
-        try:
+    with Folder(request) as folder, faults_sent(send, words):
+        assessment = folder.assessment()
+        with faults_sent(send, words):
             checks = {name or kind_named(one.problem, words): one for name, one in assessment.mechanisms.items()}
             mechanisms = required_checks(dict(zip(checks, assessment.check().values(), strict=True)), "")
-            send(verdict(mechanisms, [str(one.message) for one in caught], words))
-        except AssessmentError as error:
-            send({"faults": faults_of(error)})
-        send(sketch(assessment, words))
+            send(verdict(mechanisms, folder.notes(words), words))
+        for part in sketches(assessment, words):
+            send(part)
 
 
-def verdict(mechanisms: Sequence[Mechanism], notes: Sequence[str], words: Words) -> Item:
+def verdict(mechanisms: Sequence[Mechanism], notes: Sequence[Markup], words: Words) -> Item:
     """What holds clause by clause, what is doubtful, and the steps."""
-    said = [element("p", note, kind="note") for note in dict.fromkeys(notes)]
     return {
-        "verdict": "".join([*answers(mechanisms, [], words), *said]),
+        "verdict": "".join([*answers(mechanisms, [], words), *notes]),
         "ratio": in_short(mechanisms, words),
         "steps": element("h2", words("checks")) + "".join(kinematic_steps(mechanisms, words)),
     }
@@ -137,22 +123,24 @@ def kind_named(problem: object, words: Words) -> str:
 
 
 def in_short(mechanisms: Sequence[Mechanism], words: Words) -> str:
-    """Whether it holds, and the least ratio, in a line."""
-    least = ranked(mechanisms)[0].least
-    return f"{words('holds' if least.holds else 'fails')} {words.ratio(least.ratio)}"
+    """Whether the mechanism with the least ratio holds, in the word of its verdict, and that ratio."""
+    first = ranked(mechanisms)[0]
+    return f"{words(first.kind)} {words.ratio(first.least.ratio)}"
 
 
-def sketch(assessment: Assessment, words: Words) -> Item:
-    """The drawing of the first mechanism."""
-    figure, caption = drawn(next(iter(assessment.mechanisms.values())).problem, words)
-    return {"sketch": svg_of(figure), "alt": caption}
+def sketches(assessment: Assessment, words: Words) -> Iterator[Item]:
+    """The drawing of each mechanism, with its name where there are several, and its number."""
+    count = len(assessment.mechanisms)
+    for number, (name, one) in enumerate(assessment.mechanisms.items()):
+        figure, caption = drawn(one.problem, words)
+        yield {"sketch": svg_of(figure), "alt": caption, "name": name, "number": number, "count": count}
 
 
 def svg_of(figure: Figure) -> str:
-    """A figure as the address of an image, with its words as text."""
+    """A figure as the address of an image without a ground, with its words as text."""
     file = BytesIO()
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": "mjrock"}):
-        figure.savefig(file, format="svg", metadata={"Date": None})
+        figure.savefig(file, format="svg", metadata={"Date": None}, transparent=True)
     return f"data:image/svg+xml;base64,{base64.b64encode(file.getvalue()).decode()}"
 
 
@@ -184,25 +172,20 @@ class Sender:
 def run(request: Mapping[str, Any], send: Send) -> None:
     """The runs of the input, how far they are, what comes of them, and the film of the one that goes farthest."""
     words = words_in(request)
-    with Folder(request) as folder, warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            assessment = folder.assessment()
-            analyses = assessment.analyses()
-            sender = Sender(send, words, sum(map(len, analyses.values())))
-            responses: dict[str, list[Response]] = {}
-            for name, several in analyses.items():
-                for one in several:
-                    with progress_given_to(sender):
-                        responses.setdefault(name, []).append(one.solve())
-                    sender.before += 1
-        except AssessmentError as error:
-            send({"faults": faults_of(error)})
-            return
-        notes = [element("p", str(one.message), kind="note") for one in caught]
+    with Folder(request) as folder, faults_sent(send, words):
+        assessment = folder.assessment()
+        analyses = assessment.analyses()
+        sender = Sender(send, words, sum(map(len, analyses.values())))
+        responses: dict[str, list[Response]] = {}
+        for name, several in analyses.items():
+            for one in several:
+                with progress_given_to(sender):
+                    responses.setdefault(name, []).append(one.solve())
+                sender.before += 1
+        notes = folder.notes(words)
         found = dynamic(assessment, responses, words)
         found += [part for name, several in responses.items() for part in of_runs(name, several, words)]
-        send({"answers": "".join([*found, *dict.fromkeys(notes)])})
+        send({"answers": "".join([*found, *notes])})
         page = view(farthest([one for several in responses.values() for one in several]), folder.path / "film.html")
         send({"keep": {"film": page.read_bytes(), "responses": pickle.dumps(responses)}})
 
@@ -234,21 +217,16 @@ def report(request: Mapping[str, Any], send: Send) -> None:
     """The report in a language, with the runs that are kept: a PDF, or a page of HTML where WeasyPrint is missing."""
     words = words_of(request.get("language"))
     kept = request.get("responses")
-    with Folder(request) as folder, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with Folder(request) as folder, faults_sent(send, words):
+        assessment = folder.assessment()
+        runs = None if kept is None else pickle.loads(kept)
+        written, note = folder.path / "written", ""
+        written.mkdir()
         try:
-            assessment = folder.assessment()
-            runs = None if kept is None else pickle.loads(kept)
-            written, note = folder.path / "written", ""
-            written.mkdir()
-            try:
-                assessment.report(written / "mjrock.pdf", runs, language=words.language)
-            except ImportError:
-                note = words("form_no_pdf")
-                assessment.report(written / "mjrock.html", runs, language=words.language)
-        except AssessmentError as error:
-            send({"faults": faults_of(error)})
-            return
+            assessment.report(written / "mjrock.pdf", runs, language=words.language)
+        except ImportError:
+            note = words("form_no_pdf")
+            assessment.report(written / "mjrock.html", runs, language=words.language)
         send({"documents": [document(path) for path in sorted(written.iterdir())], "note": note})
 
 
@@ -271,13 +249,27 @@ def tables_in(request: Mapping[str, Any]) -> dict[str, Any]:
     return plan_of("en").tables_of(state)
 
 
-def faults_of(error: AssessmentError) -> list[Item]:
-    """What is wrong, with its place in the form."""
-    return [{"place": list(one.place), "message": one.message} for one in error.faults]
+@contextlib.contextmanager
+def faults_sent(send: Send, words: Words, *kinds: type[Exception]) -> Iterator[None]:
+    """Send what is found wrong with the input in a `with` statement, with its place in the form, and end that.
+
+    Args:
+        send: to the page.
+        words: of the page.
+        kinds: of errors that are sent too, without a place.
+    """
+    try:
+        yield
+    except AssessmentError as error:
+        found = [one._replace(message=words.message(one.message)) for one in error.faults]
+        lines = [words("form_line", line=one.line, message=one.message) if one.line else one.message for one in found]
+        send({"faults": [{"place": list(one.place), "message": line} for one, line in zip(found, lines, strict=True)]})
+    except kinds as error:
+        send({"faults": [{"place": [], "message": words.message(reason(error))}]})
 
 
 class Folder:
-    """The files of a request in a folder of their own. Use it in a `with` statement.
+    """The files of a request in a folder of their own, and what is warned of. Use it in a `with` statement.
 
     Args:
         request: with `files`, their content by name, as base64.
@@ -308,14 +300,22 @@ class Folder:
                 raise ValueError(f"files[{name!r}] is no base64") from None
 
     def __enter__(self) -> Folder:
-        self._made = TemporaryDirectory()
-        self.path = Path(self._made.name)
+        self._left = contextlib.ExitStack()
+        caught = self._left.enter_context(warnings.catch_warnings(record=True))
+        self._caught = [] if caught is None else caught
+        warnings.simplefilter("always")
+        self.path = Path(self._left.enter_context(TemporaryDirectory()))
         for name, content in self.files.items():
             (self.path / name).write_bytes(content)
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._made.cleanup()
+        self._left.close()
+
+    def notes(self, words: Words) -> list[Markup]:
+        """What has been warned of so far, each once."""
+        texts = [words.message(reason(one.message)) for one in self._caught if isinstance(one.message, Warning)]
+        return [element("p", text, kind="note") for text in dict.fromkeys(texts)]
 
     def assessment(self) -> Assessment:
         """What the input stands for.
@@ -324,8 +324,9 @@ class Folder:
             AssessmentError: with all that is wrong, and for a path that is not that of a file of the request.
         """
         tables = tables_in(self.request)
+        lost = "{place} = {value} is no file that is uploaded; choose the file again"
         faults = [
-            Fault(place, f"{spelt_place(place)} = {shown(name)} is no file that is uploaded; choose the file again")
+            Fault(place, Message(lost, place=spelt_place(place), value=brief(name)))
             for place, name in plan_of("en").files_in(tables)
             if name not in (*self.files, HERE)
         ]

@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..contacts.files import require_file, write_text
-from ..quantities import require_path, require_text
+from ..quantities import Message, require_path, require_text
 from ..result.response import Response
 from ..study.loading.code_check import DynamicCheck, MechanismCheck
 from ..study.loading.design import Design, design
 from .declarations import REQUIRED, Key, Maker, maker_of
 from .mechanisms import Mechanism, mechanisms_of
-from .reading import Reader
-from .tables import LARGEST, AssessmentError, Fault, Place, Table, line_of, lines_of, located, parsed, spelt_place
+from .reading import Reader, caused
+from .tables import LARGEST, AssessmentError, Fault, Place, Table, line_of, lines_of, located, parsed
 from .writing import toml_text
 
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
@@ -114,7 +114,7 @@ class Assessment:
             AssessmentError: without that table, or where no value can be checked.
         """
         if not self.trials:
-            raise self._error((), "the file has no [design]; give it key and values")
+            raise self._error((), Message("the file has no [design]; give it key and values"))
         place, values = place_of(self.trials["key"]), self.trials["values"]
 
         def build(value: Any) -> dict[str, MechanismCheck]:
@@ -125,7 +125,7 @@ class Assessment:
         try:
             return design(build, values, method=self.trials.get("method"))
         except (TypeError, ValueError) as error:
-            raise self._error(("design",), f"design: {error}") from None
+            raise self._error(("design",), caused(("design",), error)) from None
 
     def report(
         self, path: str | Path, runs: Mapping[str, Sequence[Response]] | None = None, *, language: str | None = None
@@ -177,11 +177,11 @@ class Assessment:
         try:
             return call()
         except (TypeError, ValueError) as error:
-            raise self._error(mechanism.place, f"{spelt_place(mechanism.place)}: {error}") from None
+            raise self._error(mechanism.place, caused(mechanism.place, error)) from None
 
     def _error(self, place: Place, message: str) -> AssessmentError:
         """An error at a table of the file."""
-        return AssessmentError((Fault(place, message, line_of(place, self.lines)),), self.name)
+        return AssessmentError((Fault(place, message, line_of(place, self.lines)),), self.name, self.language)
 
 
 def place_of(text: str) -> Place:
@@ -231,7 +231,8 @@ def read_text(path: Path) -> str:
     """The text of a file; an AssessmentError for one that is too large or no text in UTF-8."""
     size = require_file(path).stat().st_size
     if size > 4 * LARGEST:
-        raise AssessmentError((Fault((), f"has {size} bytes; the valid range is 0 to {4 * LARGEST}"),), str(path))
+        large = Message("has {size} bytes; the valid range is 0 to {most}", size=size, most=4 * LARGEST)
+        raise AssessmentError((Fault((), large),), str(path))
     return decoded(path.read_bytes(), str(path))
 
 
@@ -242,7 +243,8 @@ def decoded(data: bytes, name: str) -> str:
         return data.decode("utf-16" if marked else "utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        fault = Fault((), f"is no text in UTF-8: byte {error.start + 1} is 0x{data[error.start]:02x}", line)
+        values = {"place": error.start + 1, "byte": data[error.start]}
+        fault = Fault((), Message("is no text in UTF-8: byte {place} is 0x{byte:02x}", **values), line)
         raise AssessmentError((fault,), name) from None
 
 
@@ -280,11 +282,12 @@ def assessment_of(
     whole: dict[str, Any] = {}
     for name_of in OF_ALL.keys() & top.values.keys():
         whole[name_of] = reader.attempted(partial(reader.value, OF_ALL[name_of], top.values[name_of], (name_of,)))
+    reader.language = whole.get("language") or reader.language
     texts = reader.attempted(partial(_texts, reader, top)) or {}
     trials = reader.attempted(partial(_trials, reader, top, document))
     mechanisms = mechanisms_of(reader, top.without(*OF_ALL, "report", "design"))
     if not mechanisms and not reader.faults:
-        reader.refuse((), "the file has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
+        reader.refusal((), "{place} has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
     reader.require_sound()
     rest: dict[str, Any] = {"lines": lines or {}, "folder": folder, "texts": texts, "trials": trials or {}}
     return Assessment(mechanisms, name=name, document=document, **rest, **whole)
@@ -304,12 +307,11 @@ def _trials(reader: Reader, top: Table, document: Mapping[str, Any]) -> dict[str
     try:
         replaced(document, place_of(found["key"]), None)
     except (LookupError, TypeError):
-        reader.refuse(
-            table.of("key"), f"design.key = {found['key']!r} is no key of the file; spell it effects[0].diameter"
-        )
+        unknown = "{place} = {key!r} is no key of the file; spell it effects[0].diameter"
+        reader.refusal(table.of("key"), unknown, key=found["key"])
     values = table.values.get("values")
     if not isinstance(values, list) or not values:
-        reader.refuse(table.of("values"), "design.values is no list of at least one value of that key")
+        reader.refusal(table.of("values"), "{place} is no list of at least one value of that key")
     return found | {"values": document["design"].get("values")}
 
 

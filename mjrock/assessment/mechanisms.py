@@ -13,6 +13,7 @@ from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.case import Case
+from ..quantities import Message, reason
 from ..result.response import Response
 from ..study.loading.code import USUAL_CODE, code_of
 from ..study.loading.code_check import (
@@ -27,9 +28,9 @@ from ..study.loading.code_check import (
 )
 from ..study.loading.limit_analysis import LimitCurve, limit_curve
 from .declarations import Makers, key_named, maker_of, makers_of
-from .reading import OWN_KEYS, Reader, RefusedError
+from .reading import OWN_KEYS, Reader, RefusedError, caused
 from .running import Shaking, shaking_of
-from .tables import Place, Table, spelt_place
+from .tables import Place, Table
 
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
     from ..study.analysis import Analysis
@@ -87,7 +88,7 @@ class Mechanism:
             ValueError: as `mechanism_check` and `limit_curve` do, and without a demand.
         """
         if self.demand is None:
-            raise ValueError("has no site, which a check is against; give it a table [site] with ag and soil")
+            raise ValueError(Message("has no site, which a check is against; give it a table [site] with ag and soil"))
         subject: Any = self.problem if self.limit_curve is None else self.limit_curve
         return mechanism_check(subject, self.demand, **self.options)
 
@@ -113,7 +114,8 @@ class Mechanism:
         from ..study.analysis import Analysis, MasonryAnalysis
 
         if isinstance(self.problem, VerticalBending | HorizontalBending):
-            raise ValueError("a wall that bends is checked and not run; give its blocks as a MasonryCase to run it")
+            bends = Message("a wall that bends is checked and not run; give its blocks as a MasonryCase to run it")
+            raise ValueError(bends)
         shaking, case = self.shaking, self.case
         shaken: list[Any] = [replace(case, motion=motion) for motion in shaking.motions] or [case]
         if not isinstance(self.problem, Checked):
@@ -140,12 +142,12 @@ def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:
     if several is None:
         return _found({"": _mechanism(reader, top, set(top.values), set())})
     if not isinstance(several, Table) or not all(isinstance(one, Table) for one in several.values.values()):
-        reader.refuse(("mechanisms",), "mechanisms is no table of tables; write [mechanisms.NAME] for each")
+        reader.refusal(("mechanisms",), "{place} is no table of tables; write [mechanisms.NAME] for each")
         return {}
     shared, used = top.without("mechanisms"), set[str]()
     made = {name: _mechanism(reader, own.over(shared), set(own.values), used) for name, own in several.values.items()}
     for key in shared.values.keys() - used:
-        reader.refuse((key,), f"{key} is not known here: no mechanism takes it")
+        reader.refusal((key,), "{place} is not known here: no mechanism takes it")
     return _found(made)
 
 
@@ -195,7 +197,7 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
     table of the site has a table of."""
     if "site" not in table.values:
         if "floor" in table.values:
-            reader.refuse(table.of("floor"), f"{spelt_place(table.of('floor'))} is a floor of no [site]")
+            reader.refusal(table.of("floor"), "{place} is a floor of no [site]")
         return None
     site, code = reader.required_table(table, "site"), options.get("code", USUAL_CODE)
     rule = code_of(code)
@@ -203,16 +205,13 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
         rule.confidence.checked(options.get("confidence_factor"))
     except ValueError as error:
         place = reader.required_table(table, "check").of("confidence_factor")
-        reader.refuse(place, f"{spelt_place(place)}: {error} by {rule.name}")
-        raise RefusedError from None
+        raise reader.refusal(place, "{place}: {cause} by {code}", cause=reason(error), code=rule.name) from None
     names = [*rule.states, *([] if rule.damage is None else [rule.damage.state])]
     states = [name for name in dict.fromkeys(names) if isinstance(site.values.get(name), Table)]
     for name in [key for key, value in site.values.items() if isinstance(value, Table) and key not in states]:
         known = ", ".join(dict.fromkeys(names))
-        reader.refuse(
-            site.of(name), f"{spelt_place(site.of(name))} is no limit state of {rule.name}; those are {known}"
-        )
-        raise RefusedError
+        unknown = "{place} is no limit state of {code}; those are {known}"
+        raise reader.refusal(site.of(name), unknown, code=rule.name, known=known)
     common = site.without(*states)
     if not states:
         return _spectrum(reader, common, table)
@@ -220,7 +219,7 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
     try:
         return required_demands(demands, rule)
     except ValueError as error:
-        reader.refuse(site.place, f"{spelt_place(site.place)}: {error}")
+        reader.refuse(site.place, caused(site.place, error))
         raise RefusedError from None
 
 

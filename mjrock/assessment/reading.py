@@ -13,7 +13,7 @@ import numpy as np
 
 from ..problem.wall.block import Block
 from ..problem.wall.effect import CombinedEffect
-from ..quantities import Within, named, shown
+from ..quantities import Message, Within, brief, named, reason, shown
 from .declarations import (
     USUAL_MAKE,
     Key,
@@ -27,7 +27,7 @@ from .declarations import (
     makers_of,
 )
 from .tables import AssessmentError, Fault, Place, Table, line_of, spelt_place
-from .units import examples_of, value_in
+from .units import UnitError, examples_of, value_in
 
 Object = TypeVar("Object")
 NUMERIC = (float, int, np.ndarray)
@@ -53,21 +53,28 @@ class Reader:
 
     Attributes:
         faults: what is wrong.
+        language: of the file.
     """
 
     def __init__(self, folder: Path | None, lines: Mapping[Place, int], name: str, *, confined: bool = False) -> None:
         self.folder, self.lines, self.name, self.confined = folder, lines, name, confined
         self.faults: list[Fault] = []
+        self.language = "en"
 
     def refuse(self, place: Place, message: str) -> None:
         """Keep what is wrong with a key or table."""
         self.faults.append(Fault(place, message, line_of(place, self.lines)))
 
+    def refusal(self, place: Place, template: str, **values: object) -> RefusedError:
+        """Keep what is wrong with a key or table, as the template of a message about its `place`; to be raised."""
+        self.refuse(place, Message(template, place=spelt_place(place), **values))
+        return RefusedError()
+
     def require_sound(self) -> None:
         """Raise an AssessmentError with all that is wrong, in the order of the file."""
         if self.faults:
             faults = dict.fromkeys(sorted(self.faults, key=lambda one: one.line or 0))
-            raise AssessmentError(tuple(faults), self.name)
+            raise AssessmentError(tuple(faults), self.name, self.language)
 
     def made(self, table: Table, maker: Maker, given: Mapping[str, Any] | None = None) -> Any:
         """What a table stands for.
@@ -93,7 +100,7 @@ class Reader:
         keys = {key_named(key): key for name, key in maker.keys.items() if name not in arguments}
         for name, value in table.values.items():
             if name not in keys:
-                self.refuse(table.of(name), self._unknown(table.of(name), name, list(keys), maker))
+                self.refuse(table.of(name), self._unknown(table.of(name), name, list(keys)))
                 continue
             try:
                 arguments[keys[name].name] = self.value(keys[name], value, table.of(name))
@@ -101,7 +108,7 @@ class Reader:
                 continue
         for name, key in keys.items():
             if key.is_needed and key.name not in arguments and name not in table.values:
-                self.refuse(table.place, f"{spelt_place(table.place)} has no {name}{self._due(key)}")
+                self.refuse(table.place, self._absent(table, name, key))
         if len(self.faults) > before:
             raise RefusedError
         return arguments | self._expanded(table, arguments)
@@ -122,11 +129,11 @@ class Reader:
             return (effect,)
         try:
             if wall is None:
-                raise ValueError("acts on a wall, and there is none")
+                raise ValueError(Message("acts on a wall, and there is none"))
             return effect.on(wall)
         except (TypeError, ValueError) as error:
             place = _named_in(str(error), table, {})
-            self.refuse(place, f"{spelt_place(place)}: {error}")
+            self.refuse(place, caused(place, error))
             raise RefusedError from None
 
     def attempted(self, call: Callable[[], Object]) -> Object | None:
@@ -140,9 +147,8 @@ class Reader:
         """A table in another."""
         value = table.values.get(name)
         if not isinstance(value, Table):
-            at = spelt_place(table.of(name))
-            self.refuse(table.of(name), f"{at} is {spelt_value(value)}; it takes a table, [{at}]")
-            raise RefusedError
+            it_takes = "{place} is {value}; it takes a table, [{place}]"
+            raise self.refusal(table.of(name), it_takes, value=spelt_value(value))
         return value
 
     def chosen(self, table: Table, kinds: Mapping[str, Makers], usual: str | None = None) -> tuple[Maker, Table]:
@@ -156,13 +162,12 @@ class Reader:
         """A name that a key of a table has among those that are known."""
         value = table.values.get(name, usual)
         if value is None:
-            self.refuse(table.place, f"{spelt_place(table.place)} has no {name}; it is one of {', '.join(known)}")
-            raise RefusedError
+            raise self.refusal(table.place, "{place} has no {name}; {remedy}", name=name, remedy=one_of(known))
         if not isinstance(value, str) or value not in known:
             near = difflib.get_close_matches(str(value), known, 1)
-            remedy = f"did you mean {near[0]!r}?" if near else f"it is one of {', '.join(known)}"
-            self.refuse(table.of(name), f"{spelt_place(table.of(name))} = {shown(value)} is not known; {remedy}")
-            raise RefusedError
+            remedy = Message("did you mean {near!r}?", near=near[0]) if near else one_of(known)
+            values = {"value": shown(value), "remedy": remedy}
+            raise self.refusal(table.of(name), "{place} = {value} is not known; {remedy}", **values)
         return value
 
     def value(self, key: Key, value: Any, place: Place) -> Any:
@@ -188,40 +193,37 @@ class Reader:
         """A text, one of several, or a path from the folder of the file."""
         known = [choice for kind in kinds for choice in choices_of(kind)]
         if known and value not in known:
-            self.refuse(place, f"{spelt_place(place)} = {value!r} is not one of {', '.join(known)}")
-            raise RefusedError
+            values = {"name": spelt_place(place), "value": brief(value), "known": ", ".join(known)}
+            raise self.refusal(place, "{name} = {value} is not one of {known}", **values)
         if not is_path(kinds):
             return value
         if self.folder is None:
-            self.refuse(place, f"{spelt_place(place)} = {value!r} is the path of a file, and these tables are in none")
-            raise RefusedError
+            said = "{place} = {value} is the path of a file, and these tables are in none"
+            raise self.refusal(place, said, value=brief(value))
         path = self.folder / value
         if self.confined and not path.resolve().is_relative_to(self.folder.resolve()):
-            self.refuse(place, f"{spelt_place(place)} = {value!r} leads out of the folder of the files")
-            raise RefusedError
+            raise self.refusal(place, "{place} = {value} leads out of the folder of the files", value=brief(value))
         return path
 
     def _number(self, kinds: tuple[Any, ...], within: Within | None, value: str | float, place: Place) -> Any:
         """A number, or a text with a unit."""
-        name, unit = spelt_place(place), within.unit if within else ""
+        name = spelt_place(place)
         try:
-            number = self._converted(value, unit) if isinstance(value, str) else value
+            number = value
+            if isinstance(value, str):
+                name = f"{name} = {brief(value)}"
+                number = value_in(value, within.unit if within else "")
             if within is not None:
                 return within.checked(name, number)
             if isinstance(number, bool):
-                raise TypeError(f"{name} = {shown(number)} is not a real number")
+                raise TypeError(Message("{name} = {value} is not a real number", name=name, value=shown(number)))
             return int(number) if int in kinds and float not in kinds and number == int(number) else float(number)
+        except UnitError as error:
+            due = Message("; the valid range is {range}", range=spelt_range(within)) if within else ""
+            self.refuse(place, Message("{name} {cause}{due}", name=name, cause=reason(error), due=due))
         except (TypeError, ValueError, OverflowError) as error:
-            said = str(error)
-            if isinstance(value, str):
-                said = f"{name} = {shown(value).partition(' of type')[0]} {said.removeprefix(f'{name} ')}"
-                said += f"; the valid range is {spelt_range(within)}" if within and "range" not in said else ""
-            self.refuse(place, said)
-            raise RefusedError from None
-
-    @staticmethod
-    def _converted(value: str, unit: str) -> float:
-        return value_in(value, unit)
+            self.refuse(place, reason(error))
+        raise RefusedError
 
     def _row(self, kinds: tuple[Any, ...], within: Within | None, value: list[Any], place: Place) -> Any:
         """A list, each item of the type that the argument has there."""
@@ -232,8 +234,7 @@ class Reader:
             raise self._wrong(place, value, kinds, within)
         fitting = [items for items in rows if items[-1] is ... or len(items) == len(value)]
         if not fitting:
-            self.refuse(place, f"{spelt_place(place)} has {len(value)} values; it takes {len(rows[0])}")
-            raise RefusedError
+            raise self.refusal(place, "{place} has {count} values; it takes {due}", count=len(value), due=len(rows[0]))
         found, wrong = [], False
         for i, one in enumerate(value):
             item = fitting[0][0 if fitting[0][-1] is ... else i]
@@ -260,30 +261,47 @@ class Reader:
 
     def _wrong(self, place: Place, value: Any, kinds: tuple[Any, ...], within: Within | None) -> RefusedError:
         """Keep that a value is of another type."""
-        self.refuse(place, f"{spelt_place(place)} is {spelt_value(value)}; it takes {spelt_kinds(kinds, within)}")
-        return RefusedError()
+        values = {"value": spelt_value(value), "due": spelt_kinds(kinds, within)}
+        return self.refusal(place, "{place} is {value}; it takes {due}", **values)
 
-    def _unknown(self, place: Place, name: str, known: Sequence[str], maker: Maker) -> str:
+    def _unknown(self, place: Place, name: str, known: Sequence[str]) -> Message:
         """What is said of a key that a table does not take."""
         near = difflib.get_close_matches(name, known, 2)
-        remedy = f"did you mean {' or '.join(near)}?" if near else f"the valid ones are {', '.join(known) or 'none'}"
-        return f"{spelt_place(place)} is not known; {remedy}"
+        others = Message("the valid ones are {known}", known=", ".join(known) or "none")
+        remedy = Message("did you mean {near}?", near=alternatively(near)) if near else others
+        return Message("{place} is not known; {remedy}", place=spelt_place(place), remedy=remedy)
 
-    def _due(self, key: Key) -> str:
-        """What a key that is missing takes, in words."""
-        return f"; it takes {spelt_kinds(key.kinds, key.within)}"
+    def _absent(self, table: Table, name: str, key: Key) -> Message:
+        """What is said of a key that is missing, and what it takes."""
+        values = {"place": spelt_place(table.place), "name": name, "due": spelt_kinds(key.kinds, key.within)}
+        return Message("{place} has no {name}; it takes {due}", **values)
 
     def _cause(self, error: Exception, table: Table, maker: Maker) -> tuple[Place, str]:
         """The key that an error of a class or function is about, and its message."""
-        said, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
-        absent = next((key for name, key in names.items() if NOT_GIVEN.search(said) and name in said), None)
+        found, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
+        absent = next((key for name, key in names.items() if NOT_GIVEN.search(found) and name in found), None)
         if absent is not None and absent not in table.values:
-            return (
-                table.place,
-                f"{spelt_place(table.place)} has no {absent}{self._due(maker.keys[names_of(names, absent)])}",
-            )
-        place = _named_in(said, table, names)
-        return place, f"{spelt_place(place)}: {said}"
+            return table.place, self._absent(table, absent, maker.keys[names_of(names, absent)])
+        place = _named_in(found, table, names)
+        key = next((one for one in maker.keys.values() if table.of(key_named(one)) == place), None)
+        within = None if key is None else key.within
+        return place, caused(place, error, table.values.get(str(place[-1])) if key else None, within)
+
+
+def caused(place: Place, error: Exception, value: Any = None, within: Within | None = None) -> Message:
+    """The message of an error at a place. In another language one that has no text there stays English, behind what is
+    known of the place.
+
+    Args:
+        place: of the key or table.
+        error: of a class or function.
+        value: of the key, where it is one.
+        within: its declared range.
+    """
+    known = f" = {brief(value)}" if isinstance(value, str | int | float) else ""
+    of = Message("; the valid range is {range}", range=spelt_range(within)) if within else ""
+    known = Message("{value}{of}", value=known, of=of)
+    return Message("{place}: {cause}", place=spelt_place(place), cause=reason(error), known=known)
 
 
 def _named_in(message: str, table: Table, names: Mapping[str, str]) -> Place:
@@ -328,32 +346,48 @@ def is_mapping(kind: Any) -> bool:
 
 def spelt_value(value: Any) -> str:
     """What a key has, in words."""
-    return "a table" if isinstance(value, Table) else "a list" if isinstance(value, list) else shown(value)
+    if isinstance(value, Table | list):
+        return Message("a table") if isinstance(value, Table) else Message("a list")
+    return shown(value)
 
 
-def spelt_range(within: Within) -> str:
+def spelt_range(within: Within) -> Message:
     """A range in words."""
-    return f"{within.low:g} to {within.high:g}" + (f" {within.unit}" if within.unit else "")
+    unit = f" {within.unit}" if within.unit else ""
+    return Message("{low:g} to {high:g}{unit}", low=within.low, high=within.high, unit=unit)
+
+
+def alternatively(parts: Sequence[str]) -> str:
+    """One or the other of some words, each once."""
+    first, *others = dict.fromkeys(parts)
+    return Message("{first} or {others}", first=first, others=alternatively(others)) if others else first
+
+
+def one_of(known: Sequence[str]) -> Message:
+    """What says that a value is one of several."""
+    return Message("it is one of {known}", known=", ".join(known))
 
 
 def spelt_kinds(kinds: tuple[Any, ...], within: Within | None) -> str:
     """What an argument of some types takes, in words."""
-    found = []
+    found: list[str] = []
     if any(kind in NUMERIC or get_origin(kind) in NUMERIC for kind in kinds):
-        of = f" of {spelt_range(within)}" if within and math.isfinite(within.high) else ""
-        unit = f", or a text such as {examples_of(within.unit)}" if within and within.unit else ""
-        found.append(f"a number{of}{unit}")
-    found += ["true or false"] if bool in kinds else []
+        of = Message(" of {range}", range=spelt_range(within)) if within and math.isfinite(within.high) else ""
+        example = examples_of(within.unit) if within and within.unit else ""
+        unit = Message(", or a text such as {example}", example=example) if example else ""
+        found.append(Message("a number{of}{unit}", of=of, unit=unit))
+    found += [Message("true or false")] if bool in kinds else []
     if known := [choice for kind in kinds for choice in choices_of(kind)]:
-        found.append(f"one of {', '.join(known)}")
+        found.append(Message("one of {known}", known=", ".join(known)))
     elif str in kinds:
-        found.append("a text")
+        found.append(Message("a text"))
     if classes := classes_of(kinds):
-        found.append(f"a table of {named(list(classes))}")
+        found.append(Message("a table of {names}", names=named(list(classes))))
     for kind in kinds:
         if (items := items_of(kind)) is not None:
             of = spelt_kinds(parted(items[0], within)[0], None)
-            found.append(f"a list, each {of}" if items[-1] is ... else f"a list of {len(items)}, each {of}")
+            several = Message("a list of {count}, each {of}", count=len(items), of=of)
+            found.append(Message("a list, each {of}", of=of) if items[-1] is ... else several)
         elif is_mapping(kind):
-            found.append("a table of texts")
-    return " or ".join(dict.fromkeys(found)) or "nothing that a file can have"
+            found.append(Message("a table of texts"))
+    return alternatively(found or [Message("nothing that a file can have")])

@@ -17,8 +17,8 @@ from ..problem.wall.block import Block
 from ..quantities import OneOf
 from ..study.loading.code_check import dynamic_check
 from .declarations import Key, Maker, Makers, maker_of, makers_of
-from .reading import Reader, RefusedError
-from .tables import Table, spelt_place
+from .reading import Reader
+from .tables import Table
 
 RECORDS: Mapping[str, Makers] = {"records_in": {"": maker_of(records_in)}, "GroundMotion": makers_of(GroundMotion)}
 """What `[records]` stands for, by the name of `kind`: the files of a folder where none is named."""
@@ -105,8 +105,7 @@ def _of_wall(
     """Restitution or contacts of a wall; the usual ones where the file has no table of them."""
     own = reader.required_table(table, name) if name in table.values else Table((*table.place, name))
     if wall is None:
-        reader.refuse(own.place, f"{spelt_place(own.place)} is of a wall, and masonry has joints; leave it out")
-        raise RefusedError
+        raise reader.refusal(own.place, "{place} is of a wall, and masonry has joints; leave it out")
     maker, rest = reader.chosen(own, {next(iter(makers.values())).call.__name__: makers})
     arguments = {"wall": wall, **(given or {})}
     return reader.made(rest, maker, {key: arguments[key] for key in maker.keys if key in arguments})
@@ -128,8 +127,7 @@ def _records(reader: Reader, table: Table, spectrum: object) -> tuple[GroundMoti
     found: list[GroundMotion] = []
     for one in tables:
         if not isinstance(one, Table):
-            reader.refuse(table.of("records"), "records is no table and no list of tables")
-            raise RefusedError
+            raise reader.refusal(table.of("records"), "{place} is no table and no list of tables")
         records = _read(reader, one.without("scaled_to"))
         if "scaled_to" in one.values:
             given = {"spectrum": _required(reader, one, spectrum)}
@@ -146,8 +144,7 @@ def _records(reader: Reader, table: Table, spectrum: object) -> tuple[GroundMoti
 def _required(reader: Reader, table: Table, spectrum: object) -> SpectrumOfCode:
     """The spectrum that records are scaled to."""
     if not isinstance(spectrum, SpectrumOfCode):
-        reader.refuse(table.of("scaled_to"), f"{spelt_place(table.of('scaled_to'))} needs a [site], to scale to")
-        raise RefusedError
+        raise reader.refusal(table.of("scaled_to"), "{place} needs a [site], to scale to")
     return spectrum
 
 

@@ -8,6 +8,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from ..quantities import Message
+from ..reporting.texts import Words
+
 Place = tuple[str | int, ...]
 """A key by the tables that it is in: ("effects", 0, "height")."""
 LARGEST = 1_000_000
@@ -40,10 +43,11 @@ class AssessmentError(ValueError):
     Args:
         faults: what is wrong, in the order of the file.
         name: of the file; empty where there is none.
+        language: of the file, in which the error is written.
     """
 
-    def __init__(self, faults: tuple[Fault, ...], name: str = "") -> None:
-        self.faults, self.name = faults, name
+    def __init__(self, faults: tuple[Fault, ...], name: str = "", language: str = "en") -> None:
+        self.faults, self.name, self.language = faults, name, language
         super().__init__("\n".join(self.lines))
 
     @property
@@ -53,10 +57,11 @@ class AssessmentError(ValueError):
             f"{self.name or 'line'}{':' if self.name else ' '}{one.line}" if one.line else self.name
             for one in self.faults
         ]
-        return [f"{at}: {one.message}" if at else one.message for at, one in zip(before, self.faults, strict=True)]
+        texts = [Words(self.language).message(one.message) for one in self.faults]
+        return [f"{at}: {text}" if at else text for at, text in zip(before, texts, strict=True)]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.faults, self.name)
+        return type(self), (self.faults, self.name, self.language)
 
 
 @dataclass(frozen=True)
@@ -112,7 +117,7 @@ def spelt_place(place: Place) -> str:
     text = ""
     for part in place:
         text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
-    return text or "the file"
+    return text or Message("the file")
 
 
 def parsed(text: str) -> dict[str, Any]:
@@ -122,7 +127,8 @@ def parsed(text: str) -> dict[str, Any]:
         AssessmentError: with the line, for a text that is not TOML, is too long, or is nested too deeply.
     """
     if len(text) > LARGEST:
-        raise AssessmentError((Fault((), f"has {len(text)} characters; the valid range is 0 to {LARGEST}"),))
+        long = Message("has {count} characters; the valid range is 0 to {most}", count=len(text), most=LARGEST)
+        raise AssessmentError((Fault((), long),))
     try:
         found = tomllib.loads(text)
         if not is_deep(found):
@@ -131,12 +137,13 @@ def parsed(text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         place = AT.search(str(error))
         line = int(place[1]) if place and place[1] else text.count("\n") + 1
-        message = AT.sub("", str(error)).replace("{", "(").replace("}", ")")
+        cause = AT.sub("", str(error))
         if COMMA.match(text.split("\n")[line - 1]):
-            message = "a number has a comma; the decimal mark is a point, as in 0.5"
-        raise AssessmentError((Fault((), f"is not TOML: {message}", line),)) from None
+            cause = Message("a number has a comma; the decimal mark is a point, as in 0.5")
+        raise AssessmentError((Fault((), Message("is not TOML: {cause}", cause=cause), line),)) from None
     except RecursionError:
-        raise AssessmentError((Fault((), "is nested too deeply; a file has some five levels", 1),)) from None
+        deep = Message("is nested too deeply; a file has some five levels")
+        raise AssessmentError((Fault((), deep, 1),)) from None
 
 
 def is_deep(document: Mapping[str, Any]) -> bool:

@@ -7,10 +7,14 @@ import re
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..quantities import GRAVITY
+from ..quantities import GRAVITY, Message
 
 BASES = ("m", "kg", "s", "rad")
 Exponents = tuple[int, int, int, int]
+
+
+class UnitError(ValueError):
+    """What is wrong with the text of a number, as the rest of a sentence that begins with the key and the text."""
 
 
 class Unit(NamedTuple):
@@ -94,25 +98,29 @@ def value_in(text: str, unit: str) -> float:
     Where a mass [kg] or a density [kg/m3] is declared, a weight, or a weight per volume, is divided by 9.81 m/s2.
 
     Raises:
-        ValueError: for a text that is no number with a unit, or one of another dimension, with what is due.
+        UnitError: for a text that is no number with a unit, or one of another dimension, with what is due.
     """
     found = TEXT.fullmatch(text)
     due = unit_named(unit) or PLAIN
-    said = f"a number in {unit}" if unit else "a number"
+    kind = Message("a number in {unit}", unit=unit) if unit else Message("a number")
+    example = examples_of(unit) if unit else "0.5"
     if found is None:
-        raise ValueError(f"is not {said}, such as {examples_of(unit) if unit else '0.5'}")
+        raise UnitError(Message("is not {kind}, such as {example}", kind=kind, example=example))
     number = Fraction(found[1])
     if not found[2]:
-        raise ValueError(f"has no unit; write the number without quotes for {unit or 'a plain number'}")
+        plain = unit or Message("a plain number")
+        raise UnitError(Message("has no unit; write the number without quotes for {plain}", plain=plain))
     if COMMA.match(found[2]):
-        raise ValueError("has a comma; the decimal mark is a point, as in 0.5")
+        raise UnitError(Message("has a comma; the decimal mark is a point, as in 0.5"))
+    values = {"unit": found[2], "kind": kind, "example": example}
     given = unit_named(found[2])
     if given is None:
-        raise ValueError(f"has the unit {found[2]!r}, which is not known; {said} is due, such as {examples_of(unit)}")
+        unknown = "has the unit {unit!r}, which is not known; {kind} is due, such as {example}"
+        raise UnitError(Message(unknown, **values))
     scale = given.factor / due.factor
     if given.exponents == due.exponents:
         return float(number * scale) * (given.times / due.times)
     weight = (Unit(due.exponents) * Unit(PER_S2)).exponents
     if due.exponents[BASES.index("kg")] == 1 and unit in ("kg", "kg/m3") and given.exponents == weight:
         return float(number * scale) * given.times / GRAVITY
-    raise ValueError(f"has the unit {found[2]}, and {said} is due, such as {examples_of(unit)}")
+    raise UnitError(Message("has the unit {unit}, and {kind} is due, such as {example}", **values))

@@ -47,6 +47,33 @@ MOST_LISTED = 1_000_000
 """Most values of an argument that is a list of things."""
 
 
+class Message(str):
+    """A text for the user that carries the template and the values that it is made of, from which another language can
+    be written: `Message("{name} = {value:g} m is too long", name="length", value=3.0)`.
+
+    Args:
+        template: the English text, with the values in braces.
+        values: by their names. One may be a message too.
+    """
+
+    template: str
+    values: dict[str, object]
+
+    def __new__(cls, template: str, /, **values: object) -> Message:
+        """Write the template with the values."""
+        made = super().__new__(cls, template.format(**values))
+        made.template, made.values = template, values
+        return made
+
+    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, object]]:
+        return (self.template,), self.values
+
+
+def reason(error: BaseException) -> str:
+    """What an error or a warning says, as a `Message` where it was raised with one."""
+    return error.args[0] if error.args and isinstance(error.args[0], Message) else str(error)
+
+
 def keep(instance: object, **checked: object) -> None:
     """Set fields of a frozen dataclass to what their checks returned, while it is made.
 
@@ -70,7 +97,7 @@ def shown(value: object) -> str:
     """A value and its type on one line, short enough for a message; of None nothing but its name."""
     if value is None:
         return "None"
-    return f"{brief(value)} of type {type(value).__name__}"
+    return Message("{value} of type {kind}", value=brief(value), kind=type(value).__name__)
 
 
 def brief(value: object) -> str:
@@ -122,11 +149,12 @@ def require_real(name: str, value: object) -> float:
         ValueError: if it is too large for a float.
     """
     if isinstance(value, bool | np.bool_) or not isinstance(value, RealNumber):
-        raise TypeError(f"{name} = {shown(value)} is not a real number")
+        raise TypeError(Message("{name} = {value} is not a real number", name=name, value=shown(value)))
     try:
         return float(value)
     except OverflowError:
-        raise ValueError(f"{name} is a number too large for a float, beyond any valid range") from None
+        text = Message("{name} is a number too large for a float, beyond any valid range", name=name)
+        raise ValueError(text) from None
 
 
 def require_within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
@@ -138,8 +166,10 @@ def require_within(name: str, value: object, low: float, high: float, unit: str 
     """
     number = require_real(name, value)
     if not low <= number <= high:
-        unit = unit and f" {unit}"
-        raise ValueError(f"{name} = {number:g}{unit} is outside the valid range {low:g} to {high:g}{unit}")
+        values = {"name": name, "number": number, "low": low, "high": high, "unit": unit and f" {unit}"}
+        raise ValueError(
+            Message("{name} = {number:g}{unit} is outside the valid range {low:g} to {high:g}{unit}", **values)
+        )
     return number
 
 
@@ -170,7 +200,8 @@ class Within(NamedTuple):
         try:
             return require_within(name, value, self.low, self.high, self.unit)
         except ValueError as error:
-            raise ValueError(f"{error}, or inf" if self.infinite else str(error)) from None
+            cause = reason(error)
+            raise ValueError(Message("{cause}, or inf", cause=cause) if self.infinite else cause) from None
 
 
 class OneOf(NamedTuple):
@@ -297,7 +328,10 @@ def require_whole(name: str, value: object, low: int, high: int) -> int:
     """
     number = require_within(name, value, low, high)
     if number != int(number):
-        raise ValueError(f"{name} = {number:g} is not a whole number; the valid range is {low} to {high}")
+        values = {"name": name, "number": number, "low": low, "high": high}
+        raise ValueError(
+            Message("{name} = {number:g} is not a whole number; the valid range is {low} to {high}", **values)
+        )
     return int(number)
 
 
@@ -305,7 +339,7 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
     """Raise a TypeError that names the value and what is needed, unless it is of one of these types."""
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         needed = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
-        raise TypeError(f"{name} = {shown(value)} is not a {needed}")
+        raise TypeError(Message("{name} = {value} is not a {needed}", name=name, value=shown(value), needed=needed))
 
 
 def is_iterable(values: object) -> TypeGuard[Iterable[object]]:
@@ -344,7 +378,8 @@ def require_text(name: str, value: object, longest: int = 1000) -> str:
     require_kind(name, value, str)
     text = str(value)
     if len(text) > longest:
-        raise ValueError(f"{name} = {shown(text)} has {len(text)} characters; the valid range is 0 to {longest}")
+        values = {"name": name, "text": shown(text), "count": len(text), "longest": longest}
+        raise ValueError(Message("{name} = {text} has {count} characters; the valid range is 0 to {longest}", **values))
     if "\0" in text or text.encode("utf-8", "ignore").decode() != text:
         raise ValueError(f"{name} = {shown(text)} has a NUL or half of a surrogate pair, which no file can hold")
     return text

@@ -10,11 +10,14 @@ from collections.abc import Sequence
 from decimal import Decimal
 from functools import cache
 from pathlib import Path
+from typing import Any
 
-from ..quantities import NAMED, ratio_said, require_kind, require_one_of
+from ..quantities import NAMED, Message, ratio_said, require_kind, require_one_of
 
 FILE = Path(__file__).with_name("texts.toml")
 """The texts of all languages. A further language is a further line of each."""
+MESSAGES = FILE.with_name("messages.toml")
+"""What the program says of input in languages other than that of its messages, by their English templates."""
 SCALES: dict[str, tuple[tuple[float, float, str], ...]] = {
     "m": ((0.1, 1, "m"), (0, 1e-3, "mm")),
     "s": ((0.01, 1, "s"), (0, 1e-3, "ms")),
@@ -64,6 +67,13 @@ def drawn_patterns() -> list[tuple[re.Pattern[str], str]]:
     return found
 
 
+@cache
+def messages() -> dict[str, dict[str, str]]:
+    """The texts of messages by their language and their English template."""
+    found: dict[str, dict[str, str]] = tomllib.loads(MESSAGES.read_text(encoding="utf-8"))
+    return found
+
+
 def languages() -> list[str]:
     """The languages that every text has."""
     return sorted(set.intersection(*(set(text) for text in texts().values())))
@@ -108,6 +118,19 @@ class Words:
                 return self(key, **values)
         return line
 
+    def message(self, text: str) -> str:
+        """A message of the program in this language, as far as it has a text; else as it is, in English.
+
+        The cause of a refusal that has no text stays behind what is known of its place: the key, value and range.
+        """
+        template = messages().get(self.language, {}).get(text.template) if isinstance(text, Message) else None
+        if template is None or not isinstance(text, Message):
+            return text
+        cause = text.values.get("cause")
+        if "known" in text.values and isinstance(cause, str) and self.message(cause) is cause:
+            template = self.texts["cause_in_english"][self.language]
+        return Filling(self).vformat(template, (), text.values)
+
     def marked(self, text: str) -> str:
         """Numbers of a text with the decimal mark of the language."""
         return text.replace(".", self.mark)
@@ -144,6 +167,22 @@ class Words:
     def share(self, value: float) -> str:
         """A share in per cent."""
         return f"{self.number(100 * value, SHARED)}\u00a0%"
+
+
+class Filling(string.Formatter):
+    """Fills values into the text of a message: numbers with the decimal mark of a language, and messages in it.
+
+    Args:
+        words: of the language.
+    """
+
+    def __init__(self, words: Words) -> None:
+        self.words = words
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """A value as it stands in the text."""
+        text = self.words.message(value) if isinstance(value, str) else super().format_field(value, format_spec)
+        return self.words.marked(text) if isinstance(value, int | float) else str(text)
 
 
 def effect_name(name: str, words: Words) -> str:

@@ -137,7 +137,7 @@ def test_a_gable_with_a_tie_in_italian_ends_in_a_pdf(address, tmp_path):
         assert "VERIFICATO" in words
         assert "C8.7.1.2.1" in words
         assert page.run("document.getElementById('to-results').textContent") != before
-        assert page.wait("document.querySelector('#sketch img').naturalWidth") > 300
+        assert page.wait("document.querySelector('#sketches img').naturalWidth") > 300
         page.click("document.getElementById('report')")
         name, content = page.downloaded(120)
         assert (name, content[:5]) == ("mjrock.pdf", b"%PDF-")

@@ -79,7 +79,7 @@ def test_a_field_has_unit_range_default_and_help_of_the_declaration(plan):
 def test_the_root_is_one_of_the_mechanisms_and_takes_several_by_name(plan):
     assert {one.names["kind"] for one in plan.root.variants} >= MECHANISMS
     assert plan.variant(plan.root, {}).names == {"kind": "Case"}
-    assert plan.variant(plan.root, {"kind": "Corner"}).label == "cantonale che ribalta"
+    assert plan.variant(plan.root, {"kind": "Corner"}).label == "cantonata che ribalta"
     assert field_of(plan, "mechanisms").control == "named"
     assert field_of(plan, "language") is None  # the page has a list for it
 

@@ -115,21 +115,25 @@ function drawField(field, values, path) {
   return drawValue(field, values, own);
 }
 
-// A field of one value, with its label, unit, range and meaning. Where it may be a table too, `add` makes it one.
-function drawValue(field, values, path, add) {
+// A field of one value, with its label, unit, range and meaning. Where it may be a table too, `add` makes it one; `then`
+// is called after a change.
+function drawValue(field, values, path, add, then) {
   const id = place(path),
     notes = `${id}/help`;
   const common = {id, 'aria-describedby': notes, 'data-control': field.control};
   const change = event => {
     if (event.target.value === TABLE) return add();
     set(values, field.key, event.target.value);
+    then?.();
     changed();
   };
   const described = field.english ? {lang: 'en', title: field.english} : {};
   let control;
   if (field.control === 'choice' || field.control === 'truth') {
     control = element('select', {...common, onchange: change});
-    options(control, [['', field.default ?? '–'], ...(field.choices ?? [])], values[field.key] ?? '');
+    const choices = field.choices ?? [];
+    const usual = choices.find(([value]) => value === field.default); // where the key is left out
+    options(control, usual ? choices : [['', '–'], ...choices], values[field.key] ?? usual?.[0] ?? '');
   } else if (field.control === 'file' || field.control === 'folder') {
     const taken = event => upload(event.target, values, field);
     control = element('input', {...common, type: 'file', onchange: taken});
@@ -261,8 +265,21 @@ function drawNamed(field, values, path) {
   });
 }
 
-// Texts by name.
+// Texts by name: those that have a label, or any.
 function drawPairs(field, values, path) {
+  if (field.choices) {
+    const texts = values[field.key] ?? {};
+    const given = {...texts}; // kept in the input when there is any
+    const parts = Object.entries({...Object.fromEntries(field.choices), ...texts}).map(([name]) => {
+      const label = field.choices.find(([known]) => known === name)?.[1] ?? name;
+      const change = () => {
+        if (Object.keys(given).length) values[field.key] = given;
+        else delete values[field.key];
+      };
+      return drawValue({key: name, label, help: '', control: 'text'}, given, [...path, name], null, change);
+    });
+    return element('fieldset', {id: place(path), tabindex: '-1'}, element('legend', {}, field.label), ...parts);
+  }
   const text = name => ({key: name, label: name, help: '', control: 'text'});
   return drawByName(field, path, {
     entries: () => Object.entries(values[field.key] ?? {}),
@@ -380,7 +397,7 @@ function showFaults(faults) {
   });
   const count = `${plan.texts.to_mend}: ${faults.length}`;
   byId('verdict').replaceChildren(element('p', {class: 'part'}, count), element('ul', {}, ...list));
-  byId('sketch').classList.add('busy');
+  byId('sketches').classList.add('busy');
   show({ratio: count, steps: ''});
 }
 
@@ -403,7 +420,7 @@ async function check() {
 }
 
 // Show a part of an answer. Tables come as markup from the parts of the report, which escape every text.
-function show({verdict, ratio, steps, sketch, alt}) {
+function show({verdict, ratio, steps, sketch, ...drawn}) {
   if (verdict !== undefined) {
     clearFaults();
     byId('verdict').innerHTML = verdict;
@@ -413,11 +430,18 @@ function show({verdict, ratio, steps, sketch, alt}) {
     byId('to-results').hidden = !ratio;
   }
   if (steps !== undefined) byId('steps').innerHTML = steps;
-  if (sketch !== undefined) {
-    byId('sketch').hidden = !sketch;
-    byId('sketch').classList.remove('busy');
-    if (sketch) Object.assign(byId('sketch').firstElementChild, {src: sketch, alt});
-  }
+  if (sketch !== undefined) showSketch(sketch, drawn);
+}
+
+// Show the drawing of a mechanism in its place among all of them.
+function showSketch(src, {alt, name, number, count}) {
+  const box = byId('sketches');
+  box.classList.remove('busy');
+  while (box.children.length > count) box.lastChild.remove();
+  while (box.children.length < count) box.append(element('figure', {}, element('img'), element('figcaption')));
+  const [image, caption] = box.children[number].children;
+  Object.assign(image, {src, alt});
+  caption.textContent = name;
 }
 
 // ------------------------------------------------------------------------------------------------- runs and reports

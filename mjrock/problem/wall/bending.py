@@ -20,6 +20,7 @@ from ...quantities import (
     Array,
     Density,
     Implausible,
+    Message,
     Within,
     keep,
     keep_declared,
@@ -91,8 +92,9 @@ def require_strip(wall: Block, *, stepped: bool) -> None:
     """Raise a TypeError or a ValueError unless a wall is a plain rectangle, or has a profile alone where it may."""
     require_kind("wall", wall, Block)
     if wall.openings or wall.gable or wall.masses or wall.inset or (wall.profile and not stepped):
-        valid = "rectangle, with a profile or without" if stepped else "plain rectangle"
-        raise ValueError(f"wall = {wall!r} is not a {valid}; cut it to the strip between its openings")
+        valid = Message("rectangle, with a profile or without") if stepped else Message("plain rectangle")
+        cut = "wall = {wall!r} is not a {valid}; cut it to the strip between its openings"
+        raise ValueError(Message(cut, wall=wall, valid=valid))
 
 
 @dataclass(frozen=True)
@@ -357,8 +359,12 @@ class HorizontalBending:
             keep(self, crack=require_within("crack", self.crack, 0.01 * length, 0.99 * length, "m"))
         if self.friction > TYPICAL_FRICTION:
             warn_of(
-                f"the strip slides before it bends unless friction at its ends and crack is {self.friction:.2g}; "
-                f"{TYPICAL_FRICTION:g} is usual",
+                Message(
+                    "the strip slides before it bends unless friction at its ends and crack is {friction:.2g}; "
+                    "{usual:g} is usual",
+                    friction=self.friction,
+                    usual=TYPICAL_FRICTION,
+                ),
                 Implausible,
             )
 

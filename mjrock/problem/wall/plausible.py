@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...quantities import GRAVITY, Implausible, percent_said, warn_of
+from ...quantities import GRAVITY, Implausible, Message, percent_said, warn_of
 from ..ground.motion import GroundMotion
 from .effect import Anchored, Effect, resistance
 from .effects import AddedMass, Load, Thrust
@@ -59,9 +59,13 @@ def warn_of_low_stop(case: Any) -> None:
     top = case.stop_top
     if top is not None and top < LOW_STOP * (height := rebound_height(case)):
         warn_of(
-            f"the side stop reaches {top:.4g} m, and one below {LOW_STOP * height:.4g} m pushes the base outwards; "
-            "here the base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against still lower "
-            "stops rebounds too: give the contacts the friction that the base has",
+            Message(
+                "the side stop reaches {top:.4g} m, and one below {low:.4g} m pushes the base outwards; "
+                "here the base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against "
+                "still lower stops rebounds too: give the contacts the friction that the base has",
+                top=top,
+                low=LOW_STOP * height,
+            ),
             Implausible,
         )
 
@@ -70,8 +74,10 @@ def warn_if_still(case: Any, *, forces: bool = False) -> None:
     """Warn of a run of a wall that nothing moves, unless it is asked for the forces at rest."""
     if case.is_still and not forces:
         warn_of(
-            "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run is one of "
-            "rest; give the case a release or a motion",
+            Message(
+                "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run "
+                "is one of rest; give the case a release or a motion"
+            ),
             Implausible,
         )
 

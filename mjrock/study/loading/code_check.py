@@ -36,6 +36,7 @@ from ...quantities import (
     GRAVITY,
     Array,
     Implausible,
+    Message,
     OneOf,
     Within,
     is_iterable,
@@ -589,16 +590,26 @@ def _of_blocks(curve: LimitCurve, code: Code) -> _Mechanism:
 def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: float) -> None:
     """Warn of a curve that ends at d [m] while something is borne; a ValueError says if that is where it begins."""
     if curve.ended.startswith(MOVED):
-        raise ValueError(f"case = {curve!r} was ended where something is borne; leave out to")
+        raise ValueError(Message("case = {curve!r} was ended where something is borne; leave out to", curve=curve))
     if d <= 0:
         raise ValueError(
-            f"case = {curve!r} ends as it begins. Of it the linear check alone can be made, with alpha_0 = "
-            f"{alpha_0:.4g} and e* = {participation:.4g}; check the limit states by runs, dynamic_check(runs, "
-            "curve=push(masonry, direction, to))"
+            Message(
+                "case = {curve!r} ends as it begins. Of it the linear check alone can be made, with alpha_0 = "
+                "{alpha_0:.4g} and e* = {participation:.4g}; check the limit states by runs, "
+                "dynamic_check(runs, curve=push(masonry, direction, to))",
+                curve=curve,
+                alpha_0=alpha_0,
+                participation=participation,
+            )
         )
     warn_of(
-        f"case ends at d = {d:.4g} m, where {curve.multiplier[-1]:.4g} of the weight is borne: {curve.ended}; the "
-        "check takes that for d_0, and counts nothing beyond",
+        Message(
+            "case ends at d = {d:.4g} m, where {multiplier:.4g} of the weight is borne: {ended}; the check "
+            "takes that for d_0, and counts nothing beyond",
+            d=d,
+            multiplier=curve.multiplier[-1],
+            ended=curve.ended,
+        ),
         Implausible,
     )
 
@@ -608,7 +619,9 @@ def _of_wall(case: Case, code: Code) -> _Mechanism:
     require_wall("case", case, "mr.limit_curve(masonry, direction)")
     curve = pushover(case)
     if not math.isfinite(curve.end):
-        raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
+        raise ValueError(
+            Message("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
+        )
     warn_of_inner_edge(case, float(curve.multiplier[0]))
     wall = case.wall
     weights, heights = _masses(case)
@@ -630,9 +643,13 @@ def warn_of_inner_edge(case: Case, outwards: float) -> None:
     inner = case.restoring.inner.P / (case.wall.weight * case.wall.centroid_height)
     if case.lopsided and inner < (1 - WEAKER) * outwards:
         warn_of(
-            f"case has side_stop=False, and the check is of the way outwards, with {outwards:.4g} g; "
-            f"inwards the wall starts at {inner:.4g} g: check that way too, with the mirrored wall: the other plumb, "
-            "offsets and forces with the other sign",
+            Message(
+                "case has side_stop=False, and the check is of the way outwards, with {outwards:.4g} g; inwards "
+                "the wall starts at {inner:.4g} g: check that way too, with the mirrored wall: the other plumb, "
+                "offsets and forces with the other sign",
+                outwards=outwards,
+                inner=inner,
+            ),
             Implausible,
         )
 
@@ -649,12 +666,11 @@ def _warn_of_ties(
         if breaking.get(name, math.inf) > capacity
     ]
     if holding and (alone is None or capacity > alone):
-        beyond = "lies where" if alone is None else f"is more than {alone:.3g} m, at which"
-        warn_of(
-            f"{name} = {capacity:.3g} m {beyond} the curve without ties {'has ended' if alone is None else 'ends'}: "
-            f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
-            Implausible,
-        )
+        still = "{holding} would still hold there; say by `ultimate` how far a tie can be drawn out [m]"
+        beyond = "{name} = {capacity:.3g} m is more than {alone:.3g} m, at which the curve without ties ends: {still}"
+        ended = "{name} = {capacity:.3g} m lies where the curve without ties has ended: {still}"
+        values = {"name": name, "capacity": capacity, "still": Message(still, holding=", ".join(holding))}
+        warn_of(Message(ended, **values) if alone is None else Message(beyond, alone=alone, **values), Implausible)
 
 
 def _stands_by_ties(curve: LimitCurve, masonry: Masonry, at: int) -> bool:
@@ -950,7 +966,12 @@ def dynamic_check(
     moved = {} if curve is None else {"moving": judged.blocks, "way": tuple(judged.way.tolist())}
     check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], **moved)
     if check.lacking:
-        warn_of(f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}", Implausible)
+        warn_of(
+            Message(
+                "{clause} asks for more: {lacking}", clause=rule.clause or code.name, lacking="; ".join(check.lacking)
+            ),
+            Implausible,
+        )
     return check
 
 
