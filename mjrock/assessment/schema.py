@@ -225,7 +225,7 @@ class SchemaWriter:
 
 def _or_taken_away(one: Schema) -> Schema:
     """The schema of what may be shared: false takes it away."""
-    return {"anyOf": [one, {"const": False}]}
+    return {"anyOf": [one, {"const": False}], "description": "false: without the shared one"}
 
 
 def _or_several(one: Schema) -> Schema:
