@@ -57,6 +57,7 @@ class Assessment:
         folder: what paths in the tables are relative to; None reads none.
         texts: further arguments of `report`.
         trials: of `[design]`, the key, its values and the method that counts; empty where the file has none.
+        confined: whether a path that leads out of that folder is refused.
     """
 
     mechanisms: Mapping[str, Mechanism]
@@ -68,6 +69,7 @@ class Assessment:
     folder: Path | None = None
     texts: Mapping[str, Any] = field(default_factory=dict)
     trials: Mapping[str, Any] = field(default_factory=dict)
+    confined: bool = False
 
     def __repr__(self) -> str:
         parts = [f"{name or 'mechanism'}: {one.problem!r}" for name, one in self.mechanisms.items()]
@@ -118,7 +120,8 @@ class Assessment:
         place, values = place_of(self.trials["key"]), self.trials["values"]
 
         def build(value: Any) -> dict[str, MechanismCheck]:
-            whole = assessment_of(replaced(self.document, place, value), folder=self.folder)
+            document = replaced(self.document, place, value)
+            whole = assessment_of(document, folder=self.folder, confined=self.confined)
             changed = [str(place[1])] if place[0] == "mechanisms" else list(whole.mechanisms)
             return {name: whole.mechanisms[name].check() for name in changed}
 
@@ -130,7 +133,7 @@ class Assessment:
     def report(
         self, path: str | Path, runs: Mapping[str, Sequence[Response]] | None = None, *, language: str | None = None
     ) -> Path:
-        """Write the report of all checks, and of runs where they are given, see `mjrock.report`.
+        """Write the report of all checks, of the design, and of runs where they are given, see `mjrock.report`.
 
         Args:
             path: where to, an .html or a .pdf.
@@ -138,6 +141,7 @@ class Assessment:
             language: "en" or "it"; None is that of the file.
         """
         from ..reporting.page import report
+        from ..reporting.texts import Words
 
         first: Any = next(iter(self.mechanisms.values())).problem
         checks: dict[str, Any] = {name: [one] for name, one in self.check().items()} if self.has_site else {}
@@ -152,6 +156,10 @@ class Assessment:
             "e": {name: one.e for name, one in impacts.items() if one.e is not None} or None,
             "contacts": {name: one.contacts for name, one in impacts.items() if one.contacts is not None} or None,
         }
+        if self.trials:
+            words = Words(given["language"])
+            key = words("design_of", key=self.trials["key"])
+            given["sections"] = {words("design"): [key, self.design()]}
         if list(self.mechanisms) == [""]:
             given |= {name: value[""] for name, value in given.items() if name in OF_EACH and value}
         responses: Any = shown.get("", ()) if "" in self.mechanisms else shown or ()
@@ -290,6 +298,7 @@ def assessment_of(
         reader.refusal((), "{place} has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
     reader.require_sound()
     rest: dict[str, Any] = {"lines": lines or {}, "folder": folder, "texts": texts, "trials": trials or {}}
+    rest["confined"] = confined
     return Assessment(mechanisms, name=name, document=document, **rest, **whole)
 
 

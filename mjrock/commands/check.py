@@ -11,7 +11,7 @@ from ..assessment.assessment import Assessment
 from ..command_line import Answer, Status, complain, parser, ruled
 from ..contacts.files import aligned
 from ..reporting.texts import FOUND, Words, languages
-from ..reporting.verdicts import Mechanism, conditions, ranked, required_checks, sentence_of
+from ..reporting.verdicts import Mechanism, conditions, counted, ranked, required_checks, sentence_of
 from ..study.loading.code_check import MechanismCheck
 from .opened import FILE_HELP, MENDABLE, named_checks, opened
 
@@ -27,7 +27,7 @@ def table_of(mechanisms: Sequence[Mechanism], words: Words) -> str:
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([mechanism.name * (i == 0), *conditions(verdict, words)])
     said = sentence_of(order[0], "lead_governs" if order[1:] else "lead_alone", words)
-    return "\n".join([*ruled(rows, "<<<>>><<"), "", f"{said.start} {said.end}"])
+    return "\n".join([*ruled(rows, "<<<>>><<"), "", " ".join([said.start, said.end, *counted(order, words)])])
 
 
 def steps_of(check: MechanismCheck, words: Words) -> list[str]:

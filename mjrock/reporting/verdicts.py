@@ -14,7 +14,7 @@ from ..problem.wall.effects import link_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import require_kind, require_text, shown
 from ..study.loading.code import OF_MECHANISM, Code
-from ..study.loading.code_check import DynamicCheck, MechanismCheck, Step, Verdict
+from ..study.loading.code_check import METHODS, DynamicCheck, MechanismCheck, Step, Verdict
 from ..study.loading.design import Condition, Design
 from ..study.loading.load_check import Borne, LoadCheck, load_check
 from .markup import Markup, element, formula, table
@@ -142,6 +142,30 @@ def answers(mechanisms: Sequence[Mechanism], others: Sequence[object], words: Wo
     said = [(present[0], "governs" if present[1:] else "alone", bool(proposals))] if present else []
     lines = [_sentence(one, f"lead_{kind}", words, now) for one, kind, now in said]
     lines += [_sentence(one, "lead_proposed", words, False) for one in proposals]
+    lines += [element("p", one) for one in counted(order, words)]
+    return [*lines, verdict_table(order, words)]
+
+
+def counted(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
+    """Which method alone counts in kinematic checks, with the names of the mechanisms where it is not so in all; or of
+    one that holds by some of its methods, that these are alternatives."""
+    found = []
+    for method in METHODS:
+        some = [one for one in mechanisms if one.kinematic and one.kinematic.method == method]
+        names = "; ".join(one.name for one in some) + ": " if len(some) < len(mechanisms) else ""
+        found += [names + words("method_counts", method=words(f"method_{method}"))] * bool(some)
+    return found or [words("methods_alternative")] * any(_holds_by_one(one) for one in mechanisms)
+
+
+def _holds_by_one(mechanism: Mechanism) -> bool:
+    """Whether a limit state holds by one method, and not by another one."""
+    given = [(one.limit_state, one.what.partition(",")[0], one.holds) for one in mechanism.verdicts if one.limit_state]
+    met, refused = ({(state, how) for state, how, holds in given if holds == wanted} for wanted in (True, False))
+    return any(state == other for state, _ in met - refused for other, _ in refused)
+
+
+def verdict_table(order: Sequence[Mechanism], words: Words) -> Markup:
+    """All conditions of mechanisms."""
     columns = ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
     rows = []
     for mechanism in order:
@@ -150,7 +174,7 @@ def answers(mechanisms: Sequence[Mechanism], others: Sequence[object], words: Wo
         name = element("td", element("b", mechanism.name), Markup("<br>"), said_of, rowspan=str(count))
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
-    return [*lines, table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))]
+    return table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))
 
 
 def ranked(mechanisms: Sequence[Mechanism]) -> list[Mechanism]:
@@ -248,8 +272,20 @@ def designed(found: Design, words: Words) -> list[Markup]:
     rows: list[list[Any]] = []
     for trial, (label, ratio, held, *rest) in zip(found.trials, cells, strict=True):
         kind = "holds" if trial.holds else "fails"
-        rows.append([label, ratio, held if trial.governs is None else element("td", held, kind=kind), *rest])
-    return [table(heads, rows, right=(1,)), element("p", design_sentence(found, words))]
+        rows.append(
+            [
+                element("td", label, kind="short"),
+                ratio,
+                held if trial.governs is None else element("td", held, kind=kind),
+                *rest,
+            ]
+        )
+    made = [table(heads, rows, right=(1,)), element("p", design_sentence(found, words))]
+    if found.chosen is None:
+        return made
+    named = {name or words.marked(found.chosen.label): one for name, one in found.chosen.checks.items()}
+    proposed = element("p", words("proposed", name=words.marked(found.chosen.label)), kind="head")
+    return [*made, proposed, verdict_table(required_checks(named, ""), words)]
 
 
 def condition(one: Condition, words: Words) -> str:
@@ -351,7 +387,9 @@ def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
     """The cell of a value; the colour of a ratio shows whether it holds, if none below takes its place."""
     if not step.key.endswith("ratio"):
         return element("td", words.quantity(step.value, step.unit, FOUND), kind="right")
-    counts = step.key != "ratio" or not check.is_of_start(step.of)
+    method = "linear" if step.key.endswith("linear_ratio") else "nonlinear"
+    counts = step.key == "damage_ratio" or check.counts(method)
+    counts &= step.key != "ratio" or not check.is_of_start(step.of)
     kind = f"right {'holds' if step.value >= 1 else 'fails'}" if counts else "right"
     return element("td", words.ratio(step.value), kind=kind)
 

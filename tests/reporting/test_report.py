@@ -117,7 +117,12 @@ def test_every_text_has_all_languages_and_the_same_places_for_values():
 
 def test_every_text_is_used():
     package = Path(mr.__file__).parent
-    code = "".join(path.read_text() for path in (*package.glob("reporting/*.py"), *package.glob("study/loading/*.py")))
+    code = "".join(
+        path.read_text()
+        for path in (
+            one for of in ("reporting", "study/loading", "assessment", "commands") for one in package.glob(f"{of}/*.py")
+        )
+    )
     built = re.findall(r'f"([a-z0-9]+_)\{', code)
     assert {"in_", "run_", "field_"} <= set(built)
     built.append("drawn_")  # what plot functions print, see test_texts_of_pictures.py

@@ -1,10 +1,13 @@
 """A report of several mechanisms: each has its drawing, its curve and its clauses in one place, and its own runs."""
 
 import re
+import tomllib
 
 import pytest
 
 import mjrock as mr
+from mjrock.assessment.assessment import assessment_of
+from mjrock.commands import check
 from mjrock.reporting.texts import Words
 
 FILE = """
@@ -150,3 +153,82 @@ def test_responses_of_no_mechanism_are_refused(tmp_path):
     runs = {"low": mr.solve_analytical(other, mr.Restitution.from_geometry(other.wall))}
     with pytest.raises(ValueError, match=r"responses\['low'\]\[0\] is of .* and the case of"):
         mr.report(low, runs, tmp_path / "a.html", checks={"low": mr.mechanism_check(low, site)})
+
+
+TIED = """
+language = "{language}"
+[site]
+code = "NTC 2018"
+soil = "B"
+ag = "0.25 g"
+F0 = 2.5
+Tc = 0.33
+[wall]
+thickness = "50 cm"
+height = "7.5 m"
+length = "8 m"
+[[effects]]
+kind = "Tie"
+height = "6.8 m"
+stiffness = 7e6
+strength = "60 kN"
+ultimate = "10 cm"
+[design]
+key = "effects[0].strength"
+values = ["-1 kN", "40 kN", "200 kN"]
+method = "linear"
+"""
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_a_report_has_the_design_of_its_file(language, tmp_path):
+    """Every value with its ratio, the sentence, and all conditions of the value that is chosen."""
+    assessment, words = mr.from_toml(text=TIED.format(language=language)), Words(language)
+    found = assessment.design()
+    text = assessment.report(tmp_path / "a.html").read_text(encoding="utf-8")
+    part = text[text.index(f"<h2>{words('design')}</h2>") :].partition("<h2>")[2].partition("<h2>")[0]
+    assert words("design_of", key="effects[0].strength") in part
+    values, proposed = re.findall(r"<table.*?</table>", part)
+    assert [f"{value}</td>" in values for value in ("-1 kN", "40 kN", "200 kN")] == [True] * 3
+    assert found.value == "200 kN"
+    verdicts = found.chosen.checks[""].verdicts
+    assert [words.ratio(one.ratio) for one in verdicts] == re.findall(
+        r'right">(\d+[.,]\d\d)</td><td class="(?:holds|fails)', proposed
+    )
+    assert {words("holds"), words("fails")} == set(re.findall(r"[✓✗][^<]*", proposed))
+
+
+def test_what_a_design_tries_names_no_file_beyond_the_folder(tmp_path):
+    """A key of a path is held to the folder, as that of the file is."""
+    (tmp_path / "inner").mkdir()
+    rows = "\n".join(f"{0.01 * i:.2f},{(-1) ** i}" for i in range(50))
+    for file in ("outer.csv", "inner/a.csv"):
+        (tmp_path / file).write_text(f"t,a\n{rows}\n", encoding="utf-8")
+    records = '[records]\nkind = "GroundMotion"\nmake = "from_csv"\nunit = "m/s2"\npath = "a.csv"\n'
+    text = TIED.format(language="en").partition("[design]")[0] + records
+    document = tomllib.loads(text + '[design]\nkey = "records.path"\nvalues = ["a.csv", "../outer.csv"]\n')
+    for confined, refused in ((False, False), (True, True)):
+        assessment = assessment_of(document, folder=tmp_path / "inner", confined=confined)
+        assert bool(assessment.design().trials[1].refused) == refused
+
+
+@pytest.mark.parametrize("method", ["linear", "nonlinear"])
+def test_the_method_that_counts_is_one_in_check_command_and_report(method, tmp_path, capsys):
+    """By itself the linear check of this wall holds, and the nonlinear one does not."""
+    text = TIED.format(language="en").replace('"60 kN"', '"200 kN"').partition("[design]")[0]
+    file = tmp_path / "wall.toml"
+    file.write_text(f'{text}[check]\nmethod = "{method}"\n', encoding="utf-8")
+    assert check.answer([str(file)]).status == (0 if method == "linear" else 1)
+    assessment = mr.from_toml(file)
+    (found,) = assessment.check().values()
+    assert {one.what for one in found.verdicts} == {f"{method} kinematic"}
+    page = assessment.report(tmp_path / "a.html").read_text(encoding="utf-8")
+    assert f"The {method} check alone counts" in page
+    counted = 1 if method == "linear" else 2  # on page 1 and in the steps
+    assert len(re.findall(r'class="(?:holds|fails)">[✓✗]', page)) == 1 + counted  # the sentence, and each condition
+    assert len(re.findall(r'class="right (?:holds|fails)"', page)) == counted
+    assert found.table().count("does not count") == 3 - counted
+    file.write_text(text, encoding="utf-8")
+    answer = check.answer([str(file)])
+    assert answer.status == 1
+    assert "Methods are alternatives" in answer.text

@@ -69,6 +69,10 @@ PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 SHORT = 0.05
 """Period from which on the spectrum of a record is looked at where T_0 is not known [s]."""
+METHODS = "linear", "nonlinear"
+"""Methods of the kinematic check whose conditions may count alone."""
+NOT_COUNTED = "does not count"
+"""What stands beside a ratio of another method than that which counts."""
 Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
 
@@ -207,6 +211,7 @@ class MechanismCheck:
         moving: names of the blocks that move, whose common centroid d is of; none of a wall.
         damage: acceleration that the limit state of the start of the mechanism demands [m/s2], where it has a demand.
         ended: why the curve ends where something is borne, so that its end is taken for d_0; empty where nothing is.
+        method: "linear" or "nonlinear" where the conditions of this method alone count; None counts all.
     """
 
     alpha_0: float
@@ -227,6 +232,7 @@ class MechanismCheck:
     moving: tuple[str, ...] = ()
     damage: float | None = None
     ended: str = ""
+    method: str | None = None
 
     @property
     def floor_peak(self) -> float | None:
@@ -283,7 +289,7 @@ class MechanismCheck:
     def linear_ratio(self) -> float | None:
         """Capacity over demand of the linear check [-], with the ties at their strength; None of a code without one,
         and where the peak acceleration of the demand is not known."""
-        return None if self.peak is None or self.code.linear is None else self.verdicts[0].ratio
+        return None if self._linear is None else self._linear.ratio
 
     @property
     def floor_linear_ratio(self) -> float | None:
@@ -303,17 +309,26 @@ class MechanismCheck:
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """The linear check, where the code has one and the peak of the demand is known, the non-linear ones, and that
-        of the start of the mechanism, where it has a demand.
+        """What counts: the linear check, where the code has one and the peak of the demand is known, the non-linear
+        ones, and that of the start of the mechanism, where it has a demand.
 
         That of the SLV is the one of displacements, or where a_g,SLD is more than these allow, that of accelerations.
         """
-        rule, found = self.code.linear, list[Verdict]()
-        capacity = self.linear if self.linear_tied is None else self.linear_tied
-        if self.peak is not None and rule is not None and capacity is not None:
-            found.append(Verdict("linear kinematic", rule.state, self.peak, capacity, "m/s2", rule.clause))
-        damaged = [] if self.damage is None else [self._damaged(self.damage)]
-        return *found, *map(self._nonlinear, self.states), *damaged
+        found = [] if self._linear is None or not self.counts("linear") else [self._linear]
+        found += map(self._nonlinear, self.states if self.counts("nonlinear") else ())
+        return *found, *([] if self.damage is None else [self._damaged(self.damage)])
+
+    def counts(self, method: str) -> bool:
+        """Whether the conditions of a method count."""
+        return self.method in (None, method)
+
+    @property
+    def _linear(self) -> Verdict | None:
+        """The condition of the linear check; None without one."""
+        rule, capacity = self.code.linear, self.linear if self.linear_tied is None else self.linear_tied
+        if self.peak is None or rule is None or capacity is None:
+            return None
+        return Verdict("linear kinematic", rule.state, self.peak, capacity, "m/s2", rule.clause)
 
     def _nonlinear(self, name: str) -> Verdict:
         """The non-linear condition of a limit state."""
@@ -367,15 +382,17 @@ class MechanismCheck:
         rows += [("end of the curve, taken for d_0", "", self.ended)] if self.ended else []
         for step in self.steps:
             what, note = self.code.step(step.key, step.of).plain, step.clause
-            if step.key.endswith("linear_ratio"):
-                note = self.verdicts[0].said
+            if step.key.endswith("linear_ratio") and self._linear is not None:
+                note = self._linear.said if self.counts("linear") else NOT_COUNTED
             elif step.key == "damage_ratio":
                 note = self.verdicts[-1].said
+            elif step.key == "ratio" and not self.counts("nonlinear"):
+                note = NOT_COUNTED
             elif step.key == "ratio":
                 note = "see below" if self.is_of_start(step.of) else self._nonlinear(step.of).said
                 if gone := self.broken_before(step.of):
                     note += f", without {', '.join(gone)}, broken"
-            elif step.key == "ground_ratio":
+            elif step.key == "ground_ratio" and self.counts("nonlinear"):
                 note = f"{self._nonlinear(step.of).said}, {note}"
             value = (
                 ratio_said(step.value)
@@ -400,6 +417,7 @@ def mechanism_check(
     *,
     confidence_factor: Annotated[float | None, Within(1, 3)] = None,
     elastic_period: Annotated[float | None, Within(1e-3, 5, "s")] = None,
+    method: Annotated[str | None, OneOf(METHODS)] = None,
     code: Annotated[Code | str, OneOf(codes)] = USUAL_CODE,
 ) -> MechanismCheck:
     """The kinematic check of a wall as a local mechanism, linear and non-linear, by a code. Clauses that stand here are
@@ -434,6 +452,8 @@ def mechanism_check(
             of the masonry does not enter the curve. Another code has its own range, or none.
         elastic_period: T_0 of an element that vibrates freely before it opens, such as a parapet [s], 0.001 to 5; its
             curve begins with an elastic branch, a = (2 pi / T_0)^2 d, C8.7.1.6. None is a rigid start.
+        method: "linear" or "nonlinear" where the conditions of this method alone count in the verdict. The clauses have
+            both for the SLV, of which the designer takes one; the linear one has no SLC. None counts all.
         code: the name of a code that comes with the package, "NTC 2018", or a `Code`, such as one of your own file.
 
     Returns:
@@ -474,7 +494,10 @@ def mechanism_check(
     alpha_0 = float(found.multiplier[0]) if found.slack is None else found.slack
     ties = found.yielding, found.breaking
     curve = alpha_0, found.tied, found.participation, factor, d, a, d_0, states
-    return MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving, damage, found.ended)
+    check = MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving, damage, found.ended, method)
+    if method == "linear" and check.linear_ratio is None:
+        raise ValueError(f"method = 'linear' needs a linear check in {code.name} and a demand whose peak is known")
+    return check
 
 
 class _Mechanism(NamedTuple):

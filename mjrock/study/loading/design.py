@@ -11,10 +11,11 @@ import numpy as np
 from ...contacts.files import aligned
 from ...notebook import Drawn
 from ...quantities import OneOf, is_iterable, listed, ratio_said, require_one_of, shown
+from .code_check import METHODS as KINEMATIC
 from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands
 from .load_check import Borne, LoadCheck, load_check
 
-METHODS = "linear", "nonlinear", "dynamic"
+METHODS = *KINEMATIC, "dynamic"
 """The methods of a code whose conditions may count alone."""
 ROUNDED = 1e-9
 """Ratios that are alike, over their size [-]."""
