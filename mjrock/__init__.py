@@ -100,6 +100,7 @@ if TYPE_CHECKING:
     from .study.campaign.task import Grid
     from .study.intensity.fragility import Fragility, PairedRatio, fit_capacities, fit_fragility, lost, paired_ratio
     from .study.intensity.ida import Capacity, ida, overturning_intensity
+    from .study.intensity.overturning_map import OverturningMap, overturning_map
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
     from .study.intensity.thresholds import Island, Thresholds, thresholds
     from .study.loading.code import Code
@@ -119,25 +120,25 @@ __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
     "Analysis", "Assessment", "AssessmentError", "Block", "Bond", "Capacity", "Case", "Code", "CodeSpectrum",
     "Collapse", "Comparison", "Compound", "ContactParameters", "ContactWarning", "Contacts", "Corner",
-    "CoulombFriction", "Damper", "DampingLaw", "Design", "Dry", "DynamicCheck", "EarthPressure", "Fill",
-    "FlexContact", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion",
-    "HorizontalBending", "Impact", "Implausible", "InspectedContact", "Interface", "Island", "Joint", "Ledger",
-    "LimitCurve", "Load", "LoadCheck", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
-    "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome",
-    "PairContact", "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw",
-    "Push", "RecordSet", "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum",
-    "ScatteredRestitution", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange",
-    "Store", "Thresholds", "Thrust", "Tie", "VerticalBending", "Wedge", "__version__", "as_theory",
-    "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "components_in",
-    "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "design",
-    "dynamic_check", "fit_capacities", "fit_fragility", "from_toml", "hertz_stiffness", "ida", "inspect_contacts",
-    "inspect_flexes", "joint_law", "joint_stiffness", "layered_stiffness", "limit_curve", "load", "load_check", "lost",
-    "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
-    "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
-    "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
-    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
-    "solve_analytical", "solve_compliant", "solve_explicit", "stiffest_contacts", "stiffness_range",
-    "strengths_of_anchor", "strengths_of_bar", "thresholds", "toml_schema", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "CoulombFriction", "Damper", "DampingLaw", "Design", "Dry", "DynamicCheck", "EarthPressure", "Fill", "FlexContact",
+    "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion", "HorizontalBending", "Impact",
+    "Implausible", "InspectedContact", "Interface", "Island", "Joint", "Ledger", "LimitCurve", "Load", "LoadCheck",
+    "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType",
+    "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome", "OverturningMap", "PairContact",
+    "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet",
+    "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum", "ScatteredRestitution", "Scene",
+    "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thresholds", "Thrust",
+    "Tie", "VerticalBending", "Wedge", "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign",
+    "code_spectrum", "collapse_multiplier", "compare", "components_in", "contact_for", "contact_parameters",
+    "contact_stiffness", "contacts_for", "crushed_inset", "design", "dynamic_check", "fit_capacities", "fit_fragility",
+    "from_toml", "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes", "joint_law", "joint_stiffness",
+    "layered_stiffness", "limit_curve", "load", "load_check", "lost", "masonry_mjcf", "masonry_scene",
+    "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of",
+    "overturning_intensity", "overturning_map", "paired_ratio", "push", "pushover", "records_in", "reference_frequency",
+    "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum",
+    "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical", "solve_compliant", "solve_explicit",
+    "stiffest_contacts", "stiffness_range", "strengths_of_anchor", "strengths_of_bar", "thresholds", "toml_schema",
+    "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 HOME = homes(__file__)

@@ -14,6 +14,7 @@ from .studies import (
     fragility,
     incremental,
     moment_rotation,
+    overturning_map,
     push,
     pushover,
     record,
@@ -26,7 +27,7 @@ from .wall import sketch
 
 __all__ = [
     "PALETTE", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "design",
-    "displacement", "energy", "fragility", "grid", "history", "incremental", "mechanism", "moment_rotation", "panels",
-    "push", "pushover", "record", "rotation", "save", "single", "sketch", "spectra", "thresholds", "thrust", "ties",
-    "tornado", "view",
+    "displacement", "energy", "fragility", "grid", "history", "incremental", "mechanism", "moment_rotation",
+    "overturning_map", "panels", "push", "pushover", "record", "rotation", "save", "single", "sketch", "spectra",
+    "thresholds", "thrust", "ties", "tornado", "view",
 ]  # fmt: skip

@@ -14,6 +14,7 @@ from ..problem.wall.case import Case
 from ..result.compare import Comparison
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
+from ..study.intensity.overturning_map import OverturningMap
 from ..study.intensity.thresholds import Thresholds
 from ..study.loading.design import Design
 from ..study.loading.push import Push
@@ -21,7 +22,7 @@ from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity
 from .histories import history
 from .masonry import blocks, mechanism
-from .studies import design, fragility, push, pushover, thresholds, tornado
+from .studies import design, fragility, overturning_map, push, pushover, thresholds, tornado
 from .style import figure_of, png, wrapped
 from .wall import sketch
 
@@ -40,6 +41,7 @@ PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Design: lambda found, said: design(found),
     Sensitivity: lambda found, said: tornado(found),
     Thresholds: lambda found, said: thresholds(found),
+    OverturningMap: lambda found, said: overturning_map(found),
 }
 """The function that draws each type, from it and the text that it prints as. It returns None for no picture."""
 

@@ -9,14 +9,18 @@ from typing import get_args
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import SpectrumOfCode, response_spectrum
-from ..quantities import GRAVITY, named, require_kind, require_row, require_text
+from ..problem.wall.block import Block
+from ..quantities import GRAVITY, Array, named, require_kind, require_row, require_text
 from ..study.intensity.fragility import Fragility
+from ..study.intensity.overturning_map import ENDINGS, OverturningMap
 from ..study.intensity.thresholds import Thresholds
 from ..study.loading.design import Design
 from ..study.loading.push import Push
@@ -44,6 +48,8 @@ MOST_LABELS = 9
 """Most labels of values in a row on an axis; of more every second, third and so on has one."""
 NEAREST = 0.12
 """Least distance of two values on an axis, over their range, that leaves room for their labels [-]."""
+ROUND = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
+"""Periods that the axis of a map may show [s]."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
@@ -179,6 +185,68 @@ def thresholds(ax: Axes, found: Thresholds, unit: str = "") -> Axes:
     columns = {"ncols": 3, "columnspacing": 1.0, "handletextpad": 0.2, "borderaxespad": 0.2}
     ax.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), **columns)
     return ax
+
+
+AGAIN, CHANCE = "stands above a fall", "by chance"
+ENDING_COLOURS = {
+    **dict(zip(ENDINGS, ("#f3f1ea", ORANGE, BLUE, ORANGE), strict=True)), AGAIN: "#a9c9a4", CHANCE: "0.45",
+}  # fmt: skip
+"""What a wall does under a pulse, and colours that a black-and-white print still tells apart. By chance: nudged pulses,
+or those of other builds, end otherwise."""
+
+
+@picture(found=kind(OverturningMap), wall=kind(Block, type(None)))
+def overturning_map(ax: Axes, found: OverturningMap, wall: Block | None = None) -> Axes:
+    """What a wall or masonry does under pulses of every amplitude and period, a cell a pulse.
+
+    Cells that stand above an amplitude that overturns have a colour of their own.
+
+    Args:
+        ax: where to draw.
+        found: the map.
+        wall: draws amplitudes over g tan(alpha) of this wall, and frequencies 2 pi / period over its p, with the units
+            on the opposite axes; None draws them in m/s2 and s.
+    """
+    colours, names = list(ENDING_COLOURS.values()), list(ENDING_COLOURS)
+    kinds = np.where(found.islands, names.index(AGAIN), found.endings)
+    kinds = np.where((found.shares > 0) & (found.shares < 1), names.index(CHANCE), kinds)
+    x, y = found.periods, found.amplitudes
+    if wall is not None:
+        p, lifts = wall.p, GRAVITY * math.tan(wall.alpha)
+        x, y, kinds = 2 * math.pi / (p * x[::-1]), y / lifts, kinds[::-1]
+    look: Look = {"cmap": ListedColormap(colours), "vmin": -0.5, "vmax": len(colours) - 0.5, "rasterized": True}
+    ax.pcolormesh(_cell_edges(x), _cell_edges(y), kinds.T, **look)
+    ax.set(xlabel="period of the pulse [s]", ylabel="amplitude of the pulse [m/s²]")
+    if wall is not None:
+        ax.set(xlabel=r"frequency $\omega_p/p$ [-]", ylabel=r"amplitude $a_p/(g\,\tan\alpha)$ [-]")
+        periods = _round_periods(x * p)
+        above = ax.secondary_xaxis("top")
+        above.set_xticks([2 * math.pi / (p * period) for period in periods], [f"{period:g}" for period in periods])
+        above.set_xlabel("period [s]")
+        scale = (lambda share: np.multiply(share, lifts)), (lambda amplitude: np.divide(amplitude, lifts))
+        ax.secondary_yaxis("right", functions=scale).set_ylabel("amplitude [m/s²]")
+    handles = [Patch(facecolor=colours[i], edgecolor="0.4", linewidth=0.5, label=names[i]) for i in np.unique(kinds)]
+    ax.legend(handles=handles, frameon=False, fontsize=8, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.16))
+    return ax
+
+
+def _round_periods(omega: Array) -> list[float]:
+    """Round periods with room for their labels on an axis of circular frequencies [s]."""
+    kept: list[float] = []
+    for period in ROUND:
+        at = 2 * math.pi / period
+        apart = abs(2 * math.pi / kept[-1] - at) if kept else math.inf
+        if omega[0] <= at <= omega[-1] and apart >= 0.5 * NEAREST * (omega[-1] - omega[0]):
+            kept.append(period)
+    return kept
+
+
+def _cell_edges(centres: Array) -> Array:
+    """Where cells around increasing values meet, the outer ones as wide on both sides down to 0, shape (n + 1,)."""
+    if len(centres) == 1:
+        return np.array([0.95, 1.05]) * (centres[0] or 1.0)
+    middles = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate(([max(2 * centres[0] - middles[0], 0.0)], middles, [2 * centres[-1] - middles[-1]]))
 
 
 @picture()

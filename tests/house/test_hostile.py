@@ -621,7 +621,7 @@ def test_every_public_entry_is_tried():
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
-        "Island", "Thresholds", "thresholds",
+        "Island", "Thresholds", "thresholds", "OverturningMap", "overturning_map",
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
         "Code", "Design", "design", "MechanismCheck", "DynamicCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",

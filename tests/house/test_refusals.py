@@ -74,6 +74,7 @@ PATHS = {
     "histories": (lambda path: mr.campaign([], "c.sqlite", histories=path), "histories"),
     "ida": (lambda path: mr.ida(lambda scale: analysis(), [1.0], path), "store"),
     "thresholds": (lambda path: mr.thresholds(lambda scale: analysis(), [1.0], path), "store"),
+    "overturning_map": (lambda path: mr.overturning_map(lambda a, T: analysis(), [1.0], [1.0], path), "store"),
 }
 NO_PATHS = (1, 1.0, True, b"a", [], "", "a\0b", "\ud800", Unspeakable())
 

@@ -124,6 +124,12 @@ class Random:
         )
         return mr.Thresholds(tuple(names), scales, shares, own, (0.0, 1e-6), 99)
 
+    def map(self):
+        """Endings of some pulses that nobody has run."""
+        periods, amplitudes = np.sort(self.rng.uniform(0.1, 3.0, 7)), self.within(1, 20) * np.arange(1, 10)
+        endings = self.rng.integers(0, 4, (7, 9))
+        return mr.OverturningMap(periods, amplitudes, endings, 1.0 * (endings > 0))
+
     def study(self):
         """A study of sensitivity that nobody has run."""
         settings = ("k_n", "points", "thickness", "restitution")[: self.rng.integers(1, 5)]
@@ -195,6 +201,7 @@ PICTURES = {
     "incremental": incremental,
     "mechanism": mechanism,
     "moment_rotation": lambda some: plotting.moment_rotation(some.curves()),
+    "overturning_map": lambda some: plotting.overturning_map(some.map(), some.case().block),
     "panels": lambda some: plotting.panels(
         [(name, lambda ax: plotting.rotation(ax, some.both())) for name in some.names(2)]
     ),

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Unpack
+from typing import Annotated, Any, ClassVar, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,6 +32,7 @@ from .fragility import Fragility, fit_fragility, labels_for, lost
 
 Build = Callable[[float], Analysis]
 """Makes the analysis of a scale."""
+AnyBuild = TypeVar("AnyBuild", bound=Callable[..., Analysis])
 GROWTH = 1.25
 """Ratio of neighbouring scales while a bracket is searched [-]. A wall may stand again above a scale that overturns it:
 a finer ratio misses fewer of such islands."""
@@ -192,7 +193,7 @@ def overturning_intensity(
     return halved(falls, low, high, tolerance)[1]
 
 
-def builds_of(build: Build | Mapping[str, Build]) -> dict[str, Build]:
+def builds_of(build: AnyBuild | Mapping[str, AnyBuild]) -> dict[str, AnyBuild]:
     """The function of each record, by name; TypeError for a name that is no text, ValueError for no records."""
     builds = dict(build) if isinstance(build, Mapping) else {"record": build}
     if not builds:
