@@ -48,7 +48,7 @@ MOST_LABELS = 9
 """Most labels of values in a row on an axis; of more every second, third and so on has one."""
 NEAREST = 0.12
 """Least distance of two values on an axis, over their range, that leaves room for their labels [-]."""
-ROUND = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
+ROUND_PERIODS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
 """Periods that the axis of a map may show [s]."""
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
@@ -233,7 +233,7 @@ def overturning_map(ax: Axes, found: OverturningMap, wall: Block | None = None) 
 def _round_periods(omega: Array) -> list[float]:
     """Round periods with room for their labels on an axis of circular frequencies [s]."""
     kept: list[float] = []
-    for period in ROUND:
+    for period in ROUND_PERIODS:
         at = 2 * math.pi / period
         apart = abs(2 * math.pi / kept[-1] - at) if kept else math.inf
         if omega[0] <= at <= omega[-1] and apart >= 0.5 * NEAREST * (omega[-1] - omega[0]):

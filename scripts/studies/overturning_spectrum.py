@@ -45,7 +45,7 @@ def drawn(maps: Mapping[tuple[str, str], mr.OverturningMap]) -> Figure:
     for ax, ((solver, sides), found) in zip(axes.flat, maps.items(), strict=True):
         plotting.overturning_map(ax, found, FIGURE_3)
         legend = ax.get_legend()
-        handles |= {text.get_text(): patch for text, patch in zip(legend.texts, legend.legend_handles, strict=True)}
+        handles |= {text.get_text(): cell for text, cell in zip(legend.texts, legend.legend_handles, strict=True)}
         for extra in (legend, *ax.child_axes):
             extra.remove()
         ax.set_title(f"{plotting.STYLES[solver]['label']},\n{sides}", fontsize=9)

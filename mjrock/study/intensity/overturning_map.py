@@ -24,7 +24,7 @@ PulseBuild = Callable[[float, float], Analysis]
 """Makes the analysis of an amplitude [m/s2] and a period [s]."""
 ENDINGS = ("stands", "overturns after impacts", "overturns without impact", "falls")
 """What a wall does under a pulse, and last what masonry does that falls."""
-STANDS, AFTER_IMPACTS, WITHOUT_IMPACT, FALLS = range(len(ENDINGS))
+STOOD, FELL_AFTER_IMPACTS, FELL_WITHOUT_IMPACT, FELL = range(len(ENDINGS))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,18 +48,18 @@ class OverturningMap(Drawn):
     @property
     def lowest(self) -> Array:
         """The lowest amplitude at which it overturns under pulses of each period [m/s2], NaN for none, shape (p,)."""
-        return self._first(self.endings != STANDS)
+        return self._first(self.endings != STOOD)
 
     @property
     def lowest_without_impact(self) -> Array:
         """The same of overturning without impact [m/s2], NaN for none and for masonry, shape (p,)."""
-        return self._first(self.endings == WITHOUT_IMPACT)
+        return self._first(self.endings == FELL_WITHOUT_IMPACT)
 
     @property
     def islands(self) -> Array:
         """Where it stands although a lower amplitude of the same period overturns it, shape (p, a)."""
-        fell = np.logical_or.accumulate(self.endings != STANDS, axis=1)
-        return np.asarray(fell & (self.endings == STANDS))
+        fell = np.logical_or.accumulate(self.endings != STOOD, axis=1)
+        return np.asarray(fell & (self.endings == STOOD))
 
     def _first(self, found: Array) -> Array:
         return np.where(found.any(axis=1), self.amplitudes[found.argmax(axis=1)], math.nan)
@@ -85,7 +85,7 @@ class OverturningMap(Drawn):
     def __repr__(self) -> str:
         return (
             f"<OverturningMap of {len(self.amplitudes)} amplitudes up to {self.amplitudes[-1]:g} m/s2 and "
-            f"{len(self.periods)} periods up to {self.periods[-1]:g} s: {(self.endings != STANDS).mean():.0%} "
+            f"{len(self.periods)} periods up to {self.periods[-1]:g} s: {(self.endings != STOOD).mean():.0%} "
             f"overturn, {int(self.islands.sum())} stand above an amplitude that does>"
         )
 
@@ -148,5 +148,5 @@ def overturning_map(
     shape = (len(lengths), len(levels), -1)
     fell = np.reshape([row[task.PEAK] == math.inf for task, row in zip(tasks, rows, strict=True)], shape)
     impacts = np.reshape([row.get("impacts", -1) for row in rows], shape)[:, :, 0]
-    kinds = np.where(impacts < 0, FALLS, np.where(impacts == 0, WITHOUT_IMPACT, AFTER_IMPACTS))
-    return OverturningMap(lengths, levels, np.where(fell[:, :, 0], kinds, STANDS), fell.mean(axis=2))
+    kinds = np.where(impacts < 0, FELL, np.where(impacts == 0, FELL_WITHOUT_IMPACT, FELL_AFTER_IMPACTS))
+    return OverturningMap(lengths, levels, np.where(fell[:, :, 0], kinds, STOOD), fell.mean(axis=2))
