@@ -77,8 +77,9 @@ def form(request: Mapping[str, Any], send: Send) -> None:
 
 
 def templates_of() -> dict[str, dict[str, Any]]:
-    """The tables of each template by its name."""
-    return {name: {key: one for key, one in own.items() if key != "title"} for name, own in seeds().items()}
+    """The tables of each template by its name, with an empty title block."""
+    left = "title", "project"
+    return {name: {key: one for key, one in own.items() if key not in left} for name, own in seeds().items()}
 
 
 def open_file(request: Mapping[str, Any], send: Send) -> None:

@@ -42,6 +42,8 @@ GIVEN, FOUND, BY_HAND = 7, 3, 4
 """Digits of what was given, of what was found, and of what follows from inputs and a check by hand starts from."""
 LENGTH_DECIMALS = 9
 """Decimals of a length [m]: what lies below a nanometre is rounding."""
+WITH_UNIT = re.compile(r"[-\u2212\d.]+ \w+")
+"""A number with its unit, such as the length beside a dimension line."""
 SHARED = 4
 """Digits of a share."""
 
@@ -116,7 +118,7 @@ class Words:
                     name: re.sub(r"(?<=\d)\.(?=\d)", self.mark, value) for name, value in found.groupdict().items()
                 }
                 return self(key, **values)
-        return line
+        return self.marked(line) if WITH_UNIT.fullmatch(line) else line
 
     def message(self, text: str) -> str:
         """A message of the program in this language, as far as it has a text; else as it is, in English.

@@ -133,6 +133,23 @@ class Browser:
         assert self.run(f"({focus})(document.getElementById({json.dumps(place)}))"), f"no field {place}"
         self.call("Input.insertText", text=text)
 
+    def press(self, key, times=1):
+        """Press a key, as Tab or Enter."""
+        code = {"Tab": 9, "Enter": 13, "ArrowDown": 40}[key]
+        text = {"text": "\r"} if key == "Enter" else {}
+        for _ in range(times):
+            for kind in ("keyDown", "keyUp"):
+                event = {"type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code}
+                self.call("Input.dispatchKeyEvent", **event, **(text if kind == "keyDown" else {}))
+
+    def tab_to(self, place, most=60):
+        """Press Tab until a field has the focus."""
+        for _ in range(most):
+            self.press("Tab")
+            if self.run("document.activeElement.id") == place:
+                return
+        raise AssertionError(f"Tab does not reach {place} in {most} steps")
+
     def choose(self, place, value):
         """Choose a value of a list."""
         self.run(

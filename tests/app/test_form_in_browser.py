@@ -173,11 +173,144 @@ def test_what_is_wrong_is_said_at_its_field_and_in_the_list(address):
         assert page.run("document.querySelectorAll('.fault, [aria-invalid]').length") == 0
 
 
-def test_input_stays_in_its_window(address):
+def test_a_refusal_is_italian_in_the_italian_form(address):
+    with form(address, language="it") as page:
+        begun(page, "gable")
+        checked(page, lambda: page.fill("at/wall/thickness", "-3"))
+        said = "wall.thickness = -3 m è fuori dall'intervallo valido da 0,002 a 20 m"
+        assert page.run("[...document.querySelectorAll('.fault, #verdict a')].map(e => e.innerText)") == [said, said]
+        checked(page, lambda: page.fill("at/wall/thickness", "30 kg"))
+        assert "ha l'unità kg, mentre è richiesto un numero in m" in page.run(
+            "document.querySelector('.fault').innerText"
+        )
+
+
+def test_a_corner_on_a_phone_in_italian_and_in_the_dark(address):
+    with form(address, size=(390, 844), dark=True, language="it") as page:
+        begun(page, "corner")
+        page.wait("document.querySelector('#sketches img')?.naturalWidth")
+        assert page.run("document.querySelector('#form legend + .row select').selectedOptions[0].text") == (
+            "cantonata che ribalta"
+        )
+        bar = page.run("document.getElementById('to-results').textContent")
+        assert page.run("document.querySelector('#verdict p span').textContent") in bar  # one word in both
+        box = page.run("JSON.stringify(document.getElementById('to-results').getBoundingClientRect())")
+        assert json.loads(box)["bottom"] == 844
+        page.click("document.getElementById('to-results')")
+        assert page.run("document.getElementById('verdict').getBoundingClientRect().top") < 844
+        assert page.run("document.documentElement.scrollWidth") <= 390
+        names = page.run(
+            "[...document.querySelectorAll('[id^=\"at/project/\"]')].map(e => e.closest('.field').innerText)"
+        )
+        assert [name.partition("\n")[0] for name in names[::2]] == [
+            "Opera",
+            "Committente",
+            "Progettista",
+            "Data",
+            "Luogo",
+        ]
+        image = "document.querySelector('#sketches img')"
+        assert "invert" in page.run(f"getComputedStyle({image}).filter")
+        checked(page, lambda: page.fill("at/project/client", "Parrocchia"))
+        page.click("document.getElementById('save')")
+        assert tomllib.loads(page.downloaded()[1].decode())["project"]["client"] == "Parrocchia"
+
+
+def test_a_truth_is_listed_once_and_every_mechanism_is_drawn(address):
+    with form(address, language="it") as page:
+        begun(page, "bending")
+        page.wait("document.querySelectorAll('#sketches img').length === 2")
+        names = page.run("[...document.querySelectorAll('#sketches figcaption')].map(e => e.innerText)")
+        assert len(set(names)) == 2
+        begun(page, "gable")
+        page.wait("document.querySelectorAll('#sketches img').length === 1")
+        stop = "[...document.getElementById('at/side_stop').options].map(one => one.text)"
+        assert page.run(stop) == ["sì", "no", "pareti laterali fino a una quota"]
+
+
+def test_the_form_is_filled_by_the_keyboard_alone(address):
+    with form(address) as page:
+        page.tab_to("template")
+        page.press("ArrowDown", 2)
+        page.wait("document.getElementById('at/wall/thickness')")
+        page.wait(VERDICT)
+        before = page.run("document.getElementById('to-results').textContent")
+        page.tab_to("at/wall/thickness")
+        page.call("Input.insertText", text="80 cm")
+        page.wait(f"document.getElementById('to-results').textContent !== {json.dumps(before)}")
+        outline = page.run("getComputedStyle(document.activeElement).outlineStyle")
+        assert outline != "none"
+        page.run("document.activeElement.blur(); document.querySelector('header').querySelector('select').focus()")
+        page.tab_to("to-results")
+        assert page.run("document.activeElement.getBoundingClientRect().width") > 20
+        page.press("Enter")
+        page.tab_to("run", 10)
+        page.tab_to("report", 5)
+
+
+def test_a_file_with_a_key_that_is_not_known_opens_and_says_so(address):
+    with form(address) as page:
+        opened(
+            page,
+            "[wall]\nthickness = 0.3\nheight = 3.0\nbreadth = 5\n[site]\ncode = 'EC8 type 1'\nag = 1.0\nsoil = 'A'\n",
+        )
+        page.wait("document.querySelector('.fault')")
+        assert "wall.breadth is not known" in page.run("document.querySelector('.fault').innerText")
+        page.click("document.getElementById('save')")
+        assert tomllib.loads(page.downloaded()[1].decode())["wall"]["breadth"] == 5
+        opened(page, "[wall")
+        page.wait("document.getElementById('verdict').innerText.includes('is not TOML')")
+        assert page.run("document.getElementById('at/wall/thickness').value") == "0.3"  # what was there stays
+
+
+def test_files_of_50_mb_are_refused_before_they_are_read(address, tmp_path):
+    large = tmp_path / "large.toml"
+    large.write_bytes(b"#" * (50 * 2**20))
+    with form(address) as page:
+        begun(page, "parapet")
+        page.upload("#file", large)
+        page.wait("document.querySelector('#verdict .fault')?.innerText.includes('at most 30 MB')")
+        begun(page, "gable")
+        page.wait(VERDICT)
+        page.click("document.getElementById('at/records')")
+        choose_variant(page, "at/records/0", "of a table")
+        page.upload("input[type=file][id='at/records/0/path']", large)
+        help = "document.getElementById('at/records/0/path/help').innerText"
+        page.wait(f"{help}.includes('at most 30 MB')")
+        assert page.errors == []
+
+
+def test_the_input_outlives_a_reload_in_the_middle_of_a_run():
+    with served() as (process, place), form(place) as page:
+        opened(page, COLUMN)
+        page.wait("document.getElementById('at/duration')?.value === '10000'")
+        page.click("document.getElementById('run')")
+        page.wait("!document.getElementById('stop').hidden")
+        time.sleep(1)
+        before = set(children_of(process.pid))
+        page.open(place)
+        page.wait("document.getElementById('at/duration')?.value === '10000'")
+        end = time.monotonic() + 20
+        while before <= set(children_of(process.pid)):
+            assert time.monotonic() < end, "the process of the run goes on"
+            time.sleep(0.1)
+        assert not page.run("document.getElementById('run').disabled")
+        begun(page, "corner")
+        page.wait(VERDICT)
+
+
+def test_input_stays_in_its_window_and_goes_to_another_by_its_file(address, tmp_path):
     with form(address) as one, form(address) as other:
         begun(one, "corner")
         checked(one, lambda: one.fill("at/thickness", "61 cm"))
         assert other.run("document.getElementById('at/thickness')") is None
+        one.click("document.getElementById('save')")
+        path = tmp_path / "other.toml"
+        path.write_bytes(one.downloaded()[1])
+        other.upload("#file", path)
+        assert other.wait("document.getElementById('at/thickness')?.value") == "61 cm"
+        ratio = "document.getElementById('to-results').textContent"
+        other.wait(f"{ratio} === {json.dumps(one.run(ratio))}")
         one.open(address)
         assert one.wait("document.getElementById('at/thickness')?.value") == "61 cm"
         one.wait(VERDICT)

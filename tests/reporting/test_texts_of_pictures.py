@@ -124,6 +124,14 @@ def figures(tmp_path_factory):
     return found
 
 
+@pytest.mark.parametrize(
+    ("text", "said"), [("0.55 m", "0,55 m"), ("\u22121.5 kN", "\u22121,5 kN"), ("v1.5 m", "v1.5 m")]
+)
+def test_a_number_with_its_unit_has_the_decimal_mark_of_the_language(text, said):
+    assert ITALIAN.drawn(text) == said
+    assert Words("en").drawn(text) == text
+
+
 def test_pictures_of_an_italian_report_have_no_english_word(figures):
     assert len(figures) > 10
     said = [text.get_text() for figure, own in figures if not own for text in figure.findobj(Text)]

@@ -329,6 +329,13 @@ function drawForm() {
 // Read files that a person picks; their names stand in the field, and their content goes with a run.
 async function upload(input, values, field) {
   const names = [];
+  const help = byId(input.getAttribute('aria-describedby')).querySelector('b');
+  const size = [...input.files].reduce((sum, file) => sum + file.size, 0);
+  if ((4 / 3) * size > LARGEST) {
+    input.value = '';
+    help.textContent = plan.texts.too_large;
+    return;
+  }
   if (field.control === 'folder') for (const name in files) delete files[name];
   for (const file of input.files) {
     const text = await new Promise((done, failed) => {
@@ -343,7 +350,6 @@ async function upload(input, values, field) {
   const several = field.control === 'folder' ? '.' : names; // all files are in one folder
   if (names.length) values[field.key] = input.multiple ? several : names[0];
   else delete values[field.key];
-  const help = byId(input.getAttribute('aria-describedby')).querySelector('b');
   help.textContent = names.join(', ');
   changed();
 }
@@ -372,6 +378,12 @@ function changed() {
 function clearFaults() {
   for (const one of document.querySelectorAll('.fault')) one.remove();
   for (const one of document.querySelectorAll('[aria-invalid]')) one.removeAttribute('aria-invalid');
+}
+
+// Show that something has not been done, and why.
+function showError(error) {
+  clearFaults();
+  byId('verdict').replaceChildren(element('p', {class: 'fault', role: 'alert'}, error.message));
 }
 
 // Show what is wrong at its field, or at the nearest table around it, and all of it beside the form.
@@ -413,8 +425,7 @@ async function check() {
     }
   } catch (error) {
     if (own.signal.aborted) return;
-    clearFaults();
-    byId('verdict').replaceChildren(element('p', {class: 'fault', role: 'alert'}, error.message));
+    showError(error);
   }
   byId('verdict').classList.toggle('busy', of !== changes);
 }
@@ -505,8 +516,9 @@ async function save() {
   else download(made.name, 'application/toml', made.text);
 }
 
-async function open(text) {
-  const found = await answer('open', {text});
+async function open(file) {
+  if (file.size > LARGEST) throw new Error(plan.texts.too_large);
+  const found = await answer('open', {text: await file.text(), language: plan.language});
   if (found.faults) return showFaults(found.faults.map(one => ({...one, place: []})));
   state = found.state;
   await load(state.language ?? plan.language);
@@ -545,14 +557,14 @@ function begin() {
   byId('open').addEventListener('click', () => byId('file').click());
   byId('file').addEventListener('change', async event => {
     const [file] = event.target.files;
-    if (file) await open(await file.text());
     event.target.value = '';
+    if (file) await open(file).catch(showError);
   });
-  byId('save').addEventListener('click', save);
+  byId('save').addEventListener('click', () => save().catch(showError));
   byId('run').addEventListener('click', run);
   byId('stop').addEventListener('click', () => running?.abort());
   byId('report').addEventListener('click', report);
   return load(kept.language ?? (navigator.language.startsWith('it') ? 'it' : 'en'));
 }
 
-begin().catch(error => byId('verdict').replaceChildren(element('p', {class: 'fault', role: 'alert'}, error.message)));
+begin().catch(showError);
