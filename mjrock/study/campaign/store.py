@@ -5,13 +5,14 @@ from __future__ import annotations
 import contextlib
 import os
 import sqlite3
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...contacts.files import require_file, written
 from ...quantities import require_path, spelt
-from .task import Row, checksum, table_text, table_value
+from .task import Row, Task, checksum, keyed, table_text, table_value
 
 if TYPE_CHECKING:
     import pandas
@@ -93,7 +94,42 @@ class Store:
             raise FileNotFoundError(f"{damaged}: there is no such campaign")
         if path.exists():
             raise FileExistsError(f"{path} exists already; rows are rescued into a new file")
-        rows = readable(damaged)
+        return cls._written(path, readable(damaged))
+
+    @classmethod
+    def join(cls, parts: Iterable[str | Path], path: str | Path, tasks: Iterable[Task]) -> int:
+        """Write the rows of several stores, as the jobs of a cluster leave them, into a new one in the order of tasks.
+
+        Args:
+            parts: the stores of the jobs, which are left as they are. Of two rows of a task one that is done counts.
+            path: the new store.
+            tasks: all tasks; rows of others are left out.
+
+        Returns:
+            How many tasks have a row. A campaign of all tasks, called with the new store, runs the others.
+
+        Raises:
+            FileExistsError: if there is a file at the new path.
+            FileNotFoundError: if there is none at a path of `parts`.
+            ValueError: if one of them is not a store, or is damaged.
+        """
+        path = require_path("path", path)
+        if path.exists():
+            raise FileExistsError(f"{path} exists already; rows are joined into a new file")
+        found: dict[str, Row] = {}
+        for part in parts:
+            with cls(part) as store:
+                found |= {row["key"]: row for row in store.rows() if row["status"] == "done" or row["key"] not in found}
+        positions: dict[str, int] = {}
+        with warnings.catch_warnings():  # a task warned as it was made for the run
+            warnings.simplefilter("ignore", UserWarning)
+            for position, task in enumerate(tasks):
+                positions.setdefault(keyed(task)[0], position)
+        return cls._written(path, [found[key] | {"position": at} for key, at in positions.items() if key in found])
+
+    @classmethod
+    def _written(cls, path: Path, rows: Sequence[Row]) -> int:
+        """Write rows into a new store, and return how many."""
         with cls(path, writing=True) as store:
             store.add_columns(dict.fromkeys(name for row in rows for name in row if name not in ROW_COLUMNS))
             store.add(rows)
