@@ -100,6 +100,11 @@ class Mechanism:
         return limit_curve(self.problem.masonry, effects=self.problem.effects, **self.curve)
 
     @property
+    def is_wall(self) -> bool:
+        """Whether it is of a wall or a corner, and not of masonry of blocks."""
+        return isinstance(self.problem, Checked)
+
+    @property
     def is_moved(self) -> bool:
         """Whether there is a motion to run: records, another motion of the ground, or a release."""
         is_run = not isinstance(self.problem, VerticalBending | HorizontalBending)
@@ -125,15 +130,15 @@ class Mechanism:
         of = {"e": e} if shaking.solver == "analytical" else {"contacts": shaking.contacts}
         return [Analysis(one, shaking.solver, options=shaking.options, **of) for one in shaken]
 
-    def dynamic(self, runs: Sequence[Response] | Sequence[Analysis], store: Path | None = None) -> DynamicCheck:
+    def dynamic(self, runs: Sequence[Response] | Sequence[Analysis], **kept: Path) -> DynamicCheck:
         """The check of its runs, see `dynamic_check`.
 
         Args:
-            runs: responses, or of a wall the tasks of a campaign.
-            store: that of the campaign.
+            runs: responses, or the tasks of a campaign.
+            kept: `store` and `histories` of the campaign.
         """
         options = dict(self.shaking.dynamic) | {name: one for name, one in self.options.items() if name == "code"}
-        return dynamic_check(runs, curve=self.limit_curve, store=store, **options)
+        return dynamic_check(runs, curve=self.limit_curve, **options | kept)
 
 
 def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:

@@ -24,7 +24,7 @@ RECORDS: Mapping[str, Makers] = {"records_in": {"": maker_of(records_in)}, "Grou
 """What `[records]` stands for, by the name of `kind`: the files of a folder where none is named."""
 SCALED = maker_of(RecordSet.scaled_to).without("self", "spectrum")
 """What `[records.scaled_to]` stands for: the records scaled to the spectrum of the site."""
-DYNAMIC = maker_of(dynamic_check).without("runs", "curve", "store", "code")
+DYNAMIC = maker_of(dynamic_check).without("runs", "curve", "store", "histories", "code")
 """What `[dynamic_check]` stands for."""
 SOLVERS = "analytical", "explicit", "MuJoCo", "compliant"
 """The solvers, the quickest of a wall first."""
@@ -38,7 +38,7 @@ class Shaking:
 
     Args:
         records: horizontal motions, each with the number of its record.
-        solver: "analytical", "explicit", "MuJoCo" or "compliant".
+        solver: "analytical", "explicit", "MuJoCo" or "compliant"; where none is named, that of `usual_solver`.
         polarities: whether each record is run in both polarities.
         options: of the solver.
         e: restitution of its impacts, for "analytical".
@@ -82,16 +82,16 @@ def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: objec
         wall: its wall, None of masonry.
         spectrum: that of the site, to which records are scaled.
     """
-    found: dict[str, Any] = {}
+    found: dict[str, Any] = {"solver": usual_solver(wall)}
     if not table.values.keys() & {"restitution", "contacts", "records", "run"}:
-        return Shaking()
+        return Shaking(solver=usual_solver(wall))
     if "restitution" in table.values or wall is not None:
         found["e"] = _of_wall(reader, table, "restitution", makers_of(Restitution), wall)
     if "contacts" in table.values:
         given = {} if found.get("e") is None else {"e": found["e"]}
         found["contacts"] = _of_wall(reader, table, "contacts", makers_of(Contacts), wall, given)
     if "run" in table.values:
-        found |= _run(reader, reader.required_table(table, "run"))
+        found |= _run(reader, reader.required_table(table, "run"), wall)
     if "dynamic_check" in table.values:
         found["dynamic"] = reader.arguments(reader.required_table(table, "dynamic_check"), DYNAMIC)
     if "records" in table.values:
@@ -111,9 +111,14 @@ def _of_wall(
     return reader.made(rest, maker, {key: arguments[key] for key in maker.keys if key in arguments})
 
 
-def _run(reader: Reader, table: Table) -> dict[str, Any]:
+def usual_solver(wall: Block | None) -> str:
+    """The solver where none is named: theory of a wall, explicit steps of masonry, which take all that it may have."""
+    return "explicit" if wall is None else "analytical"
+
+
+def _run(reader: Reader, table: Table, wall: Block | None) -> dict[str, Any]:
     """The solver and its options."""
-    solver = reader.named(table, "solver", SOLVERS, "analytical")
+    solver = reader.named(table, "solver", SOLVERS, usual_solver(wall))
     options = reader.arguments(table, run_maker(solver))
     options.pop("solver", None)
     own = {name: options.pop(name) for name in ("polarities",) if name in options}

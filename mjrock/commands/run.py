@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from ..assessment.assessment import Assessment
 from ..assessment.mechanisms import Mechanism
 from ..command_line import Answer, Status, add_output, parser, require_free, ruled
-from ..contacts.files import csv_text, write_text
+from ..contacts.files import aligned, csv_text, write_text
+from ..notice import notice
 from ..plotting.animation import animate
 from ..plotting.histories import history
 from ..plotting.style import save
+from ..reporting.inputs import record_name
+from ..reporting.texts import BY_HAND, DASH, Words, languages
+from ..reporting.verdicts import REVERSED, dynamic_found, kind_of
+from ..reporting.verdicts import Mechanism as Verdicts
 from ..study.analysis import Analysis
 from ..study.campaign.campaign import completed
 from ..study.campaign.task import Row
 from ..study.loading.code_check import DynamicCheck
+from .check import table_of as conditions_of
 from .opened import FILE_HELP, INPUT, opened, tasks_of
 
+Rows = dict[str, list[Row]]
+"""The rows of runs by the names of their mechanisms."""
 KEPT = "Runs are kept in FILE_runs.sqlite: a call that is broken off is carried on by the same call."
 """What the help says of them."""
 
@@ -42,12 +51,28 @@ def largest_of(runs: Sequence[Analysis], rows: Sequence[Row]) -> int:
     return max(range(len(keys)), key=keys.__getitem__)
 
 
-def table_of(runs: Sequence[Analysis], rows: Sequence[Row]) -> str:
+def table_of(runs: Sequence[Analysis], rows: Sequence[Row], words: Words) -> str:
     """How each run ended, and its largest rotation."""
-    shown = [("motion", "outcome", runs[0].PEAK.replace("_", " "))]
+    shown = [tuple(words(key) for key in ("motion_name", "run_outcome", f"column_{runs[0].PEAK}"))]
     for run, row in zip(runs, rows, strict=True):
-        shown.append((str(run.labels["motion"]), row["outcome"], f"{row[run.PEAK]:.4g}"))
+        ended = "blocks_fell" if row.get("fallen") else f"outcome_{row['outcome'].replace(' ', '_')}"
+        shown.append((called(run, words), words(ended), words.number(row[run.PEAK], BY_HAND)))
     return "\n".join(ruled(shown, "<<>"))
+
+
+def called(run: Analysis, words: Words) -> str:
+    """What moves the wall or the masonry of a run, in words."""
+    motion = run.case.motion
+    if motion is None:
+        return words("release")
+    return record_name(motion, words) + f", {words('reversed')}" * motion.name.endswith(REVERSED)
+
+
+def dynamic_of(name: str, check: DynamicCheck, words: Words) -> str:
+    """What a check by dynamic runs found, its conditions, and the verdict."""
+    rows = [(words(f"dynamic_{key}"), value) for key, value in dynamic_found(check, words).items() if value != DASH]
+    mechanism = Verdicts(name or words(f"kind_{kind_of(check.case)}"), None, (check,))
+    return "\n".join([*(line.rstrip() for line in aligned(rows, "<")), "", conditions_of([mechanism], words)])
 
 
 def written(runs: Sequence[Analysis], rows: Sequence[Row], files: Files, film: bool) -> list[Path]:
@@ -61,10 +86,35 @@ def written(runs: Sequence[Analysis], rows: Sequence[Row], files: Files, film: b
 
 
 def verdict_on(mechanism: Mechanism, runs: Sequence[Analysis], store: Path) -> DynamicCheck | None:
-    """The check by the runs of a wall under records; None of masonry, whose report has it, and of a release."""
-    if not mechanism.shaking.records or mechanism.limit_curve is not None:
+    """The check by the runs under records, that of masonry where its limit curve has a d_0; None of a release."""
+    if not mechanism.shaking.records:
         return None
-    return mechanism.dynamic(runs, store)
+    try:
+        return mechanism.dynamic(runs, store=store, histories=histories_of(store))
+    except ValueError as error:
+        if mechanism.is_wall:
+            raise
+        notice(f"no verdict by runs: {error}", by="warning")
+        return None
+
+
+def histories_of(store: Path) -> Path:
+    """The folder of the time histories of masonry."""
+    return store.with_suffix("")
+
+
+def completed_runs(
+    assessment: Assessment, runs: Mapping[str, list[Analysis]], store: Path, workers: int | None
+) -> Rows:
+    """The rows of the runs of each mechanism, those of masonry with their histories, by which it is judged."""
+    found: Rows = {}
+    for walls in (True, False):
+        some = {name: of for name, of in runs.items() if assessment.mechanisms[name].is_wall is walls}
+        tasks = [run for of in some.values() for run in of]
+        histories = None if walls else histories_of(store)
+        rows = iter(completed(tasks, store, workers=workers, histories=histories) if tasks else ())
+        found |= {name: [next(rows) for _ in of] for name, of in some.items()}
+    return found
 
 
 def answer(argv: Sequence[str]) -> Answer:
@@ -79,11 +129,12 @@ def answer(argv: Sequence[str]) -> Answer:
     made = parser("run", "Follow the motion of the mechanisms of a file under its records, or from its release.", KEPT)
     made.add_argument("file", metavar="FILE", help=FILE_HELP)
     add_output(made, "folder of table, picture and film", "that of FILE")
+    made.add_argument("-l", "--language", choices=languages(), help="instead of that of the file")
     made.add_argument("--no-film", action="store_true", help="leave the film out")
     made.add_argument("-w", "--workers", type=int, help="how many processes; without it as many as there are cores")
     args = made.parse_args(argv)
     path = Path("wall" if args.file == INPUT else args.file)
-    assessment, folder = opened(args.file), args.output or path.parent
+    assessment, folder = opened(args.file, args.language), args.output or path.parent
     runs = tasks_of(assessment)
     if not runs:
         raise ValueError(f"{assessment.name} has nothing to run: give it [records], a [motion] or theta0 of a release")
@@ -93,13 +144,13 @@ def answer(argv: Sequence[str]) -> Answer:
             require_free(one, args.force)
     folder.mkdir(parents=True, exist_ok=True)
     store = folder / f"{path.stem}_runs.sqlite"
-    rows = iter(completed([run for some in runs.values() for run in some], store, workers=args.workers))
+    rows, words = completed_runs(assessment, runs, store, args.workers), Words(assessment.language)
     text, holds = list[str](), True
     for name, some in runs.items():
-        own = [next(rows) for _ in some]
-        found = written(some, own, places[name], not args.no_film)
+        found = written(some, rows[name], places[name], not args.no_film)
         check = verdict_on(assessment.mechanisms[name], some, store)
         holds &= check is None or check.holds
-        judged = [] if check is None else ["", check.table()]
-        text += [*filter(None, [name]), table_of(some, own), *judged, "", f"written: {', '.join(map(str, found))}", ""]
+        judged = [] if check is None else ["", dynamic_of(name, check, words)]
+        text += [*filter(None, [name]), table_of(some, rows[name], words), *judged, ""]
+        text += [f"written: {', '.join(map(str, found))}", ""]
     return Answer("\n".join(text).strip(), Status.HOLDS if holds else Status.FAILS)

@@ -405,7 +405,7 @@ def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]
     given = [(mechanism.name, check) for mechanism in mechanisms for check in mechanism.dynamic]
     made = []
     for start in range(0, len(given), ABREAST):
-        columns = [_dynamic(check, words) for _, check in given[start : start + ABREAST]]
+        columns = [dynamic_found(check, words) for _, check in given[start : start + ABREAST]]
         told = [key for key in columns[0] if any(column[key] != DASH for column in columns)]
         rows = [[words(f"dynamic_{key}"), *(column[key] for column in columns)] for key in told]
         heads = [words("step"), *(name for name, _ in given[start : start + ABREAST])]
@@ -413,7 +413,7 @@ def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]
     return made
 
 
-def _dynamic(check: DynamicCheck, words: Words) -> dict[str, str]:
+def dynamic_found(check: DynamicCheck, words: Words) -> dict[str, str]:
     """What a check by dynamic runs found, by its key."""
 
     def length(d: float) -> str:

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 import mjrock as mr
 from mjrock.__main__ import main
 from mjrock.command_line import Status
+from mjrock.quantities import ratio_said
 
 WALL = """
 side_stop = false
@@ -77,13 +79,50 @@ def test_a_run_writes_a_table_and_a_picture_beside_its_file(here, capsys):
         rows = list(csv.DictReader(file))
     assert [float(row["peak_over_alpha"]) for row in rows] == [task()["peak_over_alpha"] for task in tasks]
     assert [row["motion"] for row in rows] == [task.case.motion.name.replace(",", ";") for task in tasks]
-    assert "dynamic, largest run" in said
+    assert "dynamic: largest of all runs" in said
     assert "HOLDS" in said
     assert "muro alto_runs.csv: exists already" in refused(capsys, "run", FILE, "--no-film", "--workers", 1)
     assert main(["run", FILE, "--no-film", "--workers", "1", "--force"]) == Status.HOLDS
     again = capsys.readouterr()
     assert again.out == said
     assert "4 had a row before" in again.err
+
+
+STACK = """
+kind = "MasonryCase"
+duration = 1.0
+[masonry]
+make = "stack"
+k_n = 1e8
+blocks = [{ thickness = 0.3, height = 1.2, length = 1.0 }]
+"""
+
+
+@pytest.mark.filterwarnings("ignore::mjrock.Implausible")
+def test_masonry_under_records_has_the_verdict_of_its_runs(here, capsys):
+    """That of the responses in Python, though a campaign has run them; a second call runs none again."""
+    (here / "column.toml").write_text(STACK + SITE + PULSES.replace("1.5", "2.2").replace('"2 m', '"4 m'))
+    assessment = mr.from_toml(here / "column.toml")
+    ((task, *_),) = assessment.analyses().values()
+    assert task.solver == "explicit"  # no solver is named
+    (found,) = assessment.dynamic_check(assessment.run()).values()
+    for _ in range(2):
+        said = printed(
+            capsys, "run", "walls/column.toml", "--no-film", "-w", 1, "--force", status=0 if found.holds else 1
+        )
+        table = said[said.index("mechanism ") :]
+        for one in found.verdicts:
+            assert f" {ratio_said(one.ratio)} " in table
+        assert re.search(r"^record +ends +largest rotation \[rad\]$", said, re.MULTILINE)
+
+
+@pytest.mark.filterwarnings("ignore::mjrock.Implausible")
+def test_a_run_is_in_the_language_that_is_asked_for(here, capsys):
+    said = printed(capsys, "run", FILE, "--no-film", "--workers", 1, "--language", "it")
+    assert re.search(r"^accelerogramma +fine +rotazione massima su . \[-\]$", said, re.MULTILINE)
+    assert "invertito" in said
+    assert "media dei massimi" in said
+    assert not re.search(r"HOLDS|FAILS|reversed|\d\.\d+ m$", said, re.MULTILINE)
 
 
 @pytest.mark.slow

@@ -920,6 +920,7 @@ def dynamic_check(
     *,
     curve: LimitCurve | Push | None = None,
     store: str | Path | None = None,
+    histories: str | Path | None = None,
     natural: bool | None = None,
     code: Code | str = USUAL_CODE,
 ) -> DynamicCheck:
@@ -943,11 +944,12 @@ def dynamic_check(
     for the user, see `RecordSet.mean_over`.
 
     Args:
-        runs: responses of one wall or masonry with the same effects, of any solver, or of a wall the `Analysis` tasks
-            of a campaign.
+        runs: responses of one wall or masonry with the same effects, of any solver, or the `Analysis` tasks of a
+            campaign.
         limit_state: "SLV" or "SLC", or one of another code, whose spectrum the records fit.
         curve: of masonry, its limit curve or push along the direction that is checked, until nothing is borne any more.
         store: the file of the campaign, for tasks.
+        histories: the folder of its time histories, for tasks of masonry.
         natural: whether the records are natural ones. None if it is not known.
         code: the name of a code that comes with the package, "NTC 2018", or a `Code`.
 
@@ -978,7 +980,7 @@ def dynamic_check(
         d_0, maxima = d_0_of(case), [displaced(case.wall, one * case.wall.alpha) for one in _peaks(given, store)]
     else:
         judged = _Judged.of(curve)
-        d_0, maxima = judged.d_0, [judged.largest(run) for run in responses]
+        d_0, maxima = judged.d_0, [judged.largest(one) for one in _moved(given, store, histories)]
         judged.warn_of_weaker_way()
     found = tuple(
         RunMaximum(motion.name, *signal, run.solver, d)
@@ -1055,10 +1057,18 @@ class _Judged(NamedTuple):
                     Implausible,
                 )
 
-    def largest(self, run: Response) -> float:
+    def largest(self, moved: _Moved) -> float:
         """Its largest displacement in a run [m], infinite where a block fell."""
-        case = cast(MasonryCase, run.case)
-        return math.inf if run.fallen else max(float(of_centroid(case, run.pose, self.way, self.blocks).max()), 0.0)
+        case, pose, fell = moved
+        return math.inf if fell else max(float(of_centroid(case, pose, self.way, self.blocks).max()), 0.0)
+
+
+class _Moved(NamedTuple):
+    """What a check takes of a run of masonry: its case, its poses at the samples, and whether a block fell."""
+
+    case: MasonryCase
+    pose: Array
+    fell: bool
 
 
 def _cases_of(runs: Sequence[Response | Analysis], curve: LimitCurve | Push | None) -> list[AnyCase]:
@@ -1111,6 +1121,24 @@ def _peaks(runs: Sequence[Response | Analysis], store: str | Path | None) -> lis
     if len(done) < len(rows):
         raise ValueError(f"{len(rows) - len(done)} of {len(rows)} tasks have no row that is done in {store}; run them")
     return done
+
+
+def _moved(runs: Sequence[Response | Analysis], store: str | Path | None, histories: str | Path | None) -> list[_Moved]:
+    """What runs of masonry have moved, of tasks as their rows and histories have it."""
+    if isinstance(runs[0], Response):
+        return [_Moved(cast(MasonryCase, run.case), run.pose, bool(run.fallen)) for run in runs]  # type: ignore[union-attr]
+    if store is None or histories is None:
+        raise ValueError("runs are tasks of a campaign of masonry; give its file as store and its folder as histories")
+    from ..campaign.campaign import results
+
+    found = []
+    for task, row in zip(runs, results(cast("list[Analysis]", runs), store), strict=True):
+        file = Path(histories) / f"{'' if row is None else row['key']}.npz"
+        if row is None or row["status"] != "done" or not file.exists():
+            raise ValueError(f"{task!r} has no row that is done in {store}, or no history in {histories}; run it")
+        with np.load(file) as arrays:
+            found.append(_Moved(cast(MasonryCase, task.case), arrays["pose"], bool(row["fallen"])))
+    return found
 
 
 def _of_one_record(one: AnyCase, other: AnyCase) -> bool:
