@@ -71,7 +71,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             table.append([label, sides, n * n, *(f"{s:.3f}" for s in (*shares, found.islands.mean()))])
             rows += [
                 (solver, sides, f"{2 * math.pi / (T * FIGURE_3.p):.4f}", f"{a / LIFTING:.4f}", MODES[m])
-                for T, column in zip(periods, found.endings, strict=True)
+                for T, column in zip(periods[::-1], found.endings[::-1], strict=True)
                 for a, m in zip(amplitudes, column, strict=True)
             ]
     plotting.save(drawn(maps), out / "overturning_spectrum.png")

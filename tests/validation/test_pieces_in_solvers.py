@@ -143,6 +143,50 @@ def test_solvers_agree_on_a_wall_on_springs(on_springs, name):
     assert abs(ramped / on_springs - 1) > 1e-2
 
 
+VERTICAL = mr.GroundMotion.pieces([(0.1, 2.0), (0.15, -3.0), (0.1, 0.0), (0.1, 4.0)])
+SAME = {
+    "cut into shorter pieces": (
+        mr.GroundMotion.pieces([(0.2, -4.0), (0.0137, -4.0), (0.1281, 0.71), (0.1, 0.0), (0.0013, -1.2), (0.09, -1.2)]),
+        VERTICAL,
+    ),
+    "a sum of motions": (
+        mr.GroundMotion.pieces([(0.2137, -4.0), (0.1281, 0.71)])
+        + mr.GroundMotion.pieces([(0.0913, -1.2)]).delayed(0.2137 + 0.1281 + 0.1),
+        VERTICAL.scaled(0.5) + VERTICAL.scaled(0.5),
+    ),
+}
+
+
+@pytest.mark.parametrize("how", SAME)
+@pytest.mark.parametrize(
+    ("name", "tolerance"),
+    [("theory", 1e-8), ("MuJoCo, fitted steps", 1e-5), ("MuJoCo, one step", 1e-9), ("explicit", 1e-9)],
+)
+def test_the_same_ground_is_the_same_answer(name, tolerance, how):
+    """However its pieces are cut or added, horizontally and vertically; steps that fit a shorter piece are others."""
+
+    def last(motion, vertical):
+        case = mr.Case(WALL, 0.0, 0.6, motion=motion, vertical=vertical)
+        response = mr.solve_analytical(case, E) if name == "theory" else SOLVERS[name][0](case, CONTACTS)
+        return response.theta[-1]
+
+    assert last(*SAME[how]) == pytest.approx(last(OPENING, VERTICAL), rel=tolerance)
+
+
+def test_scipy_and_steps_agree_on_a_vertical_ground_that_jumps():
+    case = mr.Case(WALL, 0.0, 0.6, motion=OPENING, vertical=VERTICAL)
+    exact = mr.solve_compliant(case, CONTACTS, rtol=1e-9, atol=1e-12, output_step=0.6).theta[-1]
+    for name in ("MuJoCo, fitted steps", "explicit"):
+        assert SOLVERS[name][0](case, CONTACTS, output_step=0.6).theta[-1] == pytest.approx(exact, rel=1e-5)
+
+
+def test_a_run_on_pieces_is_kept_and_read(tmp_path):
+    pytest.importorskip("h5py")
+    answer = mr.solve_analytical(shaken(OPENING, 0.6), E)
+    answer.save(tmp_path / "run.h5")
+    assert mr.load(tmp_path / "run.h5").case.motion == OPENING
+
+
 @pytest.mark.parametrize("length", [1e-3, 1e-4])
 def test_double_impulse(length):
     """Nabeshima, Taniguchi, Kojima and Takewaki (Frontiers in Built Environment 2, 2016): an impulse V, and -V when the
