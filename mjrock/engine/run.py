@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 
 from ..geometry.kinematics import gaps
@@ -119,15 +118,14 @@ class EngineRun:
         lost = np.where(gone, 0.5 * strength**2 / links.law["k"], 0.0)
         return plastic_of(self.scene, energy / strength, energy, when, lost)
 
-    def stats(self) -> dict[str, float | str | None]:
+    def stats(self) -> Settings:
         """What a run took, for the `stats` of its response."""
         scene, steps, contacts = self.scene, self.steps, self.scene.contacts
-        stats: dict[str, float | str | None] = {
+        stats: Settings = {
             "steps": len(steps.t),
             "longest_timestep": float(steps.h.max()),
             "sound_timestep": sound_timestep(scene.highest_frequency),
             "touches": steps.touches,
-            "mujoco": mujoco.__version__,
         }
         if self.reading.joints is None:
             deepest = -gaps(scene.places, steps.pose).min(axis=0)

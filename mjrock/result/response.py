@@ -17,7 +17,7 @@ from ..notebook import Drawn
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.standing import in_space
-from ..quantities import Array, keep, require_path, require_within
+from ..quantities import Array, keep, require_path, require_within, shown
 from .bodies import Moving, bodies_of, frames_at, openings
 from .ending import Outcome
 from .files import comments_text, results_text, texts_of_bodies, texts_of_joints, write_gltf, write_series
@@ -580,6 +580,7 @@ def load(path: str | Path, laws: Iterable[type] = ()) -> Response:
         laws: classes of your own that the case has, such as laws of joints: dataclasses and NamedTuples.
 
     Raises:
+        TypeError: for a law that is not a class.
         ImportError: without h5py.
         OSError: if there is no such file.
         ValueError: for another file, a damaged one, one of a newer or older format, or a class that is not known.
@@ -588,5 +589,8 @@ def load(path: str | Path, laws: Iterable[type] = ()) -> Response:
         UserWarning: where the file has a memory of explicit steps that this version of mjrock does not read. All else
             is there, and a run goes on from pose and velocity.
     """
-    answer: Response = read_answer(path, laws)
+    for law in (given := tuple(laws)):
+        if not isinstance(law, type):
+            raise TypeError(f"laws has {shown(law)}, which is not a class; give its class")
+    answer: Response = read_answer(path, given)
     return answer

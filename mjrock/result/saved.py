@@ -154,7 +154,7 @@ def read_answer(path: str | Path, laws: Iterable[type] = ()) -> Any:
             return _answer(path, file, laws)
     except UnreadableError as error:
         raise ValueError(f"{path}: {error}") from None
-    except (OSError, KeyError, RuntimeError, TypeError, AttributeError, json.JSONDecodeError, UnicodeError) as error:
+    except (OSError, LookupError, RuntimeError, TypeError, AttributeError, ValueError) as error:
         raise ValueError(f"{path} is no file of Response.save, or is damaged: {error}") from None
 
 

@@ -6,6 +6,7 @@ mjrock that hold values, and classes that the reader gives.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import enum
 import importlib
@@ -195,7 +196,7 @@ class Reader:
     """
 
     def __init__(self, arrays: Mapping[str, Any], own: Iterable[type] = ()) -> None:
-        self._arrays, self._own = arrays, {kind.__qualname__: kind for kind in own}
+        self._arrays, self._own = arrays, {kind.__name__: kind for kind in own}
         self._known: dict[str, object] = {}
 
     def value(self, tree: Tree, path: str) -> Any:
@@ -285,17 +286,18 @@ class Reader:
             UnreadableError: for one that is not known, or holds no values.
         """
         module, _, own = name.rpartition(".")
-        kind: Any = self._own.get(own)
-        if kind is None and not module:
+        package, _, below = module.partition(".")
+        kind: Any = None
+        if not module:
             public = importlib.import_module(OWN_PACKAGE)
             kind = getattr(public, own, None) if own in public.__all__ else None
-        elif kind is None and module.split(".")[0] == OWN_PACKAGE and module.split(".")[1] in FOLDERS:
-            try:
+        elif package != OWN_PACKAGE:
+            if own not in self._own:
+                raise UnreadableError(f"{path} is of the class {name} of a user; give it as laws=[{own}]")
+            kind = self._own[own]
+        elif below.split(".")[0] in FOLDERS:
+            with contextlib.suppress(ImportError):
                 kind = getattr(importlib.import_module(module), own, None)
-            except ImportError:
-                kind = None
-        elif kind is None:
-            raise UnreadableError(f"{path} is of the class {name} of a user; give it as laws=[{own}]")
         if not isinstance(kind, type) or not (
             dataclasses.is_dataclass(kind) or is_named_tuple(kind) or issubclass(kind, enum.Enum)
         ):

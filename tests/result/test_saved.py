@@ -12,6 +12,7 @@ import warnings
 from collections.abc import Mapping
 from functools import cache, cached_property
 
+import matplotlib
 import numpy as np
 import pytest
 
@@ -159,6 +160,24 @@ def test_every_answer_comes_back_to_the_bit(kind, path):
                 getattr(read, name)
         else:
             assert differences(expected, getattr(read, name), name) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["wall, MuJoCo", "theory", "mortar", "in space"])
+def test_pictures_and_reports_of_it_are_the_same(kind, path):
+    found = answer(kind)
+    read = reloaded(found, path)
+    pages = []
+    for name, one in (("saved", found), ("read", read)):
+        folder = path.with_name(name)
+        folder.mkdir()
+        mr.plotting.view(one, folder / "film.html")
+        mr.report(one.case, one, folder / "report.html")
+        with matplotlib.rc_context({"svg.hashsalt": "same"}):
+            mr.plotting.history(one).figure.savefig(folder / "history.svg", metadata={"Date": None})
+        pages.append({file.name: file.read_text() for file in folder.iterdir()})
+    assert set(pages[0]) >= {"film.html", "report.html", "history.svg"}
+    assert [name for name in pages[0] if pages[0][name] != pages[1][name]] == []
 
 
 @pytest.mark.parametrize("kind", REMEMBERED)
@@ -339,6 +358,14 @@ def test_classes_of_the_user_are_read_where_they_are_given(path):
     with pytest.raises(ValueError, match=r"case\.effects\.0 is of the class .*OwnLoad of a user; give it as laws="):
         mr.load(path)
     assert mr.load(path, laws=[OwnLoad]) == found
+    with pytest.raises(TypeError, match=r"laws has .*OwnLoad.*, which is not a class"):
+        mr.load(path, laws=[load])
+
+
+def test_a_class_of_the_user_takes_the_place_of_none_of_mjrock(path):
+    own = dataclasses.make_dataclass("Case", ["wall"])
+    answer("theory").save(path)
+    assert mr.load(path, laws=[own]) == answer("theory")
 
 
 class TestRefused:
@@ -398,7 +425,7 @@ class TestRefused:
         assert 30 < refused < 60
 
     @pytest.mark.parametrize(
-        "name", ["mjrock.examples.01_release.x", "os.system", "simulate", "mjrock.result.tree.Writer"]
+        "name", ["mjrock.examples.01_release.x", "mjrock.x", "os.system", "simulate", "mjrock.result.tree.Writer"]
     )
     def test_classes_that_hold_no_values(self, path, name):
         """A file names classes. None is imported, or called, that only a forger would name."""

@@ -267,7 +267,7 @@ def response_of_plain(run: PlainRun, settings: dict[str, float], options: Option
         joints=reading.joints,
         plastic=plastic,
         ledger=account if options.ledger else None,
-        stats=reading.stats | {"overlap": overlap, "mujoco": mujoco.__version__} | settings,
+        stats=reading.stats | {"overlap": overlap} | settings,
         end=End(at.pose[-1].copy(), at.velocity[-1].copy()),
         kept_forces=run.forces(plastic) if options.forces else None,
     )
