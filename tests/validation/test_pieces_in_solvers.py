@@ -187,8 +187,8 @@ def test_a_run_on_pieces_is_kept_and_read(tmp_path):
     assert mr.load(tmp_path / "run.h5").case.motion == OPENING
 
 
-@pytest.mark.parametrize("length", [1e-3, 1e-4])
-def test_double_impulse(length):
+@pytest.mark.parametrize(("length", "error"), [(1e-3, 5e-3), (1e-4, 1e-3), (2e-5, 5e-4)])
+def test_double_impulse(length, error):
     """Nabeshima, Taniguchi, Kojima and Takewaki (Frontiers in Built Environment 2, 2016): an impulse V, and -V when the
     block has come back through its first impact. By angular momentum and energy it overturns if
     1/2 I (w1 (1 + e))^2 > m g R (1 - cos alpha), w1 = V m h / I."""
@@ -210,4 +210,4 @@ def test_double_impulse(length):
     low, high = 0.9, 1.1
     while high - low > 1e-5:
         low, high = (low, 0.5 * (low + high)) if falls(0.5 * (low + high)) else (0.5 * (low + high), high)
-    assert high == pytest.approx(1.0, abs=4e-3)
+    assert high == pytest.approx(1.0, abs=error)  # of the length, and of 1e-4 s that the block has left its impact

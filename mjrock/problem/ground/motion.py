@@ -529,7 +529,7 @@ class GroundMotion:
         velocity of the ground by v [m/s].
 
         Args:
-            pieces: duration [s], 1e-5 to 1e3, and acceleration [m/s2], -1e4 to 1e4, of each.
+            pieces: duration [s], 1e-5 to 1e3, and acceleration [m/s2], -1e6 to 1e6, of each.
 
         Raises:
             TypeError, ValueError: for what is not at least one pair of them, or a value outside its range.
@@ -547,7 +547,7 @@ class GroundMotion:
             if not isinstance(piece, Sequence) or isinstance(piece, str) or len(piece) != 2:
                 raise TypeError(f"pieces[{i}] = {shown(piece)} is no pair; pieces takes {takes}")
             duration = require_within(f"duration of pieces[{i}]", piece[0], FINEST, 1e3, "s")
-            found.append((duration, require_within(f"acceleration of pieces[{i}]", piece[1], -1e4, 1e4, "m/s2")))
+            found.append((duration, require_within(f"acceleration of pieces[{i}]", piece[1], -1e6, 1e6, "m/s2")))
         if not found:
             raise ValueError(f"pieces is empty; it takes {takes}")
         return cls._of_pieces(found, f"{len(found)} pieces, {sum(duration for duration, _ in found):g} s")
