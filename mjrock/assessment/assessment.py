@@ -145,8 +145,10 @@ class Assessment:
 
         first: Any = next(iter(self.mechanisms.values())).problem
         checks: dict[str, Any] = {name: [one] for name, one in self.check().items()} if self.has_site else {}
-        for name, one in (self.dynamic_check(runs) if runs else {}).items():
-            checks.setdefault(name, []).append(one)
+        for name, of in (runs or {}).items():
+            one = self.mechanisms[name]
+            if (found := self._of(one, partial(one.verdict_on, of))) is not None:
+                checks.setdefault(name, []).append(found)
         shown = dict(runs or {})
         impacts = {name: self.mechanisms[name].shaking for name in shown}
         given: dict[str, Any] = {

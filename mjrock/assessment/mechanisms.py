@@ -13,7 +13,7 @@ from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.case import Case
-from ..quantities import Message, reason
+from ..quantities import Implausible, Message, reason, warn_of
 from ..result.response import Response
 from ..study.loading.code import USUAL_CODE, code_of
 from ..study.loading.code_check import (
@@ -139,6 +139,23 @@ class Mechanism:
         """
         options = dict(self.shaking.dynamic) | {name: one for name, one in self.options.items() if name == "code"}
         return dynamic_check(runs, curve=self.limit_curve, **options | kept)
+
+    def verdict_on(self, runs: Sequence[Response] | Sequence[Analysis], **kept: Path) -> DynamicCheck | None:
+        """The check of its runs, see `dynamic`; None where no records move it, and of masonry whose limit curve has no
+        d_0, of which a warning says why.
+
+        Warns:
+            Implausible: for masonry without a verdict.
+        """
+        if not self.shaking.records:
+            return None
+        try:
+            return self.dynamic(runs, **kept)
+        except ValueError as error:
+            if self.is_wall:
+                raise
+            warn_of(f"runs of masonry have no verdict: {error}", Implausible)
+            return None
 
 
 def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:

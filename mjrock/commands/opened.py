@@ -55,4 +55,7 @@ def tasks_of(assessment: Assessment) -> dict[str, list[Analysis]]:
 
 def motion_of(task: Analysis) -> str:
     """What moves the wall or the masonry of a run."""
-    return "release" if task.case.motion is None else task.case.motion.name
+    case = task.case
+    if case.motion is not None:
+        return case.motion.name
+    return "supports" if getattr(case, "supports", ()) else "release"

@@ -13,7 +13,7 @@ from .opened import FILE_HELP, INPUT, opened, tasks_of
 
 
 def answer(argv: Sequence[str]) -> Answer:
-    """Write the report of a file, with the runs under its records.
+    """Write the report of a file, with its runs.
 
     Raises:
         ValueError: for a file that is wrong.
@@ -24,13 +24,13 @@ def answer(argv: Sequence[str]) -> Answer:
     made.add_argument("file", metavar="FILE", help=FILE_HELP)
     add_output(made, "the report, which ends in .html or .pdf", "FILE with the ending .html")
     made.add_argument("-l", "--language", choices=languages(), help="instead of that of the file")
-    made.add_argument("--no-runs", action="store_true", help="leave out the runs under records")
+    made.add_argument("--no-runs", action="store_true", help="leave out the runs")
     args = made.parse_args(argv)
     path = args.output or Path("report.html" if args.file == INPUT else args.file).with_suffix(".html")
     require_free(path, args.force)
     if path.suffix.lower() == ".pdf":
         pdf_writer()  # before anything is run
     assessment = opened(args.file, args.language)
-    tasks = {} if args.no_runs else {name: some for name, some in tasks_of(assessment).items() if some[0].case.grounds}
+    tasks = {} if args.no_runs else tasks_of(assessment)
     runs = {name: [task.solve() for task in counted(some, name or "runs", "runs")] for name, some in tasks.items()}
     return Answer(f"written: {assessment.report(path, runs or None)}")

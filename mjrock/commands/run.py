@@ -7,10 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..assessment.assessment import Assessment
-from ..assessment.mechanisms import Mechanism
 from ..command_line import Answer, Status, add_output, parser, require_free, ruled
 from ..contacts.files import aligned, csv_text, write_text
-from ..notice import notice
 from ..plotting.animation import animate
 from ..plotting.histories import history
 from ..plotting.style import save
@@ -23,7 +21,7 @@ from ..study.campaign.campaign import completed
 from ..study.campaign.task import Row
 from ..study.loading.code_check import DynamicCheck
 from .check import table_of as conditions_of
-from .opened import FILE_HELP, INPUT, opened, tasks_of
+from .opened import FILE_HELP, INPUT, motion_of, opened, tasks_of
 
 Rows = dict[str, list[Row]]
 """The rows of runs by the names of their mechanisms."""
@@ -64,7 +62,7 @@ def called(run: Analysis, words: Words) -> str:
     """What moves the wall or the masonry of a run, in words."""
     motion = run.case.motion
     if motion is None:
-        return words("release")
+        return words(f"moved_by_{motion_of(run)}")
     return record_name(motion, words) + f", {words('reversed')}" * motion.name.endswith(REVERSED)
 
 
@@ -83,19 +81,6 @@ def written(runs: Sequence[Analysis], rows: Sequence[Row], files: Files, film: b
     response = runs[which].solve()
     save(history(response, str(runs[which].labels["motion"])), files.picture)
     return [files.table, files.picture, *([animate(response, files.film)] if film else [])]
-
-
-def verdict_on(mechanism: Mechanism, runs: Sequence[Analysis], store: Path) -> DynamicCheck | None:
-    """The check by the runs under records, that of masonry where its limit curve has a d_0; None of a release."""
-    if not mechanism.shaking.records:
-        return None
-    try:
-        return mechanism.dynamic(runs, store=store, histories=histories_of(store))
-    except ValueError as error:
-        if mechanism.is_wall:
-            raise
-        notice(f"no verdict by runs: {error}", by="warning")
-        return None
 
 
 def histories_of(store: Path) -> Path:
@@ -148,7 +133,7 @@ def answer(argv: Sequence[str]) -> Answer:
     text, holds = list[str](), True
     for name, some in runs.items():
         found = written(some, rows[name], places[name], not args.no_film)
-        check = verdict_on(assessment.mechanisms[name], some, store)
+        check = assessment.mechanisms[name].verdict_on(some, store=store, histories=histories_of(store))
         holds &= check is None or check.holds
         judged = [] if check is None else ["", dynamic_of(name, check, words)]
         text += [*filter(None, [name]), table_of(some, rows[name], words), *judged, ""]

@@ -205,3 +205,31 @@ def test_ctrl_c_is_one_line_and_the_same_call_carries_on(here):
     assert "Traceback" not in err
     assert "rows are kept, and the same call carries on from there" in err.splitlines()[-1]
     assert not (here / "many_runs.csv").exists()
+
+
+ARCH = """
+kind = "MasonryCase"
+duration = 0.2
+[masonry]
+make = "arch"
+radius = 2.0
+thickness = 0.45
+span_angle = "160 deg"
+voussoirs = 5
+k_n = 1e9
+[supports]
+right_abutment = [[0.0, 0.2], [0.0, 0.003], [0.0, 0.0]]
+"""
+
+
+def test_an_arch_whose_support_moves_is_a_file(here, capsys):
+    """It is run and reported without a site, as what moves it says; the same as in Python."""
+    (here / "arch.toml").write_text(ARCH)
+    case = mr.from_toml(here / "arch.toml").mechanisms[""].problem
+    assert [(one.block, one.dx) for one in case.supports] == [("right_abutment", (0.0, 0.003))]
+    said = printed(capsys, "run", "walls/arch.toml", "--no-film", "-w", 1, "-l", "it")
+    row = next(line for line in said.splitlines() if line.startswith("cedimento imposto"))
+    found = mr.solve_explicit(case)
+    assert float(row.split()[-1].replace(",", ".")) == pytest.approx(found.peak.max(), rel=1e-3)
+    printed(capsys, "report", "walls/arch.toml")
+    assert "right_abutment" in (here / "arch.html").read_text(encoding="utf-8")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,6 +49,12 @@ from .laws.own_law import Own
 from .limit.collapse import limit_of, pushed
 from .masonry import Masonry
 from .standing import MasonryStanding
+
+if TYPE_CHECKING:  # what is kept is of another type than what is given
+    Histories = Any
+    Tilt = Any
+else:
+    Histories, Tilt = Mapping[str, ArrayLike], ArrayLike | None
 
 JUDGED_BLOCKS = 40
 """Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
@@ -160,10 +167,10 @@ class MasonryCase(Carrying):
     vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None
     effects: tuple[Effect, ...] = ()
-    supports: Any = ()
+    supports: Histories = ()
     transverse: GroundMotion | None = field(default=None, kw_only=True)
     settled: bool = field(default=True, kw_only=True)
-    tilt: Any = field(default=None, kw_only=True)
+    tilt: Tilt = field(default=None, kw_only=True)
 
     def __repr__(self) -> str:
         said = [f"{self.duration:.6g} s", *(f"{name} {motion.name!r}" for name, motion in self.grounds.items())]
