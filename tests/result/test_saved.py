@@ -362,6 +362,38 @@ def test_classes_of_the_user_are_read_where_they_are_given(path):
         mr.load(path, laws=[load])
 
 
+@mr.joint_law
+class Stiffening:
+    """A law of joints from a user's file, with a memory."""
+
+    a: float
+    memory = ("most",)
+
+    def stress(self, u):
+        return self.k_n * u * (1 + u / self.a) if u > 0 else 0.0
+
+    def energy(self, u):
+        return self.k_n * u * u * (0.5 + u / (3 * self.a)) if u > 0 else 0.0
+
+    def remember(self, u):
+        self.most = max(self.most, u)
+
+
+@pytest.mark.slow
+def test_own_laws_of_joints_go_on_to_the_bit(path):
+    """Compiled in each process; slow for that."""
+    masonry = mr.Masonry(boxes(), joints=mr.Dry(k_n=1e9, k_s=1e9, law=Stiffening(a=2e-5)))
+    found = mr.solve_explicit(mr.MasonryCase(masonry, 0.1, motion=SHAKE), ledger=True, forces=True)
+    found.save(path)
+    with pytest.raises(ValueError, match=r"masonry\.bond is of the class .*Stiffening of a user; give it as laws="):
+        mr.load(path)
+    read = mr.load(path, laws=[Stiffening])
+    assert differences(found, read) == []
+    on = [mr.solve_explicit(one.case, start=one.end) for one in (found, read)]
+    assert differences(on[0].motion, on[1].motion) == []
+    assert read.end.memory is not None
+
+
 def test_a_class_of_the_user_takes_the_place_of_none_of_mjrock(path):
     own = dataclasses.make_dataclass("Case", ["wall"])
     answer("theory").save(path)
