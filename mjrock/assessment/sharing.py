@@ -34,9 +34,24 @@ def shared(whole: Schema) -> Schema:
             parts[names[text]] = _over_parts(node, written)
         return {"$ref": f"#/$defs/{names[text]}"}
 
+    tables = whole["$defs"]
+    whole = whole | {"$defs": {name: _beyond(tables, name) for name in tables}}
     count(whole)
     made: Schema = _over_parts(whole, written)
     return made | {"$defs": made["$defs"] | parts}
+
+
+def _beyond(tables: Schema, name: str) -> Schema:
+    """A definition; where there is the same table with no key that it needs, of a mechanism that shares keys with
+    others, as what it asks for beyond that one."""
+    table: Schema = tables[name]
+    free = f"{name.rstrip('?!')}?{'' if name.startswith('[') else '!'}"
+    keys, own = tables.get(free, {}).get("properties", {}), table.get("properties", {})
+    if name == free or not keys or keys.keys() != own.keys():
+        return table
+    further = {key: one for key, one in own.items() if one != keys[key] and "const" not in one}
+    needed = {"required": table["required"]} if "required" in table else {}
+    return {"$ref": f"#/$defs/{free}"} | needed | ({"properties": further} if further else {})
 
 
 def _over_parts(node: Any, call: Callable[[Any], Any]) -> Any:
