@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
+from collections.abc import Iterator
 from copy import deepcopy
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from ..compiled import for_types_of
 from ..quantities import Array
 from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
+from .kinds.own import OwnLaws
 from .limit import LEAD, STABLE_AHEAD
 from .loop import Clock, advance
 from .memory import Memory, remember
@@ -151,7 +153,8 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
                 steps = for_types_of(advance, system, books, samples, clock)
             clock = clock._replace(step=step, row=row)
             for body in unsound(system.bodies)[:1].tolist():
-                raise breakdown(f"the motion of {setup.scene.bodies.names[body]}", step * clock.h)
+                moving = f"the motion of {setup.scene.bodies.names[body]}"
+                raise breakdown(next(broken_laws(setup, system), moving), step * clock.h)
     return Followed(system, clock.step, clock.row, None if ended else memory)
 
 
@@ -167,6 +170,19 @@ def searched(search: ContactSearch, system: System, books: Books, clock: Clock) 
     except ArithmeticError as error:
         raise breakdown(str(error), t) from None
     return system._replace(supports=supports), books, steps
+
+
+def broken_laws(setup: Setup, system: System) -> Iterator[str]:
+    """Own laws that have answered a number that is not finite, with their joints."""
+    contacts = setup.scene.contacts
+    for law in system.laws:
+        if isinstance(law, OwnLaws) and len(law.rows):
+            springs = (
+                np.isfinite(system.lines["k"]) & np.isfinite(system.lines["bent"]) & np.isfinite(system.lines["c"])
+            )
+            springs[unsound(law.rows, law.endless)] = False
+            for joint in law.rows["joint"][~springs & (law.rows["address"] != 0)].tolist():
+                yield f"the law {contacts.bonds[joint].name} of {contacts.joints[joint]}"
 
 
 def breakdown(what: str, t: float) -> RuntimeError:

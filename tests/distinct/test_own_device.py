@@ -1,4 +1,4 @@
-"""A device or a joint with a law of its own is one file: the bumper and the strap of the page on own effects."""
+"""A device with a law of its own is one file: the bumper of the page on own effects."""
 
 import importlib.util
 import re
@@ -52,45 +52,7 @@ def check(bumper, in_space):
         mr.simulate(case)
 
 
-def strapped(strap, in_space):
-    """A block of 0.4 m that is thrown up from the ground, to which a strap holds it."""
-    if in_space:
-        ground = mr.Polyhedron.box((1, 1, 1), (0, 0, -0.5), fixed=True)
-        blocks = [ground, mr.Polyhedron.box((0.4, 0.4, 0.4), (0, 0, 0.2), density=1000.0)]
-        velocity = [[0, 0, SPEED, 0, 0, 0]]
-    else:
-        ground = mr.Polygon([(-1, -1), (1, -1), (1, 0), (-1, 0)], fixed=True)
-        block = mr.Polygon([(-0.2, 0), (0.2, 0), (0.2, 0.4), (-0.2, 0.4)], density=1000.0, length=0.4)
-        blocks, velocity = [ground, block], [[0, SPEED, 0]]
-    masonry = mr.Masonry(blocks, k_n=2e6, k_s=1e6, points=3, xi=0.0, frequency=50.0, bond=strap(a=0.01))
-    return mr.MasonryCase(masonry, 0.045, velocity=velocity, settled=False)
-
-
-def check_strap(strap, in_space):
-    """The strap pulls by its law, as far as the energy of the throw allows, and gives that back."""
-    case = strapped(strap, in_space)
-    answer = mr.solve_explicit(case, timestep=1e-4, ledger=True, forces=True, output_step=1e-4)
-    mass, stiffness, gravity = case.masonry.blocks[1].mass, 2e6 * 0.16, 9.81
-    place, speed = answer.pose[:, 0, 2 if in_space else 1], answer.velocity[:, 0, 2 if in_space else 1]
-    opening = np.maximum(place, 0.0)
-    force = stiffness * (opening + opening**3 / 0.01**2)
-    energy = stiffness * (0.5 * opening**2 + 0.25 * opening**4 / 0.01**2)
-    highest = 0.5 * mass * SPEED**2
-    assert opening.max() > 0.006
-    assert energy.max() + mass * gravity * opening.max() == pytest.approx(highest, rel=1e-4)
-    up = place > 0
-    np.testing.assert_allclose(answer.forces.normal[up, 0], -force[up], rtol=1e-9)
-    np.testing.assert_allclose(answer.ledger.elastic[up], energy[up], rtol=1e-9, atol=1e-9 * highest)
-    assert np.abs(answer.ledger.residual).max() < 1e-4 * highest
-    back = np.flatnonzero(up & (speed < 0))[-1]
-    assert speed[back] == pytest.approx(
-        -np.sqrt(SPEED**2 - 2 * (energy[back] / mass + gravity * place[back])), rel=1e-4
-    )
-    with pytest.raises(ValueError, match=r"bond of .*: .* takes joints that push only; solve_explicit takes bonds"):
-        mr.simulate(case)
-
-
-EXAMPLES = {"bumpers": ("KINDS", "Bumpers", "Bumper", check), "straps": ("LAWS", "Straps", "Strap", check_strap)}
+EXAMPLES = {"bumpers": ("KINDS", "Bumpers", "Bumper", check)}
 """The examples of the page by their module: the list that names the kind, the kind, what a user writes, the check."""
 
 

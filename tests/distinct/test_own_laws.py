@@ -217,6 +217,13 @@ def test_what_is_no_law_is_named(said):
     assert "\n" not in str(error.value)
 
 
+def test_a_law_that_fails_in_a_run_is_named_with_its_joint():
+    """Beyond the closings for which it was checked."""
+    law = law_of(stress=lambda self, u: self.k_n * u / (u < 2e-3) if u > 0 else 0.0)
+    with pytest.raises(RuntimeError, match=r"the law Mine of .*ground.* breaks down by t = .* s: its numbers are not"):
+        run(replace(BED, law=law()), 0.02, -5.0)
+
+
 def test_a_law_that_pulls_needs_a_shear_stiffness():
     with pytest.raises(ValueError, match=r"law of the joint: Cohesive pulls, and k_s = None; give k_s in N/m3"):
         mr.Dry(law=GLUE)

@@ -37,7 +37,7 @@ QUANTITIES = {
     "tolerance": Quantity(1, 0, 0),
     **dict.fromkeys(("tension", "cohesion", "crushing"), Quantity(-1, -2, 1)),
     **dict.fromkeys(("opening_energy", "slip_energy", "crushing_energy"), Quantity(0, -2, 1)),
-    "hardening": Quantity(1, 0, 0),
+    **dict.fromkeys(("hardening", "softness"), Quantity(1, 0, 0)),
     **dict.fromkeys(("duration", "dt", "t"), Quantity(0, 1, 0)),
     "acceleration": Quantity(1, -2, 0, "vector"),
     **dict.fromkeys(("angle", "slope"), Quantity(0, 0, 0, "spin in the plane")),

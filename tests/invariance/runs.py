@@ -19,6 +19,7 @@ from mjrock.problem.masonry.blocks.joints_in_space import SpaceJoint
 from mjrock.problem.masonry.lines import Lines
 from mjrock.problem.masonry.standing import MasonryStanding
 from mjrock.problem.wall.standing import Solid
+from tests import own_laws
 
 from .quantities import QUANTITIES, Quantity, Scene, changed
 
@@ -87,6 +88,9 @@ def motions(record: Scene | None) -> dict[str, mr.GroundMotion | None]:
 def masonry_of(scene: Scene) -> mr.Masonry:
     """The blocks and joints of a scene."""
     bond = None if scene["bond"] is None else mr.Bond(**scene["bond"])
+    if "own" in scene:
+        softness, glue = scene["own"]["softness"], scene["own"].get("glue")
+        bond = own_laws.Stiffening(softness) if glue is None else own_laws.Cohesive(*glue.values())
     pairs = None if scene.get("pairs") is None else mr.Dry(**scene["pairs"])
     blocks = [block_of(unit) for unit in scene["units"]]
     return mr.Masonry(blocks, bond=bond, pairs=pairs, **{name: scene[name] for name in OF_JOINTS})

@@ -9,9 +9,9 @@ from mjrock.problem.masonry.masonry import Masonry
 from tests.invariance.__main__ import table
 from tests.invariance.balance import is_stepwise, unbalanced, unbalanced_bodies
 from tests.invariance.invariances import INVARIANCES, Trial
-from tests.invariance.judge import EQUAL, judge, overheard
+from tests.invariance.judge import EQUAL, judge, overheard, tried, watched
 from tests.invariance.quantities import changed, moved, scaled, turned
-from tests.invariance.random_scenes import LATER, PLACES, draw, on_a_slope
+from tests.invariance.random_scenes import DENSITY, LATER, PLACES, draw, on_a_slope
 from tests.invariance.runs import solve
 
 FIRST, SCENES, ADDED, CHUNK, DRAWN = 1000, 300, 90, 10, 3
@@ -44,6 +44,28 @@ def test_rounding_decides_nothing(seed):
     move alike 1000 m away. What is rounded there, 1e-13 m, grows by less than 1e5."""
     with overheard():
         assert INVARIANCES["elsewhere"].run(Trial(draw(seed))) < 10 * EQUAL
+
+
+SAME = ("twice", "after_another", "in_a_thread", "from_the_middle", "mirrored", "renumbered", "in_space", "elsewhere")
+
+
+@pytest.mark.parametrize("glued", [False, True])
+@pytest.mark.parametrize(
+    "seed", [5, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 4, 6, 9, 11, 14, 16))]
+)
+def test_a_scene_whose_joints_have_own_laws(seed, glued):
+    """Joints that stiffen, and glue with a memory, in the plane and in space, as stacks and walls and where blocks fall
+    on contacts that are found."""
+    scene = draw(seed)
+    pressure = DENSITY * 9.81 * scene["size"]
+    own = {"softness": pressure / scene["k_n"]}
+    if glued:
+        own["glue"] = {"tension": 3 * pressure, "opening_energy": 27 * pressure**2 / scene["k_n"]}
+    with overheard():
+        trial = Trial(scene | {"bond": None, "own": own})
+        assert not watched(trial)
+        verdicts = {name: tried(trial, name) for name in (*SAME, "larger", "heavier")}
+    assert not [name for name, found in verdicts.items() if found is not None and found[0] == "unexplained"]
 
 
 @pytest.mark.slow

@@ -20,9 +20,10 @@ from ....quantities import Array, Flags, Integers, keep, keep_declared, require_
 
 Kind = TypeVar("Kind")
 
-ANSWERS = ("stress_", "energy_", "damping_", "lost_")
-"""What a law has take_answer at the last pose, in this order in its row: [Pa], [J/m2], [Pa], [-]."""
-OF_STRESS, OF_ENERGY, OF_DAMPING, OF_LOST = range(len(ANSWERS))
+ANSWERS = ("stress_", "energy_", "damping_", "lost_", "taken_")
+"""What a law has answered at the last pose, in this order in its row: [Pa], [J/m2], [Pa], [-], and by how much its
+energy fell as its memory changed there [J/m2]."""
+OF_STRESS, OF_ENERGY, OF_DAMPING, OF_LOST, OF_TAKEN = range(len(ANSWERS))
 OF_JOINT = ("k_n", "friction")
 """Numbers of the joint that a law finds in its row."""
 OF_K_N = len(ANSWERS)
@@ -138,10 +139,14 @@ def answering(kind: Any, made: Callable[[Any], Any] = lambda text: text) -> Call
     """
     stress, energy, damping, remember, lost = (made(getattr(kind, name)) for name in ARGUMENTS)
 
+    remembers = bool(kind.memory)
+
     def answer(row: Any, closing: float, rate: float) -> None:
+        held = energy(row, closing) if remembers else 0.0
         remember(row, closing)
         row.stress_ = stress(row, closing)
         row.energy_ = energy(row, closing)
+        row.taken_ = held - row.energy_ if remembers else 0.0
         row.damping_ = damping(row, closing, rate)
         row.lost_ = lost(row)
 
