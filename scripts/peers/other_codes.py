@@ -25,6 +25,7 @@ from mjrock import plotting
 from mjrock.plotting.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, Look, legend_below
 from mjrock.study.campaign.campaign import completed
 from scripts.shared import cli, suite
+from scripts.shared.labels import beside
 
 CODES = ("UDEC", "LMGC90", "HybriDFEM")
 LISTED: Mapping[float, Sequence[float | None]] = {
@@ -63,8 +64,6 @@ BASE, TOP, HEIGHT, DRUMS, DRUM = 1.11, 0.9, 5.95, 7, 0.82
 """Widths at base and top, height, number of drums and height of one [m]; a capital is on top of them."""
 FOLLOWED = 4.0
 """How long a column is followed after the pulse [s]."""
-SAMPLES = 1000
-"""Samples of a pulse to t_p."""
 
 
 class Choice(NamedTuple):
@@ -94,8 +93,11 @@ CHOICES = (
 CHOSEN_AT = (0.2, 0.5)
 """Durations for which every choice is tried [s]."""
 SHORT = (0.06, 0.08, 0.1, 0.12, 0.15)
-SPEEDS = tuple(round(0.28 + 0.01 * i, 2) for i in range(23))
+SPEEDS = tuple(round(0.28 + 0.02 * i, 2) for i in range(12))
 """Of the map of short pulses: t_p [s], and a t_p [g s]."""
+JUMP = 0.34
+SCANNED = tuple(round(0.36 + 0.01 * i, 2) for i in range(15))
+"""The pulse [s] at which the codes jump from one branch to another, and the a [g] at which the column is run there."""
 LOOKS: Mapping[str, Look] = {
     "UDEC": {"marker": "^", "color": GREEN},
     "LMGC90": {"marker": "x", "color": PURPLE},
@@ -126,12 +128,10 @@ def column(**given: Any) -> mr.Masonry:
 
 
 def pulse(a: float, t_p: float) -> mr.GroundMotion:
-    """+a for t_p, -a/2 for 2 t_p [g, s]; a jump is a ramp over two samples that has its area."""
-    shape = np.full(3 * SAMPLES + 2, -0.5)
-    shape[:SAMPLES], shape[SAMPLES], shape[-2:] = 1.0, 0.25, (-0.25, 0.0)
+    """+a for t_p, -a/2 for 2 t_p [g, s]."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*accelerations are in m/s2", UserWarning)  # beyond 3 g, as published
-        return mr.GroundMotion(mr.GRAVITY * a * shape, t_p / SAMPLES)
+        return mr.GroundMotion.pieces([(t_p, mr.GRAVITY * a), (2 * t_p, -mr.GRAVITY * a / 2)])
 
 
 def analysis(choice: Choice, t_p: float, a: float) -> mr.MasonryAnalysis:
@@ -289,10 +289,13 @@ def draw_ratios(ax: Axes, found: Mapping[float, float], above: Sequence[float | 
         has = [i for i, t_p in enumerate(found) if t_p in values]
         ratios = [values[t_p] / m for t_p, m in zip(found, mean, strict=True) if t_p in values]
         ax.plot(at[has] + shift, ratios, linestyle="none", markersize=4, **LOOKS[name])
+    top = 1.3
     for x, least, again, m in zip(at + 0.24, found.values(), above, mean, strict=True):
         ax.plot([x, x], [least / m, (again or least) / m], color=BLUE, linewidth=1)
+        if least / m > top:
+            beside(ax, (x, top), f"{least / m:.2f} \u2191", BLUE, (-4, -8))
     ax.set_xticks(at, [f"{t_p:g}" for t_p in found], rotation=90, fontsize=8)
-    ax.set(xlabel="$t_p$ [s]", ylabel="over the mean of the codes [-]", xlim=(-0.6, len(found) - 0.4), ylim=(0.75, 1.3))
+    ax.set(xlabel="$t_p$ [s]", ylabel="over the mean of the codes [-]", xlim=(-0.6, len(found) - 0.4), ylim=(0.8, top))
 
 
 def draw_given(column_ax: Axes, pulse_ax: Axes) -> None:
@@ -307,8 +310,8 @@ def draw_given(column_ax: Axes, pulse_ax: Axes) -> None:
     pulse_ax.spines[["top", "right"]].set_visible(False)
 
 
-def drawn(rows: Mapping[float, Mapping[str, Any]]) -> Figure:
-    """Column and pulse, thresholds, and ratios, from the row of each pulse."""
+def drawn(rows: Mapping[float, Mapping[str, Any]], jump: Sequence[float]) -> Figure:
+    """Column and pulse, thresholds, and ratios, from the row of each pulse, and the a that overturn at the jump."""
     found = {t_p: row["capacity_g"] for t_p, row in rows.items()}
     figure = Figure(figsize=(7.4, 6.6), layout="constrained")
     halves = figure.add_gridspec(2, 1, height_ratios=[1.25, 1])
@@ -317,7 +320,12 @@ def drawn(rows: Mapping[float, Mapping[str, Any]]) -> Figure:
     draw_given(figure.add_subplot(given[0]), figure.add_subplot(given[1]))
     ax = figure.add_subplot(sides[1])
     draw_thresholds(ax, found)
-    draw_ratios(figure.add_subplot(halves[1]), found, [row["stands_above_g"] for row in rows.values()])
+    ratios = figure.add_subplot(halves[1])
+    draw_ratios(ratios, found, [row["stands_above_g"] for row in rows.values()])
+    scan: Look = {"linestyle": "none", "marker": "o", "markersize": 4, "color": BLUE, "markerfacecolor": "none"}
+    ax.plot([JUMP] * len(jump), jump, label="mjrock, scan by 0.01 g", **scan)
+    if JUMP in found:
+        ratios.plot([list(found).index(JUMP) + 0.24] * len(jump), np.array(jump) / spread(JUMP)[1], **scan)
     legend_below(figure, *ax.get_legend_handles_labels(), ncols=5)
     return figure
 
@@ -377,7 +385,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     store = out / "other_codes.sqlite"
     pulses, choices = (PULSES[2::14], CHOICES[:1]) if args.quick else (PULSES, CHOICES)
-    short, speeds = (SHORT[2:3], SPEEDS[::11]) if args.quick else (SHORT, SPEEDS)
+    short, speeds = (SHORT[2:3], SPEEDS[::6]) if args.quick else (SHORT, SPEEDS)
     tasks = [searched(AS_PUBLISHED, t_p, below=0 if args.quick else 25, spacing=0.03) for t_p in pulses]
     below = 0 if args.quick else 12
     tried = {(one.name, t_p): searched(one, t_p, below=below) for one in choices for t_p in CHOSEN_AT}
@@ -385,9 +393,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     by_pulse = dict(zip(pulses, rows, strict=False))
     found = {t_p: row["capacity_g"] for t_p, row in by_pulse.items()}
     least = dict(zip(tried, (row["capacity_g"] for row in rows[len(pulses) :]), strict=True))
+    scan = [analysis(AS_PUBLISHED, JUMP, a) for a in SCANNED[:: 7 if args.quick else 1]]
     grid = [analysis(choice, t_p, v / t_p) for choice in (AS_PUBLISHED, DAMPED) for t_p in short for v in speeds]
-    mapped = completed(grid, store, workers=args.workers)
-    plotting.save(drawn(by_pulse), out / "other_codes.png")
+    ends = completed([*scan, *grid], store, workers=args.workers)
+    jump, mapped = [row["a"] for row in ends[: len(scan)] if falls(row)], ends[len(scan) :]
+    plotting.save(drawn(by_pulse, jump), out / "other_codes.png")
     plotting.save(drawn_choices(least, mapped), out / "other_codes_choices.png")
     header = [
         "t_p [s]",
@@ -400,6 +410,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     table = of_pulses(by_pulse)
     static = mr.collapse_multiplier(column()).multiplier
     texts = [cli.table(header, table), of_codes(found), of_choices(least), of_map(mapped)]
+    texts.append(
+        f"t_p {JUMP} s, {len(scan)} a from {scan[0].labels['a']} to {scan[-1].labels['a']} g: overturns at {jump}"
+    )
     texts.append(f"limit analysis: {STATIC} published, {static:.4f} found")
     texts += [of_assemblies(args.samples), of_arches(CUTS[:1] if args.quick else CUTS)]
     cli.report(out / "other_codes", "\n\n".join(texts), header, table)
