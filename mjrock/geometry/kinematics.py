@@ -215,15 +215,26 @@ def ways_along(places: Places, i: int, frames: Array) -> tuple[Vector, ...]:
 
 
 @inlined
-def gap(places: Places, i: int, frames: Array, v: Array, a: Array) -> Gap:
-    """The gap of point i, and how it changes with the velocities v and accelerations a of the bodies."""
-    meets, axes, face = meeting(places, i, frames), places.axes, places.face_body[i]
-    velocity, normal = over_face(places, i, meets, frames, v), meets.normal
+def swept_along(
+    places: Places, i: int, meets: Meeting, frames: Array, v: Array, velocity: Vector, way: Vector
+) -> float:
+    """Second rate of the place of point i along a direction of its face, the part that is quadratic in the velocities v
+    [m/s2], see `over_face` for the velocity. The direction turns with the face."""
+    axes, face = places.axes, places.face_body[i]
     turning = spin(frames, v, places.body[i], axes)
-    swept = dot(normal, spun(turning, spun(turning, meets.arm)))
+    swept = dot(way, spun(turning, spun(turning, meets.arm)))
     if face >= 0:
         turning = spin(frames, v, face, axes)
-        swept -= dot(normal, spun(turning, plus(spun(turning, meets.face_arm), scaled(2.0, velocity))))
+        swept -= dot(way, spun(turning, plus(spun(turning, meets.face_arm), scaled(2.0, velocity))))
+    return swept
+
+
+@inlined
+def gap(places: Places, i: int, frames: Array, v: Array, a: Array) -> Gap:
+    """The gap of point i, and how it changes with the velocities v and accelerations a of the bodies."""
+    meets = meeting(places, i, frames)
+    velocity, normal = over_face(places, i, meets, frames, v), meets.normal
+    swept = swept_along(places, i, meets, frames, v, velocity, normal)
     return Gap(meets.gap, dot(normal, velocity), dot(normal, over_face(places, i, meets, frames, a)), swept)
 
 

@@ -39,6 +39,7 @@ from ..geometry.kinematics import (
     over_face,
     slack,
     stretch,
+    swept_along,
     ways_along,
     where_friction_acts,
 )
@@ -295,22 +296,28 @@ class Potential:
         """Stiffness of springs of k [N/m], shape (m + t,), at the openings' rates, shape (n nv, n nv)."""
         return sprung(self.rates(pose), springs)
 
-    def curvature(self, pose: Array) -> csr_array:
-        """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).
+    def curvature(self, pose: Array, drag: Array | None = None) -> csr_array:
+        """Geometric stiffness: the second derivatives of the openings and slips, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
-        takes from the stiffness of a tall wall. A force F that follows a turning point at r from the centroid adds F.r
-        1 - (F r^T + r F^T) / 2 to the rotations in space, and F.r to the one rotation of the plane.
+        takes from the stiffness of a tall wall. Friction adds the same with the second derivatives of the slip. A force
+        F that follows a turning point at r from the centroid adds F.r 1 - (F r^T + r F^T) / 2 to the rotations in
+        space, and F.r to the one rotation of the plane.
+
+        Args:
+            pose: of shape (n nq,).
+            drag: friction on the bodies of the points along the ways of `slip_rates` [N], shape (m, ways), or None.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
         frames, none, nv = frames_of(pose, places.freedom), np.zeros_like(masses), places.freedom.nv
         acting = self.pushes(pose)
         bent = np.zeros((len(acting), 2 * nv, 2 * nv))
-        _curvatures(places, ties, frames, none, acting, bent)
+        drag = np.zeros((len(places.body), places.freedom.translations - 1)) if drag is None else drag
+        _curvatures(places, ties, frames, none, (acting, drag), bent)
         bodies = np.repeat(self._bodies, nv, axis=1)
         unknown = np.where(bodies < 0, -1, nv * bodies + np.tile(np.arange(nv), 2))
-        there = (unknown[:, :, None] >= 0) & (unknown[:, None] >= 0) & (acting != 0)[:, None, None]
+        there = (unknown[:, :, None] >= 0) & (unknown[:, None] >= 0) & (bent != 0)
         rows, columns = np.broadcast_to(unknown[:, :, None], bent.shape), np.broadcast_to(unknown[:, None], bent.shape)
         shape = (len(masses), len(masses))
         of_springs = csr_array((bent[there], (rows[there], columns[there])), shape=shape)
@@ -395,13 +402,16 @@ def _slips(places: Places, frames: Array, slips: Array) -> None:
 
 
 @compiled
-def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: Array, curvature: Array) -> None:
-    """Write the geometric stiffness of each closed spring, for the velocities of its first and then of its second body.
+def _curvatures(
+    places: Places, ties: Ties, frames: Array, none: Array, forces: tuple[Array, Array], curvature: Array
+) -> None:
+    """Write the geometric stiffness of each spring and of its friction, for the velocities of its first and then of its
+    second body.
 
     What is quadratic in the velocities in the second rate of an opening is its second derivative along them."""
-    nv, unit = len(none) // len(frames), none
-    for i in range(len(force)):
-        if force[i] == 0:
+    nv, unit, (push, drag) = len(none) // len(frames), none, forces
+    for i in range(len(push)):
+        if push[i] == 0 and (i >= len(drag) or not drag[i].any()):
             continue
         body, other = _bodies(places, ties, i)
         for p in range(2 * nv if other >= 0 else nv):
@@ -411,9 +421,21 @@ def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: A
                 for sign in (1.0, -1.0):
                     unit[row] += 1.0
                     unit[column] += sign
-                    bent = opening(places, ties, i, frames, unit, unit).swept
-                    curvature[i, p, r] -= 0.25 * sign * force[i] * bent
+                    bent = push[i] * opening(places, ties, i, frames, unit, unit).swept
+                    if i < len(drag):
+                        bent += swept_by_friction(places, i, frames, unit, drag)
+                    curvature[i, p, r] -= 0.25 * sign * bent
                     unit[row], unit[column] = 0.0, 0.0
+
+
+@inlined
+def swept_by_friction(places: Places, i: int, frames: Array, v: Array, drag: Array) -> float:
+    """Power of friction in the second rates of slip, the part that is quadratic in the velocities."""
+    meets, ways, power = meeting(places, i, frames), ways_along(places, i, frames), 0.0
+    velocity = over_face(places, i, meets, frames, v)
+    for way in range(len(ways)):
+        power += drag[i, way] * swept_along(places, i, meets, frames, v, velocity, ways[way])
+    return power
 
 
 Principal = tuple[csr_array, Array]

@@ -229,7 +229,7 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
             if way is None:
                 return ending.pose, ending.grips
             if not pushed or balances(potential, search, trial):
-                trial, pushed = tried(potential, search, let_go(potential, ending.grips, ending.pose, way)), True
+                trial, pushed = tried(potential, search, let_go(potential, ending, way)), True
                 loose, share, least, last = BEGINNING
         if trial.left < last:
             loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
@@ -305,12 +305,17 @@ def stiffness_at(potential: Potential, search: Search, trial: Trial) -> csr_arra
     places, slipping, m = potential.structure.places, trial.grips.slipping, len(search.shear)
     # open contacts have next to none: more of it would hide that open joints let go of a structure that stands on few
     springs = np.where(trial.closed, trial.springs, LEAST_LOOSE * trial.springs)
-    stiffness = sprung(trial.rates, springs) + potential.curvature(trial.pose) + shear_stiffness(trial.grips, 0.0)
+    stiffness = sprung(trial.rates, springs) + curvature(potential, trial) + shear_stiffness(trial.grips, 0.0)
     pressed = (trial.push[:m] > 0)[slipping]
     rises = np.where(
         pressed, shear_limit(Law(friction=places.friction), trial.springs[:m])[slipping], 0.0
     )  # with depth [N/m]
     return csr_array(stiffness + trial.grips.along(slipping).T @ times(rises, csr_array(trial.rates[:m][slipping])))
+
+
+def curvature(potential: Potential, trial: Trial) -> csr_array:
+    """Geometric stiffness of all forces at a pose, shape (n nv, n nv)."""
+    return potential.curvature(trial.pose, trial.sliders.shares.T @ trial.grips.drag)
 
 
 def solved(potential: Potential, stiffness: csr_array, missing: Array, loose: float) -> Array:
@@ -389,23 +394,25 @@ def falling_way(potential: Potential, search: Search, trial: Trial) -> Array | N
     A contact that touches without force has no stiffness: a motion the other way opens it.
     """
     presses = (trial.push > tolerance(potential, trial.pose, search)) | potential.bonded
-    bent = potential.curvature(trial.pose)
+    bent = curvature(potential, trial)
     stiffness = sprung(trial.rates, np.where(presses, trial.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
     lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(trial.grips, 1.0) + bent), most)
     return way if lowest < -NEGLIGIBLE_STIFFNESS * float(abs(stiffness).max()) else None
 
 
-def let_go(potential: Potential, grips: Grips, pose: Array, way: Array) -> Array:
+def let_go(potential: Potential, trial: Trial, way: Array) -> Array:
     """The pose to which bodies fall from a pose at which they balance, forwards or backwards along a way, while the
     friction there holds: to where the energy is lower, and forwards where both are alike, as in a structure that is
     its own mirror image."""
     freedom, way = potential.structure.places.freedom, forwards(potential, way)
-    near = PUSH * float(potential.pressed(pose).max()) / np.abs(way).max()
-    held, stiffness = way @ grips.held, way @ (shear_stiffness(grips, 1.0) @ way)
+    near = PUSH * float(potential.pressed(trial.pose).max()) / np.abs(way).max()
+
+    of_friction = shear_stiffness(trial.grips, 1.0) + curvature(potential, trial) - potential.curvature(trial.pose)
+    held, stiffness = way @ trial.grips.held, way @ (of_friction @ way)
 
     def energy(far: float) -> float:
-        return potential.energy(moved(pose, far * way, freedom)) - far * held + 0.5 * far * far * stiffness
+        return potential.energy(moved(trial.pose, far * way, freedom)) - far * held + 0.5 * far * far * stiffness
 
     def fallen(far: float) -> float:
         while energy(2 * far) < energy(far) and abs(far) * np.abs(way).max() < ROTATION_OF_FALLEN:
@@ -416,7 +423,7 @@ def let_go(potential: Potential, grips: Grips, pose: Array, way: Array) -> Array
     ahead, behind = fallen(near), fallen(-near)
     lower = energy(ahead) - energy(behind)
     alike = max(ENERGY_ROUNDING * heaviest(potential), AS_LOW * (energy(0.0) - energy(ahead)))
-    return moved(pose, (ahead if lower < alike else behind) * way, freedom)
+    return moved(trial.pose, (ahead if lower < alike else behind) * way, freedom)
 
 
 def forwards(potential: Potential, way: Array) -> Array:

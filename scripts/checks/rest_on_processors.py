@@ -3,7 +3,7 @@
 Each structure that limit analysis holds is brought to rest on joints of 1e8 to 1e12 N/m3, with shear stiffness or
 rigid along their faces. Prints, of each kernel, how many are refused, how many differ from the first kernel, and how
 far: poses over the largest displacement, forces over the largest normal force. Kernels that the machine does not carry
-out are left out.
+out are left out. Each structure that is refused is also run with damping from the drawn pose, with and without a push.
 """
 
 from __future__ import annotations
@@ -31,6 +31,10 @@ KERNELS = ("Haswell", "Nehalem", "SkylakeX", "Sandybridge")
 COUNT, QUICK = 500, 3
 EQUAL = 1e-9
 """Largest difference up to which two answers count as equal [-]."""
+STIFFEST = 1e12
+"""Largest stiffness of the joints [N/m3]."""
+PUSHES, DAMPING, DURATION = (0.0, 0.02), 5.0, 5.0
+"""Velocities with which damped runs start [m/s], their damping by mass [1/s], and how long they take [s]."""
 ONE = "ONE_KERNEL"
 """Environment variable of a process that answers under its own kernel."""
 
@@ -51,10 +55,10 @@ class Rest(NamedTuple):
     force: Array
 
 
-def structure(seed: int) -> tuple[str, mr.Masonry]:
+def structure(seed: int, stiffest: float = STIFFEST) -> tuple[str, mr.Masonry]:
     """An arch, a vault or a dome by lot, half of them with a shear stiffness."""
     rng = np.random.default_rng(seed)
-    k_n, share = float(10 ** rng.uniform(8, 12)), float(rng.choice([1.0, 0.4]))
+    k_n, share = float(10 ** rng.uniform(8, np.log10(stiffest))), float(rng.choice([1.0, 0.4]))
     k_s = share * k_n if rng.random() < 0.5 else None
     joints = mr.Dry(k_n, friction=float(rng.uniform(0.5, 0.8)), k_s=k_s)
     kind, thin, radius = seed % 5, float(rng.uniform(0.11, 0.18)), float(rng.uniform(1.0, 8.0))
@@ -72,9 +76,9 @@ def structure(seed: int) -> tuple[str, mr.Masonry]:
     )
 
 
-def rest(seed: int) -> Rest | None:
+def rest(seed: int, stiffest: float = STIFFEST) -> Rest | None:
     """A structure at rest, or None where limit analysis does not hold it."""
-    label, masonry = structure(seed)
+    label, masonry = structure(seed, stiffest)
     if falling(masonry):
         return None
     scene = standing_masonry(masonry)
@@ -85,20 +89,34 @@ def rest(seed: int) -> Rest | None:
     return Rest(label, "", pose.ravel(), np.append(scene.contacts.k * scene.bears, friction.ravel()))
 
 
-def answers(seeds: Sequence[int], out: Path) -> None:
+def damped(seed: int, stiffest: float) -> list[object]:
+    """What a structure does in damped runs from the drawn pose, with each push."""
+    label, masonry = structure(seed, stiffest)
+    ends: list[object] = []
+    for push in PUSHES:
+        velocity = np.zeros((len(masonry.free), masonry.freedom.nv))
+        velocity[:, 0] = push
+        case = mr.MasonryCase(masonry, DURATION, settled=False, velocity=velocity)
+        answer = mr.solve_explicit(case, mass_damping=DAMPING)
+        still = np.abs(answer.pose[-1] - answer.pose[-2]).max() / (answer.t[-1] - answer.t[-2])
+        ends.append(f"{len(answer.fallen)} blocks fall" if answer.fallen else f"stands, moves by {still:.0e} m/s")
+    return [f"{label}, seed {seed}", *ends]
+
+
+def answers(seeds: Sequence[int], stiffest: float, out: Path) -> None:
     """Write what this process answers, under its own kernel."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = {str(seed): answer for seed in seeds if (answer := rest(seed)) is not None}
+        found = {str(seed): answer for seed in seeds if (answer := rest(seed, stiffest)) is not None}
     arrays = {f"{seed} {name}": getattr(answer, name) for seed, answer in found.items() for name in Rest._fields}
     np.savez(out, kernel=kernels().get("numpy", "another"), **arrays)
 
 
-def under(kernel: str, seeds: Sequence[int], out: Path) -> dict[str, Rest] | None:
+def under(kernel: str, seeds: Sequence[int], stiffest: float, out: Path) -> dict[str, Rest] | None:
     """The answers under a kernel, by seed, or None where this machine does not carry it out."""
     path = out / f"{kernel}.npz"
     setting = os.environ | {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": "1", ONE: str(path)}
-    command = [sys.executable, "-m", "scripts.checks.rest_on_processors", *map(str, seeds)]
+    command = [sys.executable, "-m", "scripts.checks.rest_on_processors", str(stiffest), *map(str, seeds)]
     subprocess.run(command, env=setting, cwd=Path(__file__).resolve().parents[2], check=False)
     if not path.exists():
         return None
@@ -120,11 +138,14 @@ def apart(first: Rest, other: Rest) -> float:
     )
 
 
-def compared(seeds: Sequence[int], out: Path, named: Sequence[str] = KERNELS) -> list[list[object]]:
-    """A row for each kernel that the machine carries out: how many stand, are refused, and the largest difference."""
+def compared(
+    seeds: Sequence[int], out: Path, named: Sequence[str] = KERNELS, stiffest: float = STIFFEST
+) -> tuple[list[list[object]], list[int]]:
+    """A row for each kernel that the machine carries out, how many stand, are refused, and the largest difference, and
+    the seeds that any of them refuses."""
     found = {}
     for kernel in tqdm(named, desc="kernels", disable=None, leave=False):
-        answer = under(kernel, seeds, out)
+        answer = under(kernel, seeds, stiffest, out)
         if answer is not None:
             found[kernel] = answer
     first = next(iter(found.values()))
@@ -136,25 +157,31 @@ def compared(seeds: Sequence[int], out: Path, named: Sequence[str] = KERNELS) ->
         beyond = sum(difference > EQUAL for difference in differences.values())
         largest = f"{differences[worst]:.1e}"
         rows.append([kernel, len(answer), len(refused), beyond, largest, worst, "; ".join(refused)])
-    return rows
+    return rows, sorted({int(seed) for answer in found.values() for seed, one in answer.items() if one.refused})
 
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Compare the kernels, and print the table."""
     options = cli.parser(__doc__, "rest_on_processors")
     options.add_argument("--first", type=int, default=0, metavar="SEED", help="first seed, for other structures")
+    options.add_argument("--count", type=int, default=COUNT, metavar="N", help="how many structures")
+    options.add_argument("--stiffest", type=float, default=STIFFEST, metavar="K_N", help="largest stiffness [N/m3]")
     args = options.parse_args(argv)
     out = cli.folder(args.out)
-    count, named = (QUICK, KERNELS[:2]) if args.quick else (COUNT, KERNELS)
+    count, named = (QUICK, KERNELS[:2]) if args.quick else (args.count, KERNELS)
     seeds = range(args.first, args.first + count)
     with tempfile.TemporaryDirectory() as kept:
-        rows = compared(seeds, Path(kept), named)
+        rows, refused = compared(seeds, Path(kept), named, args.stiffest)
     header = ["kernel", "held", "refused", f"beyond {EQUAL:g}", "largest difference [-]", "of", "refused ones"]
-    cli.report(out / "rest_on_processors", cli.table(header, rows))
+    tables = [cli.table(header, rows)]
+    if refused:
+        pushes = [f"pushed by {push:g} m/s" for push in PUSHES]
+        tables.append(cli.table(["refused", *pushes], [damped(seed, args.stiffest) for seed in refused]))
+    cli.report(out / "rest_on_processors", "\n\n".join(tables))
 
 
 if __name__ == "__main__":
     if ONE in os.environ:
-        answers([int(seed) for seed in sys.argv[1:]], Path(os.environ[ONE]))
+        answers([int(seed) for seed in sys.argv[2:]], float(sys.argv[1]), Path(os.environ[ONE]))
     else:
         sys.exit(cli.run(main))

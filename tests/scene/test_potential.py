@@ -10,7 +10,7 @@ from mjrock.geometry.kinematics import meeting
 from mjrock.geometry.poses import rotations
 from mjrock.geometry.vectors import tangent
 from mjrock.problem.wall.effect import LinkLaw
-from mjrock.scene.parts import ConstantForces, Links
+from mjrock.scene.parts import Bodies, ConstantForces, ContactPoints, Links
 
 
 @pytest.fixture
@@ -47,6 +47,22 @@ def test_derivatives_of_the_energy(held):
     np.testing.assert_allclose(potential.hessian(pose).toarray(), found, rtol=1e-12, atol=1e-12 * np.abs(second).max())
     bent = np.abs(potential.curvature(pose).toarray()).max()
     assert bent > 1e4  # what the check of the second derivatives is about is not a trifle
+
+
+def test_friction_has_a_geometric_stiffness(held):
+    """Friction that keeps its size takes its size times the second derivatives of slip from the stiffness."""
+    potential, pose = held.potential, np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05])
+    drag, h, second = np.array([[3e4], [-1e4], [2e4], [0.0]]), 1e-4, np.empty((6, 6))
+
+    def slid(way):
+        return float((drag * potential.slips(pose + h * way)).sum())
+
+    for i, row in enumerate(np.eye(6)):
+        for j, column in enumerate(np.eye(6)):
+            ends = slid(row + column) - slid(row - column) - slid(column - row) + slid(-row - column)
+            second[i, j] = ends / (4 * h * h)
+    found = (potential.curvature(pose, drag) - potential.curvature(pose)).toarray()
+    np.testing.assert_allclose(found, -second, atol=1e-6 * np.abs(second).max())
 
 
 def test_the_energy_is_that_of_the_accounts(held):
@@ -110,3 +126,43 @@ def test_an_equilibrium_that_is_not_stable_is_no_rest():
     assert np.abs(two_blocks(k_n=5e7).at_rest[:, 2]).max() < 1e-9
     with pytest.raises(ValueError, match="do not stand on their contacts"):
         _ = two_blocks(k_n=1e6).at_rest
+
+
+def board(k, level, friction=0.7):
+    """A board of the plane, 0.2 m thick and 2.2 m high, that a force three times its weight presses against a wall at
+    two lines 8 mm apart, and friction holds there. The force meets the weight and the friction in the middle of the
+    two lines, so that both bear alike. The lines are at a level above the centroid [m]."""
+    b, h, c, mass = 0.1, 1.1, 0.004, 880.0
+    push, outline = 3 * mass * mr.GRAVITY, np.array([(-b, -h), (b, -h), (b, h), (-b, h)])
+    return mr.Scene(
+        Bodies(("board",), [mass], [mass * (b**2 + h**2) / 3], [(b, h)], (outline,), length=1.0),
+        ContactPoints(
+            body=[0, 0],
+            at=[(-b, level - c), (-b, level + c)],
+            face_body=[-1, -1],
+            face_at=[(0, h)] * 2,
+            normal=[(1, 0)] * 2,
+            k=[k] * 2,
+            c=[0.0] * 2,
+            friction=[friction] * 2,
+            joint=[0, 0],
+            joints=("wall",),
+            k_s=k,
+        ),
+        forces=ConstantForces(("push",), [0], [(0.0, level + b / 3)], [(-push, 0.0)]),
+    )
+
+
+@pytest.mark.parametrize("level", [-0.9, 0.0, 0.9])
+def test_a_board_held_by_friction_turns_about_its_joint(level):
+    """The force P takes P b of the rotational stiffness 2 k c^2 of the joint, with b half the thickness, and the weight
+    takes its height over the joint, or gives its depth below it. Friction carries this weight."""
+    b, c, weight = 0.1, 0.004, 880.0 * mr.GRAVITY
+    least = (3 * weight * b - weight * level) / (2 * c * c)
+    if level > 0:
+        assert least < 0
+        least = 0.5 * 3 * weight * b / (2 * c * c)  # the joint alone would let the force turn the board
+    else:
+        with pytest.raises(ValueError, match="do not stand on their contacts"):
+            _ = board(0.9 * least, level).at_rest
+    assert abs(board(1.1 * least, level).at_rest[0, 2]) < 5e-3

@@ -118,6 +118,21 @@ class TestPotential:
                 second[i, j] = ends / (4 * h * h)
         np.testing.assert_allclose(potential.hessian(pose).toarray(), second, atol=1e-5 * np.abs(second).max())
 
+    def test_friction_has_a_geometric_stiffness(self, at):
+        potential, pose = at
+        drag = np.array([(3e4, -1e4), (-1e4, 2e4), (0.0, 0.0), (2e4, 5e3)])
+        h, second = 1e-4, np.empty((6, 6))
+
+        def slid(motion):
+            return float((drag * potential.slips(moved(pose, motion, SPACE))).sum())
+
+        for i, row in enumerate(h * np.eye(6)):
+            for j, column in enumerate(h * np.eye(6)):
+                ends = slid(row + column) - slid(row - column) - slid(column - row) + slid(-row - column)
+                second[i, j] = ends / (4 * h * h)
+        found = (potential.curvature(pose, drag) - potential.curvature(pose)).toarray()
+        np.testing.assert_allclose(found, -second, atol=1e-6 * np.abs(second).max())
+
     def test_rates_of_slips_are_derivatives(self):
         """Of two drums that have turned as one, the upper of them spun and slid on its joint, which does not open."""
         column = mr.masonry_scene(mr.MasonryCase(mr.Masonry.column(0.5, 1.0, 2, k_n=1e9, friction=0.6), 1.0))
