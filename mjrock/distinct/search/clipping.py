@@ -120,8 +120,20 @@ def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, roo
 
 
 @inlined
+def parted(polygon: Array, count: int, slack: float) -> int:
+    """Remove corners of a polygon that are within a distance of those before them. Returns how many are left."""
+    left = 0
+    for i in range(count):
+        at, last = triple(polygon, i), triple(polygon, left - 1 if left else count - 1)
+        if length_of(minus(at, last)) > slack:
+            put(polygon[left], at)
+            left += 1
+    return left
+
+
+@inlined
 def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
-    """Write the common area of two faces into the first half of the room.
+    """Write the common area of two faces into the first half of the room, without corners that coincide.
 
     Returns:
         How many corners it has.
@@ -136,19 +148,7 @@ def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
         way = spun(minus(next_corner(solids, face, i), a), normal)
         way = scaled(1 / length_of(way), way)
         count = cut(polygon, count, way, dot(way, a), slack, further)
-    return count
-
-
-@inlined
-def parted(polygon: Array, count: int) -> int:
-    """Remove corners of a polygon that coincide with those before them. Returns how many are left."""
-    left = 0
-    for i in range(count):
-        at, last = triple(polygon, i), triple(polygon, left - 1 if left else count - 1)
-        if length_of(minus(at, last)) > ON_EDGE * (length_of(at) + length_of(last)):
-            put(polygon[left], at)
-            left += 1
-    return left
+    return parted(polygon, count, slack)
 
 
 @inlined
@@ -244,7 +244,7 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count:
         room: for the corners of two faces, twice.
     """
     faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
-    corners = parted(room, lying_over(solids, faces[0], faces[1], room))
+    corners = lying_over(solids, faces[0], faces[1], room)
     if corners < 3:
         return count
     area = area_of(room, corners)
@@ -442,7 +442,7 @@ def lay_out(
         cells: of the grid, along x and z and along y.
     """
     faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
-    corners = parted(room, lying_over(solids, faces[0], faces[1], room))
+    corners = lying_over(solids, faces[0], faces[1], room)
     corners = straightened(room, corners, room[len(room) // 2 :])
     if corners < 3:
         return count
