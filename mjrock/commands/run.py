@@ -62,7 +62,7 @@ def called(run: Analysis, words: Words) -> str:
     """What moves the wall or the masonry of a run, in words."""
     motion = run.case.motion
     if motion is None:
-        return words(f"moved_by_{motion_of(run)}")
+        return words(f"motion_{motion_of(run)}")
     return record_name(motion, words) + f", {words('reversed')}" * motion.name.endswith(REVERSED)
 
 

@@ -32,7 +32,7 @@ from . import inputs, subject, verdicts
 from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .parts import Part, is_of, parts_of, sketches
-from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strip
+from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strips
 from .subject import Reported, reported
 from .texts import DASH, FOUND, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
@@ -316,11 +316,12 @@ def shaken_part(part: Part, words: Words) -> list[Markup]:
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     solved = subject.solved_with([run.response for run in runs], words)
     found = [element("p", said) for said in solved]
-    drawing = strip(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
-    found.append(picture(drawing, words(f"strip_{whole.KIND}"), words))
-    drawing = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
+    drawings = strips(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
+    found += [picture(drawing, words(f"strip_{whole.KIND}"), words) for drawing in drawings]
+    drawings = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
     count = len({run.record for run in runs})
-    found.append(picture(drawing, words("histories_said", count=min(count, PANELS), of=count), words))
+    said = words("histories_said", count=min(count, PANELS), of=count)
+    found += [picture(drawing, said, words) for drawing in drawings]
     end = whole.at_end(runs, words)
     return found if end is None else [*found, picture(end, words("ends_said"), words)]
 

@@ -42,6 +42,10 @@ BELOW, ABOVE, BEFORE, AWAY, LEAST = 0.36, 0.36, 0.45, 0.36, 1.05
 """Room below, above and before a drawing, from a wall to names outside, and least height of a wall in it [inch]."""
 LINE = 10.0
 """Height of a line of text [pt]."""
+STRIP_ROWS = 12
+"""Most rows of a picture of largest displacements."""
+IN_A_PICTURE = 6
+"""Most records whose motion is drawn in one picture."""
 PANELS = 12
 """Most records whose motion is drawn."""
 FAR = 2.0
@@ -313,8 +317,9 @@ def design_drawn(found: Design, words: Words) -> Figure:
     return figure
 
 
-def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str, words: Words) -> Figure:
-    """The largest displacement of each run: a row a record, a colour a variant, hollow where the record is reversed.
+def strips(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str, words: Words) -> list[Figure]:
+    """The largest displacement of each run: a row a record, a colour a variant, hollow where the record is reversed;
+    many in several pictures of one scale, none taller than half a page.
 
     Runs without variants have a row each.
 
@@ -325,12 +330,19 @@ def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str,
         words: of the report.
     """
     rows = list(dict.fromkeys(run.label for run in runs))
+    return [_strip(runs, rows[i : i + STRIP_ROWS], limits, beyond, words) for i in range(0, len(rows), STRIP_ROWS)]
+
+
+def _strip(
+    runs: Sequence[Run], rows: list[str], limits: Sequence[tuple[str, float]], beyond: str, words: Words
+) -> Figure:
+    """Some of the rows, in the scale of all runs."""
     variants = list(dict.fromkeys(run.variant for run in runs))
-    figure = Figure(figsize=(WIDE, min(8.5, 1.5 + 0.24 * len(rows))), layout="constrained")
+    figure = Figure(figsize=(WIDE, 1.5 + 0.24 * len(rows)), layout="constrained")
     ax = figure.subplots()
     known, alone = [run.largest for run in runs if math.isfinite(run.largest)], not any(run.turned for run in runs)
     top = 1.08 * max([*known, *(limit for _, limit in limits), 1e-6])
-    for run in runs:
+    for run in (run for run in runs if run.label in rows):
         order = variants.index(run.variant)
         colour = OWN[order % len(OWN)]["color"]
         y = (
@@ -361,8 +373,9 @@ def strip(runs: Sequence[Run], limits: Sequence[tuple[str, float]], beyond: str,
     return figure
 
 
-def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, words: Words) -> Figure:
-    """Displacement over time in small panels, one a record, those with the largest motion where there are many.
+def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, words: Words) -> list[Figure]:
+    """Displacement over time in small panels, one a record, those with the largest motion where there are many, in
+    pictures of one scale, none taller than half a page.
 
     Args:
         runs: the runs.
@@ -370,12 +383,22 @@ def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, 
         limit: displacement from which nothing comes back, or None [m].
         words: of the report.
     """
-    lines = list(dict.fromkeys(run.line for run in runs))
-    told = len(lines) <= NAMED
     worst = sorted(
         dict.fromkeys(run.record for run in runs), key=lambda n: -max(r.largest for r in runs if r.record == n)
     )
     records = sorted(worst[:PANELS])
+    return [
+        _histories(runs, moved, limit, records[i : i + IN_A_PICTURE], words)
+        for i in range(0, len(records), IN_A_PICTURE)
+    ]
+
+
+def _histories(
+    runs: Sequence[Run], moved: Sequence[Array], limit: float | None, records: Sequence[int], words: Words
+) -> Figure:
+    """The panels of some records, in the scale of all runs."""
+    lines = list(dict.fromkeys(run.line for run in runs))
+    told = len(lines) <= NAMED
     figure, axes = several(
         len(records), min(2, len(records)), (WIDE / min(2, len(records)), 1.32 if len(records) > 4 else 1.8)
     )

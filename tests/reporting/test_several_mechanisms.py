@@ -8,6 +8,8 @@ import pytest
 import mjrock as mr
 from mjrock.assessment.assessment import assessment_of
 from mjrock.commands import check
+from mjrock.reporting.page import Asked, required_runs
+from mjrock.reporting.pictures import histories, strips
 from mjrock.reporting.texts import Words
 
 FILE = """
@@ -232,3 +234,17 @@ def test_the_method_that_counts_is_one_in_check_command_and_report(method, tmp_p
     answer = check.answer([str(file)])
     assert answer.status == 1
     assert "Methods are alternatives" in answer.text
+
+
+def test_no_picture_of_many_records_fills_a_page():
+    """Fourteen records: a second picture of each kind, in the scale of the first."""
+    wall = mr.Block.from_size(0.5, 4.0)
+    e = mr.Restitution.from_geometry(wall)
+    motions = [mr.GroundMotion.half_sine(2.0 + 0.01 * i, 0.4) for i in range(14)]
+    runs = [mr.solve_analytical(mr.Case(wall, 0.0, 0.5, motion=motion), e) for motion in motions]
+    words = Words("en")
+    found = required_runs(Asked(runs[0].case, runs), words)
+    for figures in (strips(found, [], "", words), histories(found, [run.theta for run in runs], None, words)):
+        assert len(figures) == 2
+        assert all(figure.get_figheight() < 5.2 for figure in figures)
+        assert len({ax.get_xlim() for figure in figures for ax in figure.axes if ax.lines}) == 1
