@@ -189,7 +189,7 @@ class Plan:
         if id in self.tables:
             return
         self.tables[id] = []
-        needed = table.get("required", ())
+        needed = {*table.get("required", ()), *table.get("else", {}).get("required", ())}
         for key, node in table["properties"].items():
             if key not in NAMES or "const" not in node:
                 self.tables[id].append(self._field(key, node, key in needed, id))

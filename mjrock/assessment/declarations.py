@@ -9,10 +9,12 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import MISSING, dataclass, is_dataclass
 from functools import cache
 from os import PathLike
+from types import UnionType
 from typing import (
     Any,
     Literal,
     Self,
+    Union,
     Unpack,
     get_args,
     get_origin,
@@ -52,8 +54,10 @@ class Key:
 
     @property
     def within(self) -> Within | None:
-        """Its declared range; None where there is none."""
-        return next((one for one in getattr(self.hint, "__metadata__", ()) if isinstance(one, Within)), None)
+        """Its declared range; None where there is none. What may be of several types has that of the first with one."""
+        hints = (self.hint, *(get_args(self.hint) if get_origin(self.hint) in (Union, UnionType) else ()))
+        notes = (note for hint in hints for note in getattr(hint, "__metadata__", ()))
+        return next((note for note in notes if isinstance(note, Within)), None)
 
     @property
     def kinds(self) -> tuple[Any, ...]:
@@ -62,8 +66,9 @@ class Key:
 
     @property
     def is_needed(self) -> bool:
-        """Whether a table without it is refused before anything is made."""
-        return self.default is REQUIRED
+        """Whether there is no value for it where it is left out."""
+        optional = {type(None), Any} & set(alternatives(self.hint))
+        return self.default is REQUIRED or (self.default is None and not optional)
 
 
 @dataclass(frozen=True)
@@ -79,6 +84,14 @@ class Maker:
     call: Callable[..., Any]
     keys: Mapping[str, Key]
     doc: str
+
+    def missing(self, given: Collection[str]) -> list[Key]:
+        """Keys that are needed beside those that are given. A point of masonry, `at`, stands for a height."""
+        return [
+            key
+            for name, key in self.keys.items()
+            if key.is_needed and name not in given and not (name == "height" and "at" in given)
+        ]
 
     def without(self, *names: str) -> Maker:
         """The same without some keys, which are given otherwise."""

@@ -35,7 +35,6 @@ OWN_KEYS = "kind", "make"
 """Keys that name the class, and the constructor of the class, that a table stands for."""
 LEADING = re.compile(r"(\w+)(?:\[(\d+)\])?")
 """The first word of a message, which is most often the name of an argument."""
-NOT_GIVEN = re.compile(r"= None is not a ")
 
 
 class RefusedError(Exception):
@@ -106,9 +105,10 @@ class Reader:
                 arguments[keys[name].name] = self.value(keys[name], value, table.of(name))
             except RefusedError:
                 continue
-        for name, key in keys.items():
-            if key.is_needed and key.name not in arguments and name not in table.values:
-                self.refuse(table.place, self._absent(table, name, key))
+        for key in maker.missing({*arguments, *(keys[name].name for name in keys.keys() & table.values.keys())}):
+            values = {"name": key_named(key), "due": spelt_kinds(key.kinds, key.within)}
+            said = Message("{place} has no {name}; it takes {due}", place=spelt_place(table.place), **values)
+            self.refuse(table.place, said)
         if len(self.faults) > before:
             raise RefusedError
         return arguments | self._expanded(table, arguments)
@@ -271,17 +271,9 @@ class Reader:
         remedy = Message("did you mean {near}?", near=alternatively(near)) if near else others
         return Message("{place} is not known; {remedy}", place=spelt_place(place), remedy=remedy)
 
-    def _absent(self, table: Table, name: str, key: Key) -> Message:
-        """What is said of a key that is missing, and what it takes."""
-        values = {"place": spelt_place(table.place), "name": name, "due": spelt_kinds(key.kinds, key.within)}
-        return Message("{place} has no {name}; it takes {due}", **values)
-
     def _cause(self, error: Exception, table: Table, maker: Maker) -> tuple[Place, str]:
         """The key that an error of a class or function is about, and its message."""
         found, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
-        absent = next((key for name, key in names.items() if NOT_GIVEN.search(found) and name in found), None)
-        if absent is not None and absent not in table.values:
-            return table.place, self._absent(table, absent, maker.keys[names_of(names, absent)])
         place = _named_in(found, table, names)
         key = next((one for one in maker.keys.values() if table.of(key_named(one)) == place), None)
         within = None if key is None else key.within
@@ -325,11 +317,6 @@ def _named_in(message: str, table: Table, names: Mapping[str, str]) -> Place:
             break
         table, names = value, {}
     return place
-
-
-def names_of(names: Mapping[str, str], key: str) -> str:
-    """The argument that a key stands for."""
-    return next(name for name, one in names.items() if one == key)
 
 
 def parted(hint: Any, within: Within | None) -> tuple[tuple[Any, ...], Within | None]:

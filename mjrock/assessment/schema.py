@@ -142,8 +142,11 @@ class SchemaWriter:
         """The schema of a table that stands for a call."""
         properties = {key_named(key): self.of_key(key, partial) for key in maker.keys.values()}
         properties = {name: one for name, one in properties.items() if one}
-        needed = [name for key in maker.keys.values() if key.is_needed and (name := key_named(key)) in properties]
+        needed, otherwise = ([key_named(key) for key in maker.missing(given)] for given in ((), ("at",)))
         found: Schema = {"type": "object", "description": maker.doc, "properties": properties}
+        if "at" in properties and needed != otherwise and not partial:
+            found |= {"if": {"required": ["at"]}, "else": {"required": needed}}
+            needed = otherwise
         return found | ({"required": needed} if needed and not partial else {}) | {"additionalProperties": False}
 
     def _kinds(self, kinds: Mapping[str, Makers], *, partial: bool = False, usual: str = "") -> Schema:
@@ -243,7 +246,8 @@ def _number(kinds: tuple[Any, ...], within: Within | None) -> Schema:
     whole = within.whole if within else int in kinds and float not in kinds
     found: Schema = {"type": "integer"} if whole else {"type": ["number", "string"]}
     if within is not None:
-        found |= {"minimum": _short(within.low)} | ({} if within.infinite else {"maximum": _short(within.high)})
+        found |= {"minimum": _short(within.low)} if math.isfinite(within.low) else {}
+        found |= {"maximum": _short(within.high)} if math.isfinite(within.high) and not within.infinite else {}
         found |= {"unit": "" if within.whole else within.unit}
     return found
 

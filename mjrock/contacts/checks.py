@@ -223,7 +223,8 @@ def alternatives(hint: object) -> tuple[object, ...]:
     """The types that a value of a hint may be of, one by one, with those that are noted with it."""
     origin, of = get_origin(hint), get_args(hint)
     if origin is Annotated:
-        return (*alternatives(of[0]), *(note for note in of[1:] if isinstance(note, type)))
+        kinds = (note for note in of[1:] if isinstance(note, type) or get_origin(note) is not None)
+        return (*alternatives(of[0]), *(one for kind in kinds for one in alternatives(kind)))
     if isinstance(hint, TypeVar):
         return alternatives(hint.__bound__) if hint.__bound__ else hint.__constraints__
     if origin in (Union, UnionType):
@@ -266,9 +267,9 @@ class Declared(NamedTuple):
         if (value is None and self.optional) or (self.computed and callable(value)):
             return value
         if self.several and not isinstance(value, RealNumber):
-            plain = isinstance(value, tuple | list) and all(isinstance(each, RealNumber) for each in value)
-            row = value if plain else require_reals(name, value, "a number or a row of them").ravel().tolist()
-            for each in row:
+            row = require_reals(name, value, "a number or a row of them").ravel()
+            low, high, *_ = self.within
+            for each in row if self.within.whole else row[~((low <= row) & (row <= high))]:
                 self.within.checked(name, each)
             return value
         return self.within.checked(name, value)

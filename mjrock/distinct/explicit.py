@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -11,10 +11,10 @@ from ..patience import first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausible import warn_if_still
-from ..quantities import require_flag, require_size, require_within
+from ..quantities import Within, require_flag, require_size, require_within, within_ranges
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
-from ..result.motion import required_spacing
+from ..result.motion import OutputStep, required_spacing
 from ..result.problem import problem_of, required_start
 from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
@@ -29,17 +29,18 @@ COMPILING_RUN = 0.02
 """Duration of the run by which another process compiles the loops [s]."""
 
 
+@within_ranges
 def solve_explicit(
     case: AnyCase,
     contacts: Contacts | None = None,
-    timestep: float | None = None,
+    timestep: Annotated[float | None, Within(1e-12, 1, "s")] = None,
     *,
-    output_step: float | None = None,
+    output_step: OutputStep = None,
     ledger: bool = False,
     forces: bool = False,
     start: End | State | None = None,
-    mass_damping: float = 0.0,
-    local_damping: float = 0.0,
+    mass_damping: Annotated[float, Within(0, 1e4, "1/s")] = 0.0,
+    local_damping: Annotated[float, Within(0, 0.9)] = 0.0,
 ) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, by explicit steps.
 

@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from ..method import Method
-from ..quantities import keep, require_flag, require_kind, require_size, require_within
+from ..quantities import Within, keep, keep_declared, require_flag, require_kind, require_size, require_within
+from ..result.motion import OutputStep
+
+FixedStep = Annotated[float | None, Within(1e-9, 1, "s")]
+"""A step that MuJoCo keeps to; None lets the steps fit the motion."""
+Accuracy = Annotated[float, Within(1e-8, 0.1)]
+"""Relative tolerance of fitted steps."""
+NewmarkBeta = Annotated[float, Within(0, 10)]
+"""Newmark's beta of the contact rows."""
 
 SPACING = 1e-3
 """Distance of samples between fitted steps, where none is asked for [s]."""
@@ -25,24 +34,19 @@ class Options:
     """
 
     duration: float
-    timestep: float | None
-    accuracy: float
-    newmark_beta: float
+    timestep: FixedStep
+    accuracy: Accuracy
+    newmark_beta: NewmarkBeta
     coulomb: bool | None
-    output_step: float | None
+    output_step: OutputStep
     ledger: bool
     forces: bool
     method: Method
 
     def __post_init__(self) -> None:
         require_kind("method", self.method, Method)
-        keep(
-            self,
-            accuracy=require_within("accuracy", self.accuracy, 1e-8, 0.1),
-            newmark_beta=require_within("newmark_beta", self.newmark_beta, 0.0, 10.0),
-            ledger=require_flag("ledger", self.ledger),
-            forces=require_flag("forces", self.forces),
-        )
+        keep_declared(self)
+        keep(self, ledger=require_flag("ledger", self.ledger), forces=require_flag("forces", self.forces))
         if self.coulomb is not None:
             keep(self, coulomb=require_flag("coulomb", self.coulomb))
         if self.output_step is not None:

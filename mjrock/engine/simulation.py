@@ -13,6 +13,7 @@ from ..quantities import require_flag
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.ledger import StepError
+from ..result.motion import OutputStep
 from ..result.problem import Problem, problem_of, require_in_text, required_start
 from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
@@ -22,7 +23,7 @@ from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
 from .mjcf import pair_rows
 from .model import engine_of
-from .options import Options
+from .options import Accuracy, FixedStep, NewmarkBeta, Options
 from .pace import short_step
 from .plain.run import simulate_plain
 from .run import EngineRun, Settings, explained
@@ -49,12 +50,12 @@ asked for down to which it is [-]."""
 def simulate(
     case: AnyCase,
     contacts: Contacts | None = None,
-    timestep: float | None = None,
+    timestep: FixedStep = None,
     *,
-    accuracy: float | None = None,
-    newmark_beta: float = 0.25,
+    accuracy: Accuracy | None = None,
+    newmark_beta: NewmarkBeta = 0.25,
     coulomb: bool | None = None,
-    output_step: float | None = None,
+    output_step: OutputStep = None,
     ledger: bool = False,
     forces: bool = False,
     start: End | State | None = None,

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -20,9 +21,9 @@ from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
-from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
+from ..quantities import ON_ITS_FACE, Array, Within, require_kind, require_size, within_ranges
 from ..result.ending import Stopwatch
-from ..result.motion import SampledMotion, intervals, required_spacing, thinned
+from ..result.motion import OutputStep, RelativeError, SampledMotion, intervals, required_spacing, thinned
 from ..result.reading import wall_reading
 from ..result.response import Response, recorded
 from ..result.ties import Plastic
@@ -36,15 +37,22 @@ SWITCHES = 100_000
 """Most changes between a held and a free base in one run, which ends an endless loop."""
 
 
+@within_ranges
 def solve_compliant(
-    case: Case, contacts: Contacts, *, rtol: float = 1e-8, atol: float = 1e-10, output_step: float | None = None
+    case: Case,
+    contacts: Contacts,
+    *,
+    rtol: RelativeError = 1e-8,
+    atol: Annotated[float, Within(1e-16, 0.1)] = 1e-10,
+    output_step: OutputStep = None,
 ) -> Response:
     """Rocking of a wall on compliant contacts: what `simulate` has to reproduce.
 
     Args:
         case: the wall, its release, its sides.
         contacts: the interfaces.
-        rtol, atol: tolerances of the integration (scipy, DOP853) [m, rad, m/s, rad/s].
+        rtol: relative tolerance of the integration (scipy, DOP853) [-], 1e-14 to 0.1.
+        atol: absolute tolerance of it, in m, rad, m/s and rad/s, 1e-16 to 0.1.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 0.5 ms. They
             are evenly spaced, and the last is the end of the run.
 
@@ -63,8 +71,6 @@ def solve_compliant(
     given = locals().copy()
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("contacts", contacts, Contacts)
-    rtol = require_within("rtol", rtol, 1e-14, 0.1)
-    atol = require_within("atol", atol, 1e-16, 0.1)
     spacing = required_spacing(output_step, case.duration, 5e-4)
     wall = case.wall
     contacts.require_fit(case.block, side_stop=case.one_sided)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import numpy as np
 
 from ..compiled import compiled, inlined
-from ..quantities import Array, Integers, require_within
+from ..quantities import Array, Integers, Within, require_within
 
 
 class Motion(Protocol):
@@ -50,7 +50,13 @@ TIME_ROUNDING = 1e-12
 """Part of an interval that counts as rounding, over the number of intervals [-]."""
 
 
-def required_spacing(output_step: float | None, duration: float, otherwise: float = 1e-3) -> float:
+OutputStep = Annotated[float | None, Within(1e-9, 1e6, "s")]
+"""Largest spacing of the samples of an answer."""
+RelativeError = Annotated[float, Within(1e-14, 0.1)]
+"""Relative tolerance of an integration."""
+
+
+def required_spacing(output_step: OutputStep, duration: float, otherwise: float = 1e-3) -> float:
     """The largest spacing of samples that is asked for, checked; `otherwise` where none is [s]."""
     if output_step is None:
         return min(otherwise, duration)

@@ -10,9 +10,8 @@ dashpots take the velocity half a step before the pose.
 from __future__ import annotations
 
 import math
-import warnings
 
-from ..quantities import Implausible
+from ..quantities import Implausible, warn_of
 
 STEP_TAKEN = 0.4
 """Step that is taken for masonry, over the longest stable one [-]."""
@@ -35,11 +34,8 @@ def stepping_seconds(steps: float, lines: int, *, sprung: bool, in_space: bool) 
 def warn_if_tiny(timestep: float, needed: float) -> None:
     """Warn of a step far below the one that a scene needs [s]."""
     if timestep < TINY * needed:
-        warnings.warn(
-            f"timestep = {timestep:.3g} s, and {needed:.3g} s is short enough for these contacts: is it in s?",
-            Implausible,
-            stacklevel=3,
-        )
+        said = f"timestep = {timestep:.3g} s, and {needed:.3g} s is short enough for these contacts: is it in s?"
+        warn_of(said, Implausible)
 
 
 def stable_step(stiffness: float, damping: float) -> float:

@@ -6,9 +6,9 @@ This solver uses neither stiffness nor MuJoCo.
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
@@ -18,22 +18,23 @@ from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_if_still
 from ..problem.wall.restoring_moment import broken_energy, tie_energy
-from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
+from ..quantities import GRAVITY, Array, Implausible, Within, require_kind, require_size, warn_of, within_ranges
 from ..result.ending import Outcome, Stopwatch, describe
-from ..result.motion import intervals, required_spacing
+from ..result.motion import OutputStep, RelativeError, intervals, required_spacing
 from ..result.response import Response, recorded
 from ..result.rocking import Impact, Rocking
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .arcs import RockingMotion, rock
 
 
+@within_ranges
 def solve_analytical(
     case: Case,
     e: AnyRestitution,
     *,
-    rtol: float = 1e-10,
-    output_step: float | None = None,
-    rest: float = 1e-9,
+    rtol: RelativeError = 1e-10,
+    output_step: OutputStep = None,
+    rest: Annotated[float, Within(1e-30, 0.1)] = 1e-9,
 ) -> Response:
     """Rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak, free or over a shaken base.
 
@@ -48,10 +49,11 @@ def solve_analytical(
         case: the wall, its release, its sides, its ground motion. With a side stop `e.lumped` rules and theta >= 0,
             without one `e.base`.
         e: the coefficients of restitution, or those from which each impact draws its own.
-        rtol: error of the integration, about, over alpha in a fall from alpha/2 [-]. It sets the longest step.
+        rtol: error of the integration, about, over alpha in a fall from alpha/2 [-], 1e-14 to 0.1. It sets the
+            longest step.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. They are
             evenly spaced, and the last is the end of the run.
-        rest: smallest rebound that is still followed, as a share of the energy of release [-].
+        rest: smallest rebound that is still followed, as a share of the energy of release [-], 1e-30 to 0.1.
 
     Returns:
         The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, `impacts` and `peaks`.
@@ -71,13 +73,11 @@ def solve_analytical(
     given = locals().copy()
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution, ScatteredRestitution)
-    rtol = require_within("rtol", rtol, 1e-14, 0.1)
     spacing = required_spacing(output_step, case.duration)
-    rest = require_within("rest", rest, 1e-30, 0.1)
     require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
-        warnings.warn(unlike, Implausible, stacklevel=2)
+        warn_of(unlike, Implausible)
     warn_if_still(case)
     watch = Stopwatch()
     with first_answer(solve_analytical, **given):

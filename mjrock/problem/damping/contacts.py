@@ -29,7 +29,7 @@ from ...quantities import (
 from ..wall.block import Block
 from ..wall.case import Case
 from .law import CALIBRATED, CALIBRATED_BED, HIGHEST_XI, Amplitude, DampingLaw, law_named, rebound_over_uplift
-from .restitution import ANOTHER_WALL, Restitution
+from .restitution import ANOTHER_WALL, Restitution, StopTop
 
 HOLDS_NEARLY = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
@@ -91,6 +91,9 @@ def base_inertia(wall: Block) -> float:
     return wall.inertia + wall.mass * math.hypot(wall.centroid_height, wall.centroid_offset) ** 2
 
 
+Xi = Annotated[float, Within(0, 100, name="damping ratio xi")]
+
+
 @dataclass(frozen=True)
 class Interface:
     """One compliant face: a bed of unilateral springs and dashpots lumped at contact lines by tributary area.
@@ -111,7 +114,7 @@ class Interface:
     """
 
     k_n: OfInterface
-    xi: Annotated[float, Within(0, 100, name="damping ratio xi")]
+    xi: Xi
     face: Annotated[float, Within(1e-3, 1000, "m")]
     length: Annotated[float, Within(1e-3, 1000, "m")]
     frequency: Annotated[float, Within(1e-3, 1e9, "rad/s", "reference frequency")]
@@ -218,12 +221,13 @@ class Contacts:
     base: Interface
     side: Interface | None = None
     law: str = "given"
-    stop_top: float | None = field(default=None, kw_only=True, compare=False, repr=False)
+    stop_top: StopTop = field(default=None, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         require_kind("base", self.base, Interface)
         require_kind("side", self.side, Interface, type(None))
         require_text("law", self.law)
+        keep_declared(self)
 
     def __repr__(self) -> str:
         parts = []
@@ -239,21 +243,21 @@ class Contacts:
         wall: Block,
         *,
         k_base: OfBase,
-        xi_base: float,
+        xi_base: Xi,
         k_side: OfSide = None,
-        xi_side: float = 0.0,
+        xi_side: Xi = 0.0,
         points: PointCount = 2,
         friction: Rubbing = None,
         side_friction: Rubbing = None,
         law: str = "given",
-        stop_top: float | None = None,
+        stop_top: StopTop = None,
     ) -> Contacts:
         """Interfaces of `wall` from stiffnesses and damping ratios.
 
         Args:
             wall: the wall.
             k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
-            xi_base, xi_side: their damping ratios, see `Interface` [-].
+            xi_base, xi_side: their damping ratios, see `Interface` [-], 0 to 100.
             points: contact lines a face, 2 to 1000.
             friction, side_friction: coefficients as in `Interface` [-], 0 to 10. By default the base holds and the side
                 is smooth.

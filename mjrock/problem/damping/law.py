@@ -23,6 +23,7 @@ from ...quantities import (
     Stiffness,
     Within,
     keep,
+    keep_declared,
     require_array,
     require_kind,
     require_one_of,
@@ -281,9 +282,9 @@ class DampingLaw:
     source: str
     base: Form
     side: Form
-    R_range: tuple[float, float]
+    R_range: Annotated[tuple[float, float], Within(0, 1e4, "m")]
     slenderness_range: tuple[float, float]
-    k_n_range: tuple[float, float]
+    k_n_range: Annotated[tuple[float, float], Within(0, 1e16, "N/m3")]
     side_range: tuple[float, float] = (0.0, 1.0)
     points: int | None = None
     scalable: bool = False
@@ -291,6 +292,7 @@ class DampingLaw:
     errors: Mapping[str, Mapping[str, float]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
+        keep_declared(self)
         for name in ("name", "source"):
             require_kind(name, getattr(self, name), str)
         for name in ("R_range", "slenderness_range", "k_n_range", "side_range"):

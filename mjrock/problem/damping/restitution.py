@@ -5,13 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Annotated
 
 import numpy as np
 
 from ...quantities import (
+    ON_ITS_FACE,
     Array,
     Implausible,
+    Within,
     keep,
+    keep_declared,
     require_kind,
     require_real,
     require_whole,
@@ -20,10 +24,14 @@ from ...quantities import (
     warn_of,
 )
 from ..wall.block import Block
+from ..wall.effect import HIGHEST_WALL
 
 ANOTHER_WALL = 1e-2
 """Relative difference of alpha, and of the share of the height, from which a restitution is that of another wall [-].
 Masses that a case adds, or a small inset, change alpha by less or are worth a word."""
+StopTop = Annotated[float | None, Within(0.01, HIGHEST_WALL, "m", "top of the side stop")]
+"""Height that a side stop reaches."""
+Alpha = Annotated[float, Within(0, ON_ITS_FACE, "rad")]
 LARGEST_ANGLE = 0.4
 """Angle given for alpha above which it is taken for one in degrees [rad]; b/h is then above 0.42."""
 
@@ -42,18 +50,16 @@ class Restitution:
         ValueError: for a value outside its range.
     """
 
-    base: float
-    side: float
-    made_for: tuple[float, float] | None = field(default=None, kw_only=True, compare=False, repr=False)
+    base: Annotated[float, Within(0, 1, name="base restitution")]
+    side: Annotated[float, Within(-1, 1, name="side restitution")]
+    made_for: tuple[Alpha, float] | None = field(default=None, kw_only=True, compare=False, repr=False)
 
     __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        keep(self, base=require_real("base restitution", self.base), side=require_real("side restitution", self.side))
-        if not 0 < self.base <= 1:
-            raise ValueError(f"base restitution = {self.base:g} is outside the valid range 0 < e <= 1")
-        if not -1 <= self.side <= 1:
-            raise ValueError(f"side restitution = {self.side:g} is outside the valid range -1 to 1")
+        keep_declared(self)
+        if self.base == 0:
+            raise ValueError("base restitution = 0 is outside the valid range 0 < e <= 1")
 
     @property
     def lumped(self) -> float:
@@ -95,7 +101,7 @@ class Restitution:
             raise ValueError(f"side restitution = {self.side:g} is not a rebound; the valid range is -1 <= e_side < 0")
 
     @classmethod
-    def from_geometry(cls, wall: Block | float, stop_top: float | None = None) -> Restitution:
+    def from_geometry(cls, wall: Block | float, stop_top: StopTop = None) -> Restitution:
         """Conservation of angular momentum through each impact (Eqs. 2-3).
 
         Eqs. 2-3 are written for a full rectangle. With the centroid at the height z, its distances d_1 from the edge

@@ -49,7 +49,7 @@ from .oscillator import (
     oscillator_steps,
     total_acceleration,
 )
-from .records import COARSEST, FINEST, Parse, Trace, Wanted, checked_record, read, table_traces, text_lines
+from .records import COARSEST, FINEST, Parse, SampleStep, Trace, Wanted, checked_record, read, table_traces, text_lines
 from .vertices import Vertices
 
 SUSPICIOUS = 3 * GRAVITY
@@ -66,8 +66,11 @@ NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
 """Fields of a header that name its record."""
 Amplitude = Annotated[float, Within(-1e4, 1e4, "m/s2")]
 """Largest acceleration of a pulse, with its sign."""
+Samples = Annotated[ArrayLike, Within(-math.inf, math.inf, "m/s2")] | Array
 Span = Annotated[float, Within(0.01, 100, "s")]
 """Period or duration of a pulse."""
+Cycles = Annotated[float, Within(0.5, 1000)]
+"""Number of periods of a pulse."""
 BASELINES = {"constant": 0, "linear": 1, "quadratic": 2}
 """Degree of the polynomial of accelerations that is taken off, by name."""
 ORDER = 4
@@ -108,7 +111,7 @@ class GroundMotion:
     instants: Array | None = None
 
     def __init__(
-        self, accel: ArrayLike, dt: float, name: str = "ground motion", header: Mapping[str, str] | None = None
+        self, accel: Samples, dt: SampleStep, name: str = "ground motion", header: Mapping[str, str] | None = None
     ) -> None:
         self._fill(accel, dt, name, header)
         self._doubt_of_unit(once=UNIT)
@@ -351,7 +354,7 @@ class GroundMotion:
         """The motion of the other polarity."""
         return self._with(-self.accel, f"{self.name}, reversed")
 
-    def resampled(self, dt: float) -> GroundMotion:
+    def resampled(self, dt: SampleStep) -> GroundMotion:
         """The motion at another time step `dt` [s], as long as before within half of it, linear between its samples.
 
         Before a coarser step it goes through an eighth-order Butterworth filter, forwards and backwards: 0.7 of the new
@@ -469,7 +472,7 @@ class GroundMotion:
 
     @classmethod
     @within_ranges
-    def sine(cls, amplitude: Amplitude, period: Span, cycles: float = 1.0, samples: int = 400) -> Self:
+    def sine(cls, amplitude: Amplitude, period: Span, cycles: Cycles = 1.0, samples: int = 400) -> Self:
         """A sine pulse with `samples` to a cycle. A positive one starts inwards.
 
         Args:
@@ -481,7 +484,7 @@ class GroundMotion:
         Raises:
             ValueError: for a value outside its range.
         """
-        cycles, samples = require_within("cycles", cycles, 0.5, 1e3), _samples(samples, period, 2)
+        samples = _samples(samples, period, 2)
         count = math.ceil(cycles * samples)
         require_size("the number of samples", count + 1, "choose fewer cycles or fewer samples to a cycle")
         t = cycles * period * np.arange(count + 1) / count
@@ -600,13 +603,13 @@ class GroundMotion:
         duration: Annotated[float, Within(1, 1000, "s")],
         *,
         seed: Annotated[int, Within(0, 2**53, whole=True)],
-        dt: float = 0.01,
+        dt: SampleStep = 0.01,
         ground_frequency: Annotated[float, Within(0.1, 50, "Hz")] = 2.5,
         ground_damping: Annotated[float, Within(0.05, 2)] = 0.6,
-        filter_frequency: float = 0.25,
+        filter_frequency: Annotated[float, Within(0.01, 50, "Hz")] = 0.25,
         filter_damping: Annotated[float, Within(0.05, 2)] = 0.6,
         rise: Annotated[float, Within(0.01, 0.99)] = 0.15,
-        fall: float = 0.35,
+        fall: Annotated[float, Within(0.01, 0.99)] = 0.35,
     ) -> Self:
         """An artificial record with random phases under a stated spectrum and envelope.
 

@@ -19,17 +19,28 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import scipy.io
 from numpy.typing import ArrayLike
 
 from ...contacts.files import require_file
-from ...quantities import GRAVITY, Array, require_one_of, require_path, require_reals, require_whole, require_within
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Within,
+    require_one_of,
+    require_path,
+    require_reals,
+    require_whole,
+    require_within,
+    within_ranges,
+)
 
 FINEST, COARSEST = 1e-5, 1.0
 """Bounds of the time step of a motion [s]."""
+SampleStep = Annotated[float, Within(FINEST, COARSEST, "s", "time step dt")]
 ACCELERATION_UNITS = {"m/s2": 1.0, "cm/s2": 1e-2, "mm/s2": 1e-3, "g": GRAVITY, "ft/s2": 0.3048}
 TIME_UNITS = {"s": 1.0, "ms": 1e-3}
 
@@ -99,7 +110,8 @@ class Trace(NamedTuple):
 Parse = Callable[[list[str]], list[Trace]]
 
 
-def checked_record(accel: ArrayLike, dt: float) -> tuple[Array, float]:
+@within_ranges
+def checked_record(accel: ArrayLike, dt: SampleStep) -> tuple[Array, float]:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
     A TypeError or ValueError is raised unless they are a row of at least 2 finite numbers, and the step 1e-5 to 1 s.
@@ -111,7 +123,7 @@ def checked_record(accel: ArrayLike, dt: float) -> tuple[Array, float]:
     if bad.size:
         raise ValueError(f"accel[{bad[0]}] = {values[bad[0]]} m/s2 is not finite")
     values.setflags(write=False)
-    return values, require_within("time step dt", dt, FINEST, COARSEST, "s")
+    return values, dt
 
 
 def read(path: str | PathLike[str], traces: Callable[[Path], list[Trace]]) -> list[Trace]:

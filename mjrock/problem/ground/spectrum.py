@@ -83,6 +83,11 @@ PLATEAU_FROM, PLATEAU_TO = 0.8, 1.1
 """a and b, the periods between which a mode amplifies most, over its own [-], Circolare 2019 n. 7, C7.2.3."""
 FINER = 200
 """Steps to a period on ground that moves by pieces, between which the peak of a sine is missed by at most 1e-4."""
+PeakOnRock = Annotated[float, Within(0.05, 10, "m/s2")]
+PeriodOnRock = Annotated[float | None, Within(0.05, 1, "s")]
+SoilFactor = Annotated[float, Within(0.5, 5)]
+CornerPeriod = Annotated[float, Within(0.01, LONGEST_PERIOD, "s")]
+SpectralDamping = Annotated[float, Within(0.005, 0.5)]
 PROBABLY_IN_G = 0.35
 """a_g below which it was probably given in g [m/s2]."""
 
@@ -93,28 +98,35 @@ class CodeSpectrum:
 
     Args:
         code: its name.
-        ag: peak acceleration on rock a_g [m/s2].
-        S: soil factor S_S S_T [-].
-        amplification: largest amplification F_0 at 5 % damping [-].
-        TB, TC, TD, TE: corner periods [s]. TE is infinite where the displacement is S_e (T/2 pi)^2 at any period.
-        damping: damping ratio that is taken where none is given [-].
+        ag: peak acceleration on rock a_g [m/s2], 0.05 to 10.
+        S: soil factor S_S S_T [-], 0.5 to 5.
+        amplification: largest amplification F_0 at 5 % damping [-], 1 to 10.
+        TB, TC, TD, TE: corner periods [s], 0.01 to 100. TE is infinite where the displacement is S_e (T/2 pi)^2 at any
+            period.
+        damping: damping ratio that is taken where none is given [-], 0.005 to 0.5.
         soil: ground type; empty where it is not known, here and below.
         topography: its category, of NTC 2018 alone.
-        Tc: T_C* of the limit state, of NTC 2018 alone [s].
+        Tc: T_C* of the limit state, of NTC 2018 alone [s], 0.05 to 1.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
     """
 
     code: str
-    ag: float
-    S: float
-    amplification: float
-    TB: float
-    TC: float
-    TD: float
-    TE: float
-    damping: float = 0.05
+    ag: PeakOnRock
+    S: SoilFactor
+    amplification: Annotated[float, Within(1, 10)]
+    TB: CornerPeriod
+    TC: CornerPeriod
+    TD: CornerPeriod
+    TE: Annotated[float, Within(0.01, LONGEST_PERIOD, "s", infinite=True)]
+    damping: SpectralDamping = 0.05
     soil: str = ""
     topography: str = ""
-    Tc: float | None = None
+    Tc: PeriodOnRock = None
+
+    def __post_init__(self) -> None:
+        keep_declared(self)
 
     def __repr__(self) -> str:
         corners = ", ".join(f"{getattr(self, name):.3g}" for name in ("TB", "TC", "TD", "TE"))
@@ -265,16 +277,14 @@ class PointSpectrum:
         (3.5, 2.0)
     """
 
-    period: Array
-    acceleration: Array
-    damping: Annotated[float, Within(0.005, 0.5)] = 0.05
+    period: Annotated[Array, Within(0, LONGEST_PERIOD, "s")]
+    acceleration: Annotated[Array, Within(1e-6, 1e3, "m/s2")]
+    damping: SpectralDamping = 0.05
 
     def __post_init__(self) -> None:
         keep_declared(self, "spectrum")
         period = require_increasing("period", self.period, "period [s]", LONGEST_PERIOD, f"0 to {LONGEST_PERIOD:g} s")
         acceleration = require_array("acceleration", self.acceleration, (len(period),))
-        for value in acceleration.tolist():
-            require_within("acceleration", value, 1e-6, 1e3, "m/s2")
         keep(self, period=frozen(period), acceleration=frozen(acceleration))
 
     def __repr__(self) -> str:
@@ -320,12 +330,12 @@ ALIKE_IN_G = "ag = {ag:g} m/s2 is {share:.3g} g; accelerations are in m/s2: is i
 def code_spectrum(
     code: Annotated[str, OneOf(("NTC 2018", *SITE_EC8))],
     *,
-    ag: Annotated[float, Within(0.05, 10, "m/s2")],
+    ag: PeakOnRock,
     soil: Annotated[str, OneOf(SITE_NTC)],
     F0: Annotated[float | None, Within(2, 4)] = None,
-    Tc: Annotated[float | None, Within(0.05, 1, "s")] = None,
+    Tc: PeriodOnRock = None,
     topography: Annotated[str, OneOf(TOPOGRAPHY_NTC)] = "T1",
-    damping: Annotated[float, Within(0.005, 0.5)] = 0.05,
+    damping: SpectralDamping = 0.05,
     S: Annotated[float | None, Within(0.5, 5)] = None,
     TB: Annotated[float | None, Within(0.01, 1, "s")] = None,
     TC: Annotated[float | None, Within(0.05, 3, "s")] = None,

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, keep, require_array, require_reals, require_whole, require_within, shown
-from ..wall.effect import BLOCKS, FARTHEST_POINT, Effect
-from .histories import history_of
+from ...quantities import Array, Within, keep, keep_declared, require_array, require_reals, require_whole, shown
+from ..wall.effect import BLOCKS, FARTHEST_POINT, Effect, PointOf
+from .histories import Times, history_of
 
 LARGEST_STROKE = 10.0
 """Largest displacement of an actuator [m]: a larger one is in mm."""
+Stroke = tuple[Times, tuple[Annotated[float, Within(-LARGEST_STROKE, LARGEST_STROKE, "m")], ...]]
+"""History of the displacement of an actuator."""
 
 
 class Guide(NamedTuple):
@@ -60,12 +62,12 @@ class Actuator(Effect):
     label: ClassVar[str] = "actuator"
     only: ClassVar[str] = "solve_explicit"
     arguments: ClassVar[str] = "block, at, direction,\ndisplacement, stiffness"
-    block: Any
-    at: Any
-    direction: Any
-    displacement: Any
-    stiffness: float
-    damping: float = 0.0
+    block: Annotated[Any, int, str]
+    at: Annotated[Any, PointOf, type(None), Within(-FARTHEST_POINT, FARTHEST_POINT, "m")]
+    direction: Annotated[Any, float, tuple[float, ...]]
+    displacement: Annotated[Any, Stroke]
+    stiffness: Annotated[float, Within(1, 1e12, "N/m")]
+    damping: Annotated[float, Within(0, 1e12, "N s/m")] = 0.0
     guided: Literal["upright", "translation"] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -73,9 +75,7 @@ class Actuator(Effect):
             self._require_all()
         else:
             at = require_reals("at of the actuator", self.at, "x, z or x, y, z")
-            at = require_array("at of the actuator", at, (3,) if at.shape == (3,) else (2,))
-            require_within("at of the actuator", float(at[np.abs(at).argmax()]), -FARTHEST_POINT, FARTHEST_POINT, "m")
-            keep(self, at=tuple(at.tolist()))
+            keep(self, at=tuple(require_array("at of the actuator", at, (3,) if at.shape == (3,) else (2,)).tolist()))
         if not isinstance(self.guided, str | None) or self.guided not in GUIDES:
             names = "None, 'upright' and 'translation'"
             raise ValueError(f"guided of the actuator = {shown(self.guided)} is not known; the valid ones are {names}")
@@ -90,9 +90,8 @@ class Actuator(Effect):
             displacement=history_of(
                 "displacement of the actuator", self.displacement, LARGEST_STROKE, "m", from_zero=True
             ),
-            stiffness=require_within("stiffness of the actuator", self.stiffness, 1.0, 1e12, "N/m"),
-            damping=require_within("damping of the actuator", self.damping, 0.0, 1e12, "N s/m"),
         )
+        keep_declared(self, "actuator")
 
     def _require_all(self) -> None:
         """Raise a ValueError unless it is one of all blocks: without a point and without a guide."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,18 +42,12 @@ from .effects import (
     require_pushing,
     with_block_numbers,
 )
-from .histories import Support, supports_of, tilt_history
+from .histories import OfSupports, Support, Tilt, supports_of, tilt_history
 from .laws.bond import Bond
 from .laws.own_law import Own
 from .limit.collapse import limit_of, pushed
 from .masonry import Masonry
 from .standing import MasonryStanding
-
-if TYPE_CHECKING:  # what is kept is of another type than what is given
-    Histories = Any
-    Tilt = Any
-else:
-    Histories, Tilt = Mapping[str, ArrayLike], ArrayLike | None
 
 JUDGED_BLOCKS = 40
 """Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
@@ -165,12 +158,12 @@ class MasonryCase(Carrying):
     duration: Annotated[float, Within(1e-6, 1e6, "s")] = 10.0
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
-    velocity: Array | ArrayLike | None = None
+    velocity: Annotated[Array | ArrayLike | None, Within(-FASTEST, FASTEST, "m/s or rad/s")] = None
     effects: tuple[Effect, ...] = ()
-    supports: Histories = ()
+    supports: Annotated[Any, OfSupports] = ()
     transverse: GroundMotion | None = field(default=None, kw_only=True)
     settled: bool = field(default=True, kw_only=True)
-    tilt: Tilt = field(default=None, kw_only=True)
+    tilt: Annotated[Any, Tilt] = field(default=None, kw_only=True)
 
     def __repr__(self) -> str:
         said = [f"{self.duration:.6g} s", *(f"{name} {motion.name!r}" for name, motion in self.grounds.items())]
@@ -194,8 +187,6 @@ class MasonryCase(Carrying):
             raise ValueError("tilt does not go with motion and vertical: a table either tilts or shakes; leave one out")
         if self.velocity is not None:
             velocity = require_array("velocity", self.velocity, (len(self.masonry.free), self.masonry.freedom.nv))
-            for value in velocity[np.abs(velocity) > FASTEST].tolist():
-                require_within("velocity", value, -FASTEST, FASTEST, "m/s or rad/s")
             velocity.setflags(write=False)
             keep(self, velocity=velocity)
         self._require_effects()

@@ -13,11 +13,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from ...quantities import GRAVITY, Array, require_increasing, require_kind, require_row, require_within, shown
+from ...quantities import GRAVITY, Array, Within, require_increasing, require_kind, require_row, require_within, shown
 from ..ground.motion import GroundMotion
 from .masonry import Masonry
 
@@ -26,6 +26,15 @@ LATEST_TIME = 1e6
 
 History = tuple[tuple[float, ...], tuple[float, ...]]
 """Times [s] and values."""
+FARTHEST_SUPPORT = 100.0
+"""Largest displacement of a support [m]."""
+STEEPEST = math.pi
+"""Largest angle of a table [rad]."""
+Times = tuple[Annotated[float, Within(-LATEST_TIME, LATEST_TIME, "s")], ...]
+Way = tuple[Annotated[float, Within(-FARTHEST_SUPPORT, FARTHEST_SUPPORT, "m")], ...]
+OfSupports = Mapping[str, tuple[Times, Way, Way] | tuple[Times, Way, Way, Way]]
+Tilt = tuple[Times, tuple[Annotated[float, Within(-STEEPEST, STEEPEST, "rad")], ...]]
+"""Histories of supports and of a table, as a case takes them."""
 
 
 def require_as_many(name: str, rows: Mapping[str, Array]) -> None:
@@ -61,10 +70,6 @@ def history_of(name: str, given: object, largest: float, unit: str, *, from_zero
         raise ValueError(f"{name} begins at {values[0]:g} {unit}; the valid start is 0 {unit}, where nothing is driven")
     require_within(f"{name}, values", float(values[np.abs(values).argmax()]), -largest, largest, unit)
     return tuple(t.tolist()), tuple(values.tolist())
-
-
-FARTHEST_SUPPORT = 100.0
-"""Largest displacement of a support [m]."""
 
 
 @dataclass(frozen=True)
@@ -131,8 +136,6 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
     return tuple(supports)
 
 
-STEEPEST = math.pi
-"""Largest angle of a table [rad]."""
 MOTION_SAMPLES, MOST_MOTION_SAMPLES = 2000, 1_000_000
 """Samples of the equivalent ground motion over a run, and most where the angle changes faster [-]."""
 LARGEST_STEP = 1.0

@@ -43,8 +43,8 @@ from ..wall.section import Opening
 from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .blocks.joints import Joint, OverlapError, joints_in_plane, names_of
 from .blocks.joints_in_space import SpaceJoint, joints_in_space
-from .blocks.polygon import Polygon
-from .blocks.polyhedron import Polyhedron
+from .blocks.polygon import NEAR, Polygon
+from .blocks.polyhedron import Extents, Polyhedron
 from .builders.in_plane import (
     MOST_BODIES,
     Taper,
@@ -88,7 +88,7 @@ from .drawing import (
 )
 from .files.bodies import Given, Mesh, Scale, about, blocks_of, meshes_of, names_of_list
 from .files.compas import compas_text, read_compas
-from .files.dxf import OfLayer, polygons_of, read_dxf
+from .files.dxf import DensityOfLayer, LengthOfLayer, polygons_of, read_dxf
 from .files.lmgc90 import read_lmgc90
 from .files.meshes import obj_text, read_obj, read_ply, read_stl
 from .laws.bond import Bond
@@ -838,7 +838,7 @@ class Masonry(Drawn):
         return cls(blocks, **_halved(halves, options))
 
     @classmethod
-    def box(cls, size: ArrayLike, *, density: Density = 2000.0, **options: Unpack[JointOptions]) -> Self:
+    def box(cls, size: Extents, *, density: Density = 2000.0, **options: Unpack[JointOptions]) -> Self:
         """One box, `block`, on the ground, in the middle of it.
 
         Args:
@@ -911,14 +911,14 @@ class Masonry(Drawn):
     @classmethod
     def facade(
         cls,
-        length: float,
-        height: float,
-        depth: float,
-        unit: tuple[float, float],
+        length: Size,
+        height: Size,
+        depth: Annotated[float, Within(0, 1000, "m")],
+        unit: Unit,
         *,
         thickness: Annotated[float | None, Within(0.01, 10, "m")] = None,
         returns: str = "both",
-        openings: Sequence[tuple[float, Opening]] = (),
+        openings: Sequence[tuple[Annotated[float, NEAR], Opening]] = (),
         gable: int = 0,
         ground: Polyhedron | None = None,
         density: Density = 2000.0,
@@ -932,14 +932,16 @@ class Masonry(Drawn):
         Blocks are named `facade_`, `left_` and `right_` with the course and a number in it.
 
         Args:
-            length: of the facade with its corners [m].
-            height: of the walls [m].
-            depth: of the return walls with the thickness of the facade [m].
+            length: of the facade with its corners [m], 0.01 to 1000.
+            height: of the walls [m], 0.01 to 1000.
+            depth: of the return walls with the thickness of the facade [m], 0 to 1000; without any it
+                plays no part.
             unit: length and height of a unit [m], 0.01 to 100.
             thickness: of all walls [m], 0.01 to 10; None is half the length of a unit.
             returns: where return walls are: "both" ends, "left" where y is negative, "right" or "none".
-            openings: pairs of the y of the middle of an opening [m] and the `Opening`. They cut units. A lintel of half
-                a course or more lies over each, up to a bed joint, and bears on half a unit on either side.
+            openings: pairs of the y of the middle of an opening [m], -10000 to 10000, and the `Opening`. They cut
+                units. A lintel of half a course or more lies over each, up to a bed joint, and bears on half a unit on
+                either side.
             gable: courses above the walls, each of which is a unit shorter than the one below, 0 to as many as there
                 are. The first is as long as the facade, or shorter by the corners over an odd number of courses.
             ground: a fixed block with its upper face at z = 0; None is ground that reaches two heights beyond.
@@ -1175,8 +1177,8 @@ class Masonry(Drawn):
         fixed: Sequence[str] = (),
         *,
         ground: bool = False,
-        density: OfLayer = 2000.0,
-        length: OfLayer = 1.0,
+        density: DensityOfLayer = 2000.0,
+        length: LengthOfLayer = 1.0,
         scale: Scale = None,
         unit: str | None = None,
         up: str | None = None,

@@ -29,7 +29,9 @@ from ...quantities import (
 )
 
 Point = tuple[float, float, float]
-PointOf = tuple[float, ...]
+FARTHEST_POINT = 1e4
+"""Largest coordinate of a point [m]."""
+PointOf = tuple[Annotated[float, Within(-FARTHEST_POINT, FARTHEST_POINT, "m")], ...]
 """A point x, z of the plane or x, y, z of space [m]."""
 HIGHEST_WALL = 200.0
 """Largest height of a wall, and so of an effect [m]."""
@@ -39,8 +41,6 @@ OfBlock = Annotated[int, str]
 """Number of a block. Where an effect is made it may be the name, of which a case of masonry knows the number."""
 BLOCKS = 100_000
 """Largest number of a block."""
-FARTHEST_POINT = 1e4
-"""Largest coordinate of a point [m]."""
 SHORTER = 1e-9
 """How much shorter than its reach a link may be by rounding and still pull [m]."""
 OF_MASONRY, IN_SPACE = {"of": "masonry"}, {"of": "masonry in space"}

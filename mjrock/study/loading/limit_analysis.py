@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,16 +31,17 @@ from ...quantities import (
     Flags,
     Implausible,
     Integers,
+    Within,
     named,
     require_array,
     require_flag,
     require_kind,
     require_real,
     require_reals,
-    require_whole,
     require_within,
     shown,
     warn_of,
+    within_ranges,
 )
 from ...scene.masonry import wedged
 from .pushover import falls_to_zero
@@ -60,6 +61,8 @@ BEHIND = 0.1
 TANGENT, FARTHER = 1e-4, 10
 """Displacement at which the fall of a curve is looked at first, over the size of the masonry, and how many times the
 steps that are expected a curve may take until nothing is borne any more [-]."""
+InPlan = Annotated[float | None, Within(-2 * math.pi, 2 * math.pi, "rad", "angle")]
+"""Angle of a direction in plan, from x towards y."""
 Loads = Mapping[str, ArrayLike] | Sequence[Thrust | Load] | Thrust | Load
 """Loads that grow, see `collapse_multiplier`."""
 GROWING: tuple[type[Thrust | Load], ...] = (Thrust, Load)
@@ -70,11 +73,12 @@ HALVINGS = 40
 """How often a step is halved at most in the search for where a line closes."""
 
 
+@within_ranges
 def collapse_multiplier(
     masonry: Masonry | Case,
     direction: float | ArrayLike | None = 1,
     *,
-    angle: float | None = None,
+    angle: InPlan = None,
     associated: bool = True,
     loads: Loads | None = None,
     effects: Sequence[Effect] | Effect = (),
@@ -330,9 +334,7 @@ def _forces(masonry: Masonry, growing: Mapping[str, tuple[float, ...]] | tuple[E
     return total
 
 
-def horizontal(
-    masonry: Masonry, direction: float | ArrayLike | None, angle: float | None, name: str = "direction"
-) -> Array:
+def horizontal(masonry: Masonry, direction: float | ArrayLike | None, angle: InPlan, name: str = "direction") -> Array:
     """The unit vector of a horizontal force, shape (2,), in space (3,), from what `collapse_multiplier` takes.
 
     Raises:
@@ -350,7 +352,6 @@ def horizontal(
     if angle is not None:
         if not masonry.in_space:
             raise ValueError(f"angle = {shown(angle)} is for masonry in space; in the plane give {name} = 1 or -1")
-        angle = require_within("angle", angle, -2 * math.pi, 2 * math.pi, "rad")
         return np.array([math.cos(angle), math.sin(angle), 0.0])
     return np.append(given / length, 0.0) if masonry.in_space else given
 
@@ -405,15 +406,16 @@ class LimitCurve:
         return yielding, breaking
 
 
+@within_ranges
 def limit_curve(
     masonry: Masonry,
     direction: float | ArrayLike | None = 1,
     *,
-    to: float | None = None,
-    angle: float | None = None,
+    to: Annotated[float | None, Within(1e-6, 100, "m")] = None,
+    angle: InPlan = None,
     loads: Loads | None = None,
     effects: Sequence[Effect] | Effect = (),
-    poses: int = 100,
+    poses: Annotated[int, Within(2, 10_000, whole=True)] = 100,
 ) -> LimitCurve:
     """The horizontal force that rigid masonry bears as it goes on, proportional to the weight, in turned poses.
 
@@ -446,7 +448,6 @@ def limit_curve(
     """
     require_kind("masonry", masonry, Masonry)
     masonry.require_dry("limit_curve")
-    poses = require_whole("poses", poses, 2, 10_000)
     given = _required(masonry, effects)
     push = partial(collapse_multiplier, masonry, direction, angle=angle, loads=loads, effects=given)
     start = found = push()
@@ -455,8 +456,7 @@ def limit_curve(
         step = path.reach(start, push) / poses
         to, most = math.inf, FARTHER * poses
     else:
-        to, most = require_within("to", to, 1e-6, 100.0, "m"), poses
-        step = to / poses
+        step, most = to / poses, poses
     curve = [(0.0, found.multiplier, path.rest)]
     while True:
         d, multiplier, pose = curve[-1]

@@ -36,7 +36,7 @@ from ...quantities import (
 from ...result.problem import required_start
 from ...result.response import End, Response, State
 from ...result.ties import warn_of_ties
-from .limit_analysis import horizontal
+from .limit_analysis import InPlan, horizontal
 from .pushover import falls_to_zero
 
 PIECES, POINTS, SAMPLES = 100, 4, 5
@@ -140,7 +140,7 @@ def push(
     driver: Actuator | float | ArrayLike,
     to: float | ArrayLike,
     *,
-    angle: float | None = None,
+    angle: InPlan = None,
     effects: Sequence[Effect] | Effect = (),
     inertia: float = 0.01,
     mass_damping: float = 0.0,
@@ -161,7 +161,8 @@ def push(
         driver: the actuator, whose own history plays no part, or the direction: 1 along x, -1 against it, or in space a
             vector in plan, shape (2,), of any length.
         to: displacement at which to stop [m], or those at which to turn back and to stop; for a direction one number.
-        angle: of the direction in plan, from x towards y [rad], in space; it takes the place of `driver`.
+        angle: of the direction in plan, from x towards y [rad], -2 pi to 2 pi, in space; it takes the place of
+            `driver`.
         effects: further effects, such as a `Load` that stays.
         inertia: forces of inertia and of the damping of the motion that are allowed in a piece, root mean square over
             the largest force so far [-], 1e-4 to 0.5. Where blocks give way at once they are larger at any rate.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Self
+from typing import Annotated, Self
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ....geometry.hull import Convex, Side
 from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, require_sequence, short_repr
 from .joints import PARTS_APART, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
-from .polygon import Polygon, checked_name
+from .polygon import NEAR, Polygon, checked_name
 from .polyhedron import Polyhedron, principal_of
 from .surface import Surface, surface_in_plane, surface_in_space
 
@@ -59,12 +59,12 @@ class Compound:
         _ = self.joined
 
     @classmethod
-    def prism(cls, compound: Compound, middle: float = 0.0) -> Self:
+    def prism(cls, compound: Compound, middle: Annotated[float, NEAR] = 0.0) -> Self:
         """A unit of the plane as a body in space, see `Polyhedron.prism`.
 
         Args:
             compound: the unit, whose densities, name and support are kept.
-            middle: y of the middle of its length [m].
+            middle: y of the middle of its length [m], -10000 to 10000.
 
         Raises:
             ValueError: for a value outside its range.

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,20 +14,25 @@ from numpy.typing import ArrayLike
 from ....geometry.hull import Convex, Side, prism
 from ....quantities import (
     Array,
+    Density,
     Flags,
+    Within,
     frozen,
     keep,
     require_flag,
     require_reals,
     require_text,
-    require_within,
     short_repr,
     shown,
+    within_ranges,
 )
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST_VERTEX = 1e4
 """Largest coordinate of a vertex [m]."""
+NEAR = Within(-FARTHEST_VERTEX, FARTHEST_VERTEX, "m")
+LENGTHS = Within(1e-3, 1e3, "m")
+"""The ranges of a coordinate, and of the length of a block out of the plane."""
 BEND = 1e-9
 """Sine of a corner that is too flat to tell whether it turns inwards [-]."""
 MOST_VERTICES = 1000
@@ -60,11 +66,12 @@ class Polygon:
 
     __repr__ = short_repr
 
+    @within_ranges
     def __init__(
         self,
-        vertices: ArrayLike | Sequence[Sequence[float]],
-        density: float = 2000.0,
-        length: float = 1.0,
+        vertices: Annotated[ArrayLike, NEAR] | Sequence[Sequence[float]],
+        density: Density = 2000.0,
+        length: Annotated[float, LENGTHS] = 1.0,
         fixed: bool = False,
         name: str | None = None,
     ) -> None:
@@ -72,8 +79,8 @@ class Polygon:
             self,
             name=checked_name(name),
             vertices=checked_corners(vertices),
-            density=require_within("density", density, 100.0, 3e4, "kg/m3"),
-            length=require_within("length", length, 1e-3, 1e3, "m"),
+            density=density,
+            length=length,
             fixed=require_flag("fixed", fixed),
         )
 

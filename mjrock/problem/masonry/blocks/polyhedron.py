@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Self
+from typing import Annotated, Self
 
 import numpy as np
 import scipy
@@ -14,18 +14,22 @@ from numpy.typing import ArrayLike
 from ....geometry.hull import Convex, Hull, Side, hull_of
 from ....quantities import (
     Array,
+    Density,
     Flags,
+    Within,
     frozen,
     keep,
     require_array,
     require_flag,
     require_kind,
-    require_within,
     short_repr,
+    within_ranges,
 )
-from .polygon import FARTHEST_VERTEX, Polygon, checked_name, required_vertices
+from .polygon import FARTHEST_VERTEX, NEAR, Polygon, checked_name, required_vertices
 
 Vertices = tuple[tuple[float, float, float], ...]
+Extents = Annotated[ArrayLike, Within(1e-3, FARTHEST_VERTEX, "m")]
+"""Extents of a box along x, y and z."""
 DENTED = 1e-4
 """Depth of a vertex below the hull of all from which a body is not convex, over its extent [-]."""
 DIAGONAL = 1e-12
@@ -60,10 +64,11 @@ class Polyhedron:
 
     __repr__ = short_repr
 
+    @within_ranges
     def __init__(
         self,
-        vertices: ArrayLike | Sequence[Sequence[float]],
-        density: float = 2000.0,
+        vertices: Annotated[ArrayLike, NEAR] | Sequence[Sequence[float]],
+        density: Density = 2000.0,
         fixed: bool = False,
         name: str | None = None,
     ) -> None:
@@ -73,16 +78,17 @@ class Polyhedron:
             name=checked_name(name),
             vertices=corners,
             hull=hull,
-            density=require_within("density", density, 100.0, 3e4, "kg/m3"),
+            density=density,
             fixed=require_flag("fixed", fixed),
         )
 
     @classmethod
+    @within_ranges
     def box(
         cls,
-        size: ArrayLike,
-        centre: ArrayLike = (0.0, 0.0, 0.0),
-        density: float = 2000.0,
+        size: Extents,
+        centre: Annotated[ArrayLike, NEAR] = (0.0, 0.0, 0.0),
+        density: Density = 2000.0,
         fixed: bool = False,
         name: str | None = None,
     ) -> Self:
@@ -90,32 +96,30 @@ class Polyhedron:
 
         Args:
             size: its extents along x, y and z [m], 1e-3 to 10000 each.
-            centre: its centre [m].
+            centre: its centre [m], -10000 to 10000 each.
             density, fixed, name: as of any `Polyhedron`.
 
         Raises:
             ValueError: for a value outside its range.
         """
-        extents = [
-            require_within("size", extent, 1e-3, FARTHEST_VERTEX, "m") for extent in require_array("size", size, (3,))
-        ]
-        middle = require_array("centre", centre, (3,))
+        extents, middle = require_array("size", size, (3,)), require_array("centre", centre, (3,))
         signs = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
         return cls(middle + signs * extents, density, fixed, name)
 
     @classmethod
-    def prism(cls, polygon: Polygon, middle: float = 0.0) -> Self:
+    @within_ranges
+    def prism(cls, polygon: Polygon, middle: Annotated[float, NEAR] = 0.0) -> Self:
         """A block of the plane as a body in space: it reaches over its length along y.
 
         Args:
             polygon: the block, whose density, name and support are kept.
-            middle: y of the middle of its length [m].
+            middle: y of the middle of its length [m], -10000 to 10000.
 
         Raises:
             ValueError: for a value outside its range.
         """
         require_kind("polygon", polygon, Polygon)
-        middle, half = require_within("middle", middle, -FARTHEST_VERTEX, FARTHEST_VERTEX, "m"), 0.5 * polygon.length
+        half = 0.5 * polygon.length
         ends = [[(x, middle + y, z) for x, z in polygon.vertices] for y in (-half, half)]
         return cls([*ends[0], *ends[1]], polygon.density, polygon.fixed, polygon.name)
 

@@ -6,14 +6,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, TypeGuard
+from typing import TYPE_CHECKING, Annotated, NamedTuple, TypeGuard
 
 import numpy as np
 
 from ....geometry.hull import prism
-from ....quantities import Array, P, Result, named, shown, warn_of
+from ....quantities import Array, Density, P, Result, named, shown, warn_of
 from ..blocks.compound import Compound, FlatBlock, SolidBlock
-from ..blocks.polygon import InwardsError, Polygon
+from ..blocks.polygon import LENGTHS, InwardsError, Polygon
 from ..builders.in_plane import MOST_BODIES
 from .bodies import Given, Mesh, about, block_name, blocks_of
 from .meshes import bytes_of
@@ -42,6 +42,8 @@ NO_DRAWING = {
 AREAS = ("SPLINE", "HATCH", "CIRCLE", "ELLIPSE", "REGION", "SOLID", "TRACE", "MPOLYGON", "3DFACE", "3DSOLID", "MESH")
 """What may be the outline of a block beside a polyline, and is not read."""
 
+DensityOfLayer = Density | Mapping[str, Density]
+LengthOfLayer = Annotated[float, LENGTHS] | Mapping[str, Annotated[float, LENGTHS]]
 OfLayer = float | Mapping[str, float]
 """A number, or one for each layer."""
 
