@@ -6,7 +6,7 @@ import codecs
 import copy
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,6 +17,7 @@ from ..result.response import Response
 from ..study.loading.code_check import DynamicCheck, MechanismCheck
 from ..study.loading.design import Design, design
 from .declarations import REQUIRED, Key, Maker, maker_of
+from .documents import UnwrittenError, mechanism_table, values_of
 from .mechanisms import Mechanism, mechanisms_of
 from .reading import Reader, caused
 from .tables import LARGEST, AssessmentError, Fault, Place, Table, line_of, lines_of, located, parsed
@@ -63,10 +64,10 @@ class Assessment:
     mechanisms: Mapping[str, Mechanism]
     language: str = "en"
     project: Mapping[str, str] = field(default_factory=dict)
-    name: str = ""
-    document: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    name: str = field(default="", compare=False)
+    document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     lines: Mapping[Place, int] = field(default_factory=dict, repr=False, compare=False)
-    folder: Path | None = None
+    folder: Path | None = field(default=None, compare=False)
     texts: Mapping[str, Any] = field(default_factory=dict)
     trials: Mapping[str, Any] = field(default_factory=dict)
     confined: bool = False
@@ -175,12 +176,40 @@ class Assessment:
     def to_toml(self, path: str | Path | None = None) -> str:
         """The file as TOML text, floats with all their digits; written to a path where one is given.
 
-        Values are those of the file, with their units. Comments are not kept.
+        Values are those of the file, with their units. Comments are not kept. One that was made in Python, or changed
+        there, is written in SI units, blocks by their vertices and records by their samples.
+
+        Raises:
+            AssessmentError: with the key, for what a file has no words for, such as functions.
         """
-        text = toml_text(self.document)
+        is_read = bool(self.document) and assessment_of(self.document, folder=self.folder) == self
+        text = toml_text(self.document if is_read else self._made())
         if path is not None:
             write_text(require_path("path", path), text)
         return text
+
+    def _made(self) -> dict[str, Any]:
+        """Its tables, from the objects."""
+        found: dict[str, Any] = {} if self.language == "en" else {"language": self.language}
+        found |= {name: dict(one) for name, one in (("project", self.project), ("design", self.trials)) if one}
+        try:
+            if list(self.mechanisms) == [""]:
+                found |= mechanism_table(self.mechanisms[""])
+            else:
+                places = {name: ("mechanisms", name) for name in self.mechanisms}
+                found["mechanisms"] = {name: mechanism_table(self.mechanisms[name], at) for name, at in places.items()}
+            found |= {"report": values_of(self.texts, report_maker().keys, ("report",))} if self.texts else {}
+        except UnwrittenError as error:
+            raise self._error(error.place, str(error)) from None
+        again = assessment_of(found, folder=self.folder)
+        for name, one in () if again == self else self.mechanisms.items():
+            for part in (part.name for part in fields(one) if part.compare):
+                mine, other = getattr(one, part), getattr(again.mechanisms[name], part)
+                if mine != other:
+                    raise self._error(
+                        (), f"{name or 'mechanism'}: its {part} is {mine!r:.300}; a file gives {other!r:.300}"
+                    )
+        return found
 
     def _of(self, mechanism: Mechanism, call: Callable[[], Any]) -> Any:
         """What a function of a mechanism returns; its error names the table."""

@@ -74,7 +74,7 @@ class Mechanism:
     options: Mapping[str, Any] = field(default_factory=dict)
     curve: Mapping[str, Any] = field(default_factory=dict)
     shaking: Shaking = field(default_factory=Shaking)
-    place: Place = ()
+    place: Place = field(default=(), compare=False)
 
     @property
     def case(self) -> Case | MasonryCase:

@@ -57,9 +57,9 @@ def solve_explicit(
         timestep: length of a step [s], 1e-12 to 1; None takes 0.4 of the longest stable one for masonry, less where
             dashpots are strong or ties stiff, and 0.05 of it for a wall, whose impacts are read one by one, shortened
             to a whole share of the spacing of the samples.
-        output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. The last
-            sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
-            may be shorter, and the run ends with the step that is nearest to the duration.
+        output_step: largest spacing of the returned samples [s], 1e-9 to 1e6 and at most the duration; None stands for
+            1 ms. The last sample is the end of the run. A given timestep is kept: the spacing is a whole number of
+            steps, the last one may be shorter, and the run ends with the step that is nearest to the duration.
         ledger: whether to account for every part of the energy. A residual above 1 % of the largest part warns.
         forces: whether to keep `forces` and `reactions` at every sample, see `Forces`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. The end of

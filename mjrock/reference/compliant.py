@@ -52,9 +52,9 @@ def solve_compliant(
         case: the wall, its release, its sides.
         contacts: the interfaces.
         rtol: relative tolerance of the integration (scipy, DOP853) [-], 1e-14 to 0.1.
-        atol: absolute tolerance of it, in m, rad, m/s and rad/s, 1e-16 to 0.1.
-        output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 0.5 ms. They
-            are evenly spaced, and the last is the end of the run.
+        atol: absolute tolerance of it [-], in m, rad, m/s and rad/s, 1e-16 to 0.1.
+        output_step: largest spacing of the returned samples [s], 1e-9 to 1e6 and at most the duration; None stands for
+            0.5 ms. They are evenly spaced, and the last is the end of the run.
 
     Returns:
         The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, `impacts` and `peaks`.

@@ -20,7 +20,7 @@ FUNCTIONS = [
     for member in ([kind] if not isinstance(kind, type) else vars(kind).values())
     if hasattr(function := getattr(member, "__func__", member), "__wrapped__") and inspect.isfunction(function)
 ]
-NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?|pi"
+NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?(?: pi)?|pi"
 
 
 def of_argument(kind, name):
@@ -32,13 +32,19 @@ def of_argument(kind, name):
     return " ".join((found[1] if found else text).split())
 
 
+def number(text):
+    """A number in words, such as "-2 pi"."""
+    times = text.removesuffix("pi").strip()
+    return float(times or 1) * (math.pi if text.endswith("pi") else 1)
+
+
 def faults(kind):
     """The declared numbers of a class or function whose docstring lacks or contradicts their range or unit."""
     for name, one in declared(kind).items():
         within = one.within
         text = of_argument(kind, name)
         found = re.findall(rf"({NUMBER}) to ({NUMBER})", text)
-        ranges = [tuple(math.pi if end == "pi" else float(end) for end in ends) for ends in found]
+        ranges = [tuple(number(end) for end in ends) for ends in found]
         if re.search(r"(as|those) of `", text):
             continue
         if (within.low, within.high) not in ranges or (f"[{within.unit or '-'}]" not in text and not within.whole):

@@ -215,7 +215,7 @@ class Contacts:
         base: the base, over the thickness of the wall.
         side: the side stop over the whole inner face, or None for a wall that never meets one.
         law: name of the damping law, recorded in the generated model.
-        stop_top: height that the side stop reaches for which the damping was chosen [m]; None if unknown.
+        stop_top: height that the side stop reaches for which the damping was chosen [m], 0.01 to 200; None if unknown.
     """
 
     base: Interface
@@ -261,7 +261,7 @@ class Contacts:
             points: contact lines a face, 2 to 1000.
             friction, side_friction: coefficients as in `Interface` [-], 0 to 10. By default the base holds and the side
                 is smooth.
-            law, stop_top: see `Contacts`.
+            law, stop_top: as of `Contacts`.
 
         Raises:
             ValueError: for a value outside its range, or a base too soft for the wall to stand on.

@@ -267,9 +267,9 @@ class DampingLaw:
         source: where the coefficients come from.
         base: formula of the base, of e_2s.
         side: formula of the side stop, of e_side.
-        R_range: half diagonals covered by the fit [m].
+        R_range: half diagonals covered by the fit [m], 0 to 10000.
         slenderness_range: h/b covered by the fit [-].
-        k_n_range: interface stiffnesses covered by the fit [N/m3].
+        k_n_range: interface stiffnesses covered by the fit [N/m3], 0 to 1e16.
         side_range: |e_side| covered by the fit [-].
         points: contact lines a face that the law was fitted for, or None where the source does not state them.
         scalable: whether size and density enter through dimensionless groups alone. `R_range` is then no limit, and

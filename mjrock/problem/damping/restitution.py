@@ -41,8 +41,8 @@ class Restitution:
     """What is left of the angular velocity after an impact.
 
     Args:
-        base: e_2s, one impact on the base, two-sided rocking [-], in (0, 1].
-        side: e_side, the impact on the side stop [-], in [-1, 1]; negative where the wall rebounds.
+        base: e_2s, one impact on the base, two-sided rocking [-], 0 to 1 and above 0.
+        side: e_side, the impact on the side stop [-], -1 to 1; negative where the wall rebounds.
         made_for: alpha of the wall [rad] and the share of its height that the side stop reaches [-], where the values
             come from the geometry; None if unknown.
 

@@ -627,13 +627,13 @@ class GroundMotion:
             peak: largest |acceleration| [m/s2], 1e-3 to 100.
             duration: of the record, to the nearest step [s], 1 to 1000.
             seed: of the phases, a whole number, 0 to 9007199254740992.
-            dt: time step [s], at most a quarter of the ground's period.
+            dt: time step [s], 1e-5 to 1 and at most a quarter of the ground's period.
             ground_frequency: of the soil layer [Hz], 0.1 to 50.
             ground_damping: of the soil layer [-], 0.05 to 2.
-            filter_frequency: of the high-pass [Hz], 0.01 to ground_frequency.
+            filter_frequency: of the high-pass [Hz], 0.01 to 50 and at most ground_frequency.
             filter_damping: of the high-pass [-], 0.05 to 2.
             rise: share of the duration over which the envelope rises [-], 0.01 to 0.99.
-            fall: share over which it falls [-], 0.01 to 1 less the rise.
+            fall: share over which it falls [-], 0.01 to 0.99 and at most 1 less the rise.
 
         Raises:
             ValueError: for a value outside its range.

@@ -181,8 +181,19 @@ class CodeSpectrum:
         return FloorSpectrum(self, *building_modes(period, damping, participation, height))
 
 
+class _Alike:
+    """A spectrum that equals another with the same numbers."""
+
+    def __eq__(self, other: object) -> bool:
+        same = type(self) is type(other)
+        return same and all(map(np.array_equal, vars(self).values(), vars(other).values()))
+
+    def __hash__(self) -> int:
+        return hash(type(self))
+
+
 @dataclass(frozen=True, eq=False)
-class FloorSpectrum:
+class FloorSpectrum(_Alike):
     """The elastic spectrum on a floor, Circolare 2019 n. 7, C7.2.3. Called with T and xi it gives S_eZ [m/s2].
 
     Each mode amplifies oscillators of periods near its own (equation C7.2.6). S_eZ is the root of the sum of the
@@ -256,7 +267,7 @@ class FloorSpectrum:
 
 
 @dataclass(frozen=True, eq=False)
-class PointSpectrum:
+class PointSpectrum(_Alike):
     """An elastic spectrum given as points, linear between them, constant beyond them. It stands wherever a spectrum of
     a code does.
 
@@ -265,7 +276,7 @@ class PointSpectrum:
 
     Args:
         period: T, increasing [s], 0 to 100, shape (n,).
-        acceleration: S_e at them [m/s2], above 0, shape (n,).
+        acceleration: S_e at them [m/s2], 1e-6 to 1000, shape (n,).
         damping: damping ratio of the points [-], 0.005 to 0.5.
 
     Raises:

@@ -44,7 +44,8 @@ class Actuator(Effect):
 
     Args:
         block: the block that it drives, by its name or number, or None for all free blocks.
-        at: the point of the block that it drives, as drawn, x, z and in space x, y, z [m]; None for all free blocks.
+        at: the point of the block that it drives, as drawn, x, z and in space x, y, z [m], -10000 to 10000; None for
+            all free blocks.
         direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z). All free blocks of masonry
             in space take a vector.
         displacement: (t, d) in s and m, from (0, 0) on, linear in between and constant after the last, within 10 m.

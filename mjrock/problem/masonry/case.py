@@ -158,7 +158,7 @@ class MasonryCase(Carrying):
     duration: Annotated[float, Within(1e-6, 1e6, "s")] = 10.0
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
-    velocity: Annotated[Array | ArrayLike | None, Within(-FASTEST, FASTEST, "m/s or rad/s")] = None
+    velocity: Annotated[Array | ArrayLike | None, Within(-FASTEST, FASTEST, "m/s, m/s, rad/s")] = None
     effects: tuple[Effect, ...] = ()
     supports: Annotated[Any, OfSupports] = ()
     transverse: GroundMotion | None = field(default=None, kw_only=True)

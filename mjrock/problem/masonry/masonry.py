@@ -43,7 +43,7 @@ from ..wall.section import Opening
 from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .blocks.joints import Joint, OverlapError, joints_in_plane, names_of
 from .blocks.joints_in_space import SpaceJoint, joints_in_space
-from .blocks.polygon import NEAR, Polygon
+from .blocks.polygon import COORDINATE, Polygon
 from .blocks.polyhedron import Extents, Polyhedron
 from .builders.in_plane import (
     MOST_BODIES,
@@ -918,7 +918,7 @@ class Masonry(Drawn):
         *,
         thickness: Annotated[float | None, Within(0.01, 10, "m")] = None,
         returns: str = "both",
-        openings: Sequence[tuple[Annotated[float, NEAR], Opening]] = (),
+        openings: Sequence[tuple[Annotated[float, COORDINATE], Opening]] = (),
         gable: int = 0,
         ground: Polyhedron | None = None,
         density: Density = 2000.0,

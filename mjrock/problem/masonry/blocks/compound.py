@@ -14,7 +14,7 @@ from ....geometry.hull import Convex, Side
 from ....quantities import Array, Flags, frozen, keep, require_flag, require_kind, require_sequence, short_repr
 from .joints import PARTS_APART, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
-from .polygon import NEAR, Polygon, checked_name
+from .polygon import COORDINATE, Polygon, checked_name
 from .polyhedron import Polyhedron, principal_of
 from .surface import Surface, surface_in_plane, surface_in_space
 
@@ -59,7 +59,7 @@ class Compound:
         _ = self.joined
 
     @classmethod
-    def prism(cls, compound: Compound, middle: Annotated[float, NEAR] = 0.0) -> Self:
+    def prism(cls, compound: Compound, middle: Annotated[float, COORDINATE] = 0.0) -> Self:
         """A unit of the plane as a body in space, see `Polyhedron.prism`.
 
         Args:

@@ -30,7 +30,7 @@ from ....quantities import (
 Corners = tuple[tuple[float, float], ...]
 FARTHEST_VERTEX = 1e4
 """Largest coordinate of a vertex [m]."""
-NEAR = Within(-FARTHEST_VERTEX, FARTHEST_VERTEX, "m")
+COORDINATE = Within(-FARTHEST_VERTEX, FARTHEST_VERTEX, "m")
 LENGTHS = Within(1e-3, 1e3, "m")
 """The ranges of a coordinate, and of the length of a block out of the plane."""
 BEND = 1e-9
@@ -69,7 +69,7 @@ class Polygon:
     @within_ranges
     def __init__(
         self,
-        vertices: Annotated[ArrayLike, NEAR] | Sequence[Sequence[float]],
+        vertices: Annotated[ArrayLike, COORDINATE] | Sequence[Sequence[float]],
         density: Density = 2000.0,
         length: Annotated[float, LENGTHS] = 1.0,
         fixed: bool = False,

@@ -25,7 +25,7 @@ from ....quantities import (
     short_repr,
     within_ranges,
 )
-from .polygon import FARTHEST_VERTEX, NEAR, Polygon, checked_name, required_vertices
+from .polygon import COORDINATE, FARTHEST_VERTEX, Polygon, checked_name, required_vertices
 
 Vertices = tuple[tuple[float, float, float], ...]
 Extents = Annotated[ArrayLike, Within(1e-3, FARTHEST_VERTEX, "m")]
@@ -67,7 +67,7 @@ class Polyhedron:
     @within_ranges
     def __init__(
         self,
-        vertices: Annotated[ArrayLike, NEAR] | Sequence[Sequence[float]],
+        vertices: Annotated[ArrayLike, COORDINATE] | Sequence[Sequence[float]],
         density: Density = 2000.0,
         fixed: bool = False,
         name: str | None = None,
@@ -87,7 +87,7 @@ class Polyhedron:
     def box(
         cls,
         size: Extents,
-        centre: Annotated[ArrayLike, NEAR] = (0.0, 0.0, 0.0),
+        centre: Annotated[ArrayLike, COORDINATE] = (0.0, 0.0, 0.0),
         density: Density = 2000.0,
         fixed: bool = False,
         name: str | None = None,
@@ -97,7 +97,7 @@ class Polyhedron:
         Args:
             size: its extents along x, y and z [m], 1e-3 to 10000 each.
             centre: its centre [m], -10000 to 10000 each.
-            density, fixed, name: as of any `Polyhedron`.
+            density, fixed, name: as of `Polyhedron`.
 
         Raises:
             ValueError: for a value outside its range.
@@ -108,7 +108,7 @@ class Polyhedron:
 
     @classmethod
     @within_ranges
-    def prism(cls, polygon: Polygon, middle: Annotated[float, NEAR] = 0.0) -> Self:
+    def prism(cls, polygon: Polygon, middle: Annotated[float, COORDINATE] = 0.0) -> Self:
         """A block of the plane as a body in space: it reaches over its length along y.
 
         Args:

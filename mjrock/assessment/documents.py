@@ -1,0 +1,155 @@
+"""Objects as the plain tables that a file has of them: the way back of `reading`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass
+from os import PathLike, fspath
+from typing import Any
+
+import numpy as np
+
+from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
+from ..problem.masonry.histories import Support
+from ..problem.wall.block import Block
+from ..problem.wall.effect import CombinedEffect
+from ..quantities import shown
+from .declarations import USUAL_MAKE, Key, classes_of, is_public, items_of, key_named, kinds_of, maker_of
+from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, Mechanism
+from .running import DYNAMIC, Shaking, run_maker
+from .tables import Place, spelt_place
+
+Document = dict[str, Any]
+FOUND = "joints"
+"""Attributes that are not what was given by their name: the joints of masonry are those that were found."""
+
+
+class UnwrittenError(ValueError):
+    """A value for which a file has no words.
+
+    Args:
+        place: the key that it would have.
+        why: what it is, and the remedy.
+    """
+
+    def __init__(self, place: Place, why: str) -> None:
+        self.place = place
+        super().__init__(f"{spelt_place(place)} {why}")
+
+
+def table_of(value: Any, kinds: Sequence[Any], place: Place) -> Document:
+    """The table of a dataclass, with what is not its default.
+
+    Args:
+        value: of a public class.
+        kinds: the types that the key may be of.
+        place: the key.
+    """
+    kind: Any = type(value)
+    found: Document = {} if list(classes_of(kinds)) == [kind.__name__] else {"kind": kind.__name__}
+    keys = {name: key for name, key in maker_of(kind, kind).keys.items() if name != FOUND and hasattr(value, name)}
+    if kind is Block:  # in whole sizes, as one writes it
+        found |= {"thickness": 2 * value.b, "height": 2 * value.h}
+        keys = {name: key for name, key in keys.items() if name not in ("b", "h")}
+    elif kind.__name__ in USUAL_MAKE:
+        found["make"] = kind.__name__
+    given = {name: getattr(value, name) for name in keys}
+    return found | values_of(
+        {name: one for name, one in given.items() if not _same(one, keys[name].default)}, keys, place
+    )
+
+
+def values_of(values: Mapping[str, Any], keys: Mapping[str, Key], place: Place) -> Document:
+    """Arguments by name as the keys of a table. None is left out."""
+    found: Document = {}
+    for name, value in values.items():
+        if name not in keys:
+            raise UnwrittenError((*place, name), f"= {shown(value)} is no key of a file; leave it out")
+        key = keys[name]
+        if value is not None:
+            found[key_named(key)] = plain(value, key.kinds, (*place, key_named(key)))
+    return found
+
+
+def plain(value: Any, kinds: Sequence[Any], place: Place) -> Any:
+    """A value as a file has it: a number, a text, a truth, a list or a table.
+
+    Raises:
+        UnwrittenError: for a function, and for what else a file has no words for.
+    """
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, PathLike):
+        return fspath(value)
+    if is_dataclass(value) and not isinstance(value, type) and is_public(type(value)):
+        name = getattr(value, "name", None)
+        return name if str in kinds and isinstance(name, str) else table_of(value, kinds, place)
+    if isinstance(value, Mapping):
+        return {str(name): plain(one, (), (*place, str(name))) for name, one in value.items()}
+    if isinstance(value, Sequence) and all(isinstance(one, Support) for one in value) and value:
+        return {one.block: plain(one.histories, (), (*place, one.block)) for one in value}
+    if isinstance(value, Sequence):
+        told = [getattr(one, "told", one) for one in value]  # the wedges in the place of their masses
+        value = [
+            one if isinstance(one, CombinedEffect) else given
+            for one, given in zip(told, value, strict=True)
+            if one is not None
+        ]
+        of = [one for kind in kinds for item in items_of(kind) or () if item is not ... for one in kinds_of(item)]
+        return [plain(one, of, (*place, i)) for i, one in enumerate(value)]
+    what = "is a function" if callable(value) else f"= {shown(value)} is no number, text or table"
+    raise UnwrittenError(place, f"{what}, for which a file has no words; give a number")
+
+
+def _same(value: Any, default: Any) -> bool:
+    """Whether a value is the default of its argument."""
+    return value is default or (isinstance(value, bool | int | float | str | tuple) and value == default)
+
+
+def mechanism_table(mechanism: Mechanism, place: Place = ()) -> Document:
+    """A mechanism with what it is checked against, and its runs, as one table."""
+    problem, shaking = mechanism.problem, mechanism.shaking
+    if type(problem).__name__ not in MECHANISMS:
+        raise UnwrittenError((*place, "problem"), f"= {shown(problem)} is not one of {', '.join(MECHANISMS)}")
+    found: Document = {"kind": type(problem).__name__} | table_of(problem, (type(problem),), place)
+    found |= _demand(mechanism.demand, place)
+    sections: dict[str, Any] = {"check": (mechanism.options, CHECK), "limit_curve": (mechanism.curve, CURVE)}
+    for name, (values, maker) in (sections | {"dynamic_check": (shaking.dynamic, DYNAMIC)}).items():
+        found |= {name: values_of(values, maker.keys, (*place, name))} if values else {}
+    if shaking.records and "floor" in found:
+        raise UnwrittenError((*place, "records"), "are those of the floor, and a file has those of the ground")
+    for name, value in (("restitution", shaking.e), ("contacts", shaking.contacts)):
+        found |= {} if value is None else {name: table_of(value, (type(value),), (*place, name))}
+    if shaking.records:
+        found["records"] = [
+            {"kind": "GroundMotion"} | table_of(one, (type(one),), (*place, "records", i))
+            for i, one in enumerate(shaking.records)
+        ]
+    options = values_of(shaking.options, run_maker(shaking.solver).keys, (*place, "run"))
+    given = {name: getattr(shaking, name) for name in ("solver", "polarities")}
+    run = {name: one for name, one in given.items() if one != getattr(Shaking, name)} | options
+    return found | ({"run": run} if run else {})
+
+
+def _demand(demand: Any, place: Place) -> Document:
+    """The tables of what a mechanism is checked against: the site, and a floor that all limit states share."""
+    if demand is None:
+        return {}
+    states = demand if isinstance(demand, Mapping) else {"": demand}
+    site, floors = Document(), list[Document]()
+    for name, one in states.items():
+        ground = one.ground if isinstance(one, FloorSpectrum) else one
+        if not isinstance(ground, CodeSpectrum | PointSpectrum):
+            raise UnwrittenError((*place, "site"), f"= {shown(ground)} is no spectrum of a code and no PointSpectrum")
+        table = {"kind": type(ground).__name__} | table_of(ground, (type(ground),), (*place, "site"))
+        site |= {name: table} if name else table
+        floors.append(
+            {key: plain(getattr(one, key), (), (*place, "floor", key)) for key in FLOOR.keys}
+            if isinstance(one, FloorSpectrum)
+            else {}
+        )
+    if any(floor != floors[0] for floor in floors):
+        raise UnwrittenError((*place, "floor"), "differs between limit states, and a file has one for all")
+    return {"site": site} | ({"floor": floors[0]} if floors[0] else {})
