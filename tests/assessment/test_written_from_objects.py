@@ -167,6 +167,10 @@ WALL = mr.Case(FACADE)
             r"mechanism: its shaking is .*e=None.*; a file gives .*e=Restitution",
         ),
         (
+            Mechanism(mr.Case(FACADE, motion=mr.GroundMotion.pieces([(0.3, 2.0), (0.6, -1.0)]))),
+            "mechanism: its problem is <Case .*2 pieces",
+        ),
+        (
             Mechanism(mr.Case(FACADE, effects=WEDGES[:1])),
             "mechanism: its problem is <Case .*WedgeMass>; a file gives <Case .*WedgeMass, WedgeMass>",
         ),

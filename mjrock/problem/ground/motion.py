@@ -66,6 +66,7 @@ NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
 """Fields of a header that name its record."""
 Amplitude = Annotated[float, Within(-1e4, 1e4, "m/s2")]
 """Largest acceleration of a pulse, with its sign."""
+Lasting = Annotated[float, Within(FINEST, 1000, "s")]
 Samples = Annotated[ArrayLike, Within(-math.inf, math.inf, "m/s2")] | Array
 Span = Annotated[float, Within(0.01, 100, "s")]
 """Period or duration of a pulse."""
@@ -525,7 +526,7 @@ class GroundMotion:
         return cls._of_pieces([(duration / steps, amplitude)] * steps, name)
 
     @classmethod
-    def pieces(cls, pieces: Sequence[tuple[float, float]]) -> Self:
+    def pieces(cls, pieces: Sequence[tuple[Lasting, Amplitude]]) -> Self:
         """Constant accelerations one after another, exact where they jump, in every solver.
 
         A step that spans a jump takes its impulse exactly. A short piece is an impulse: (1e-4, 1e4 v) changes the
