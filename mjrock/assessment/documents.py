@@ -16,7 +16,7 @@ from ..problem.wall.effect import CombinedEffect
 from ..quantities import shown
 from .declarations import USUAL_MAKE, Key, classes_of, is_public, items_of, key_named, kinds_of, maker_of
 from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, Mechanism
-from .running import DYNAMIC, Shaking, run_maker
+from .running import DYNAMIC, run_maker, usual_solver
 from .tables import Place, spelt_place
 
 Document = dict[str, Any]
@@ -128,8 +128,8 @@ def mechanism_table(mechanism: Mechanism, place: Place = ()) -> Document:
             for i, one in enumerate(shaking.records)
         ]
     options = values_of(shaking.options, run_maker(shaking.solver).keys, (*place, "run"))
-    given = {name: getattr(shaking, name) for name in ("solver", "polarities")}
-    run = {name: one for name, one in given.items() if one != getattr(Shaking, name)} | options
+    usual = {"solver": usual_solver(getattr(mechanism.case, "block", None)), "polarities": True}
+    run = {name: getattr(shaking, name) for name, one in usual.items() if getattr(shaking, name) != one} | options
     return found | ({"run": run} if run else {})
 
 
