@@ -43,9 +43,9 @@ OfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")
 """Stiffness of the side stop of a wall, None without one."""
 Rubbing = Annotated[float | None, Within(0, 10)]
 """Coefficient of friction of an interface, see `Interface`."""
-OwnLaw = Callable[[Block, Restitution, float], tuple[float, float]]
+DampingFunction = Callable[[Block, Restitution, float], tuple[float, float]]
 """A law of the user, called as law(wall, e, k_base) to give the damping ratios of base and side."""
-AnyLaw = DampingLaw | OwnLaw
+AnyLaw = DampingLaw | DampingFunction
 
 
 @within_ranges
@@ -165,7 +165,7 @@ class Interface:
         return float(np.sum(self.stiffness * self.positions**2))
 
 
-def _predicted(law: OwnLaw, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
+def _predicted(law: DampingFunction, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """The two damping ratios of a law of the user, or a TypeError that names the law."""
     asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
