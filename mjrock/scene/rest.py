@@ -35,8 +35,8 @@ DISPLACEMENT_ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the displacements of bodies and of the lengths of ties, over these [-]."""
 LEANING = 1e-6
 """Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
-ROTATION_OF_FALLEN = 0.5
-"""Rotation beyond which a body no longer stands [rad]."""
+ROTATION_OF_FALLEN, WAY_OF_FALLEN = 0.5, 1e2
+"""Rotation [rad], and displacement in radii of inertia, beyond which a body no longer stands."""
 NEGLIGIBLE_STIFFNESS = 1e-12
 """Negative stiffness that is put down to rounding, over the largest [-]."""
 LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 1e-12, 1.0
@@ -240,9 +240,17 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
         stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.grips, share)
         motion = solved(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
         trial = tried(potential, search, lowering(potential, trial.pose, motion, trial.sliders))
-        if loose > MOST_LOOSE or not turned(trial.pose, freedom).max() < ROTATION_OF_FALLEN:
+        if loose > MOST_LOOSE or gone(potential, trial.pose):
             break
     raise UnsettledError(trial.pose.reshape(-1, freedom.nq))
+
+
+def gone(potential: Potential, pose: Array) -> bool:
+    """Whether a body has turned too far to stand, or has moved away."""
+    freedom = potential.structure.places.freedom
+    moved_by = np.abs(pose.reshape(-1, freedom.nq)[:, : freedom.translations]).max(axis=1)
+    radii = sizes(potential).reshape(-1, freedom.nv)[:, -1]
+    return not (turned(pose, freedom).max() < ROTATION_OF_FALLEN and np.all(moved_by < WAY_OF_FALLEN * radii))
 
 
 def imperfection(potential: Potential, trial: Trial) -> Array:
@@ -407,7 +415,6 @@ def let_go(potential: Potential, trial: Trial, way: Array) -> Array:
     its own mirror image."""
     freedom, way = potential.structure.places.freedom, forwards(potential, way)
     near = PUSH * float(potential.pressed(trial.pose).max()) / np.abs(way).max()
-
     of_friction = shear_stiffness(trial.grips, 1.0) + curvature(potential, trial) - potential.curvature(trial.pose)
     held, stiffness = way @ trial.grips.held, way @ (of_friction @ way)
 
