@@ -78,7 +78,9 @@ def test_a_report_of_loads_has_the_verdict_the_picture_and_the_loads(tmp_path, l
     first = text[: text.index("What is borne" if language == "en" else "Quanto è sopportato")]
     assert ("governs" if language == "en" else "Governa") in first
     assert first.index("wall") < first.index("pull")  # the least ratio first
-    assert page.count("<img") == 4  # the blocks, the mechanism, the push-over, and the curve of the section
+    assert (
+        page.count("<img") == 5
+    )  # the wall, the blocks with their mechanism, two push-overs, the curve of the section
     assert "C8.7" not in text
     assert ("2 kN; 0 kN" in text) is True
     ratio = 0.6 * 2.0 * 2000.0 * mr.GRAVITY * 0.3 / 2000.0

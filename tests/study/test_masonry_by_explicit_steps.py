@@ -114,7 +114,9 @@ def test_a_report_and_histories(tmp_path):
     ):
         assert said in text
     assert "block_1 at" in text
-    assert text.count("<img") == 4
+    assert (
+        text.count("<img") == 5
+    )  # the masonry with the tie, and that of the runs; maxima, histories and ends of these
     with pytest.raises(ValueError, match=r"responses\[0\] is of masonry, and the case of other masonry"):
         mr.report(dataclasses.replace(case, masonry=STOPS, effects=()), answers, tmp_path / "a.html")
     with pytest.raises(ValueError, match="leave e and contacts out"):
