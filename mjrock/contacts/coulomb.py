@@ -8,12 +8,10 @@ force of the law with the friction in place. A contact whose slip friction stops
 
 from __future__ import annotations
 
-import warnings
-
 import mujoco
 import numpy as np
 
-from .checks import Array, Integers, named, require_kind, require_within
+from .checks import Array, Integers, named, require_kind, require_within, warn_of
 from .geoms import geom_label
 from .notes import ContactWarning
 from .versions import field
@@ -70,11 +68,10 @@ class CoulombFriction:
         if spun := np.flatnonzero(model.pair_dim > 3).tolist():
             ends = zip(model.pair_geom1[spun], model.pair_geom2[spun], strict=True)
             names = [" on ".join(geom_label(model, int(geom)) for geom in both) for both in ends]
-            warnings.warn(
+            warn_of(
                 f"pairs {named(names)} have condim 4 or 6, torsional or rolling friction, and keep their rows, which "
                 "press apart what slides; condim 3 has Coulomb's friction",
                 ContactWarning,
-                stacklevel=2,
             )
         self.model = model
         self.dimensions = np.array(model.pair_dim)

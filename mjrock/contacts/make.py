@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fnmatch import fnmatchcase
@@ -12,7 +11,7 @@ from typing import Annotated
 
 import mujoco
 
-from .checks import Array, Within, keep_declared, named, require_within, shown, spelt, within_ranges
+from .checks import Array, Within, keep_declared, named, require_within, shown, spelt, warn_of, within_ranges
 from .contact import PairContact, PairContacts, blow_spoilers, merged, soft_spoilers, spoilers, weight_spoilers
 from .geoms import BODY, GEOM, NO_LOAD, GeomPair, compiled_model, geom_id, makes, names_of_objects
 from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms
@@ -149,7 +148,7 @@ def contact_for(
     pose = Pose(whole, keyframe, qpos)
     made = _made(pose, [(pair, asked)])
     for _, sentence in _sentences(whole, made):
-        warnings.warn(sentence, ContactWarning, stacklevel=2)
+        warn_of(sentence, ContactWarning)
     return made.contacts[0]
 
 
@@ -233,7 +232,7 @@ def contacts_for(
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
     made = _made(pose, [(GeomPair.named(whole, *geoms), asked) for geoms, asked, _ in meant.values()])
     for sentence in merged(_sentences(whole, made)):
-        warnings.warn(sentence, ContactWarning, stacklevel=2)
+        warn_of(sentence, ContactWarning)
     return made
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-import warnings
 from collections.abc import Iterator
 from copy import deepcopy
 from typing import NamedTuple
@@ -13,7 +12,7 @@ import numpy as np
 
 from ..bars import Bar
 from ..compiled import for_types_of
-from ..quantities import Array
+from ..quantities import Array, warn_of
 from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
 from .kinds.own import OwnLaws
@@ -211,9 +210,8 @@ def warn_if_long(setup: Setup, stepping: Stepping) -> None:
     slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, *laws))
     shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
     if shorter > DASHPOTS_WORTH_SAYING:
-        warnings.warn(
+        warn_of(
             f"explicit steps would take some {seconds:.2g} s: {stepping.last:.2g} steps of {stepping.h:.2g} s on "
             f"{len(lines)} contact lines. The dashpots, c/k = {slowest:.2g} s, make each step {shorter:.2g} times "
             "shorter than the springs need: lower xi, or raise the frequency that it refers to",
-            stacklevel=3,
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..problem.masonry.case import AnyCase
-from ..quantities import GRAVITY, Array, Integers
+from ..quantities import GRAVITY, Array, Integers, warn_of
 from ..result.forces import Forces, Gathered, forces_of
 from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion, thinned
@@ -190,10 +189,9 @@ def require_sound(run: Run, step: float) -> None:
     except StepError as gain:
         raise RuntimeError(f"{gain} by t = {gain.t:.4g} s; {advice(step, 4 * gain.share, ENERGY_GAIN)}") from None
     if -left.min() > RESIDUAL_WARNED_OF * scale:
-        warnings.warn(
+        warn_of(
             f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "
             "a block that slides over the end of a face is met all at once, at any step",
-            stacklevel=4,
         )
 
 

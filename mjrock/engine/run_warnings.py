@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 
 import numpy as np
 
 from ..geometry.frames import PLANE
 from ..method import METHOD
 from ..problem.masonry.case import AnyCase
+from ..quantities import warn_of
 from ..result.ledger import warn_if_open
 from ..result.response import Response
 from ..scene.explicit_step import STEP_TAKEN, stable_step, stepping_seconds
@@ -78,11 +78,10 @@ def warn_if_slow(scene: Scene) -> None:
         return
     explicit, (least, most) = explicit_seconds(scene), fitted_seconds(scene)
     if MUCH_FASTER * explicit <= math.sqrt(least * most):
-        warnings.warn(
+        warn_of(
             f"explicit steps would take some {explicit:.2g} s for a simulated second of these {blocks} "
             f"blocks, and steps that fit the motion in MuJoCo {least:.2g} to {most:.2g} s, the more the blocks slide "
             "and strike: take mr.solve_explicit(case), or a timestep",
-            stacklevel=3,
         )
 
 
@@ -95,11 +94,10 @@ def warn_if_plain_is_slow(scene: Scene, duration: float, h: float) -> None:
     """Warn of a run of a plain model that takes minutes, with what sets its step h [s]."""
     seconds = plain_seconds(scene, duration / h)
     if seconds > MINUTE:
-        warnings.warn(
+        warn_of(
             f"this plain model would take some {seconds / 60:.2g} minutes, {duration / h:.2g} steps of {h:.2g} s, whose"
             f" length the stiffest joint sets (omega h = {h * scene.highest_frequency:.2g}); explicit steps would take "
             f"some {explicit_seconds(scene) * duration / 60:.2g}: take mr.solve_explicit(case), or softer joints",
-            stacklevel=4,
         )
 
 
@@ -144,10 +142,9 @@ def warn_if_sheared(scene: Scene) -> None:
     sprung = np.isfinite(contacts.k_s)
     if sprung.any():
         least = (np.asarray(contacts.k_s) / contacts.area)[sprung].min()
-        warnings.warn(
+        warn_of(
             f"k_s = {least:.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick rigidly up to their "
             "friction",
-            stacklevel=3,
         )
 
 
@@ -156,17 +153,15 @@ def warn_if_coarse(scene: Scene, h: float) -> None:
     resolved = h * scene.highest_frequency
     scatter = SCATTER * resolved if (scene.bears == 0).any() else 0.0
     if scatter > WORTH_SAYING and resolved <= METHOD.smooth:
-        warnings.warn(
+        warn_of(
             f"with a fixed step of {h:.3g} s |e| scatters by {scatter:.0%} (standard deviation) with the phase of the "
             f"touch; below {WORTH_SAYING / SCATTER / scene.highest_frequency:.3g} s it is less than "
             f"{WORTH_SAYING:.0%}, and fitted steps have no such scatter",
-            stacklevel=3,
         )
     if resolved > METHOD.smooth:
-        warnings.warn(
+        warn_of(
             f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
             f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",
-            stacklevel=3,
         )
 
 
@@ -176,11 +171,10 @@ def warn_if_lifted(scene: Scene, steps: Steps) -> None:
         return
     lift = contact_work(scene, steps).lift
     if lift > LIFTED:
-        warnings.warn(
+        warn_of(
             f"contacts that slide are pressed apart by {lift:.0%} of their normal force on top of it: the rows of a "
             "fixed step, which are those of the model text, do not slide as Coulomb has it. Pass coulomb=True, or take "
             "steps that fit the motion",
-            stacklevel=3,
         )
 
 
@@ -191,10 +185,9 @@ def warn_if_slid(run: EngineRun) -> None:
     holds = np.asarray(run.scene.contacts.holds)
     if holds.any() and slid > SLID:
         half_base = 0.5 * float(np.ptp(run.scene.contacts.at[holds, 0]))
-        warnings.warn(
+        warn_of(
             f"the base slid by up to {slid * half_base:.3g} m, {slid:.1%} of b, although it should hold: no "
             "edge was loaded enough to hold it. Give the base the friction that it has",
-            stacklevel=3,
         )
 
 
@@ -202,7 +195,7 @@ def warn_of_gain(response: Response, run: EngineRun, advice: str) -> None:
     """Warn of energy that has appeared from nowhere after blocks of masonry fell, and of a ledger that does not close
     as long as a wall can still come back, with advice."""
     if run.gain is not None:
-        warnings.warn(f"{run.gain} by t = {run.gain.t:.4g} s, after blocks fell: {ENDLESS}", stacklevel=3)
+        warn_of(f"{run.gain} by t = {run.gain.t:.4g} s, after blocks fell: {ENDLESS}")
     elif response.ledger is not None:
         fell = response.joints is not None and bool(response.joints.fallen)
         unpaid = run.problem.unpaid(response.ledger, response.motion, run.scale)

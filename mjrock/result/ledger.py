@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..quantities import Array, require_reals, shown
+from ..quantities import Array, require_reals, shown, warn_of
 from ..scene.fixed_step import ENERGY_GAIN
 
 
@@ -53,7 +52,7 @@ def warn_if_open(unpaid: float, scale: float, largest: float, of: str, advice: C
     if unpaid > largest * scale:
         share = unpaid / scale
         said = f"the ledger does not close: {unpaid:.3g} J, {share:.1%} of {of}, have no account; {advice(share)}"
-        warnings.warn(said, stacklevel=4)
+        warn_of(said)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

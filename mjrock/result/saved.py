@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import ModuleType
@@ -19,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..contacts.files import replacing, require_file
-from ..quantities import named, require_path
+from ..quantities import named, require_path, warn_of
 from .tree import Reader, Tree, UnreadableError, Writer, fields_of, name_of, unit_and_text
 from .variables import Variable, attributes_of, variables_of
 
@@ -90,7 +89,7 @@ def write_answer(answer: Any, path: str | Path) -> Path:
         partial.write_bytes(image)
     if writer.lost:
         lost = named([f"{at} ({what})" for at, what in writer.lost.items()])
-        warnings.warn(f"{path} does not hold {lost}; all else is kept", stacklevel=3)
+        warn_of(f"{path} does not hold {lost}; all else is kept")
     return path
 
 
@@ -181,8 +180,7 @@ def _answer(path: Path, file: Any, laws: Iterable[type]) -> Any:
         if ".memory" not in str(error):
             raise
         trees["end"]["memory"] = None
-        warnings.warn(
+        warn_of(
             f"{path}: {error}. The rest is read; a run that goes on from its end starts from pose and velocity alone",
-            stacklevel=4,
         )
         return Reader(values, laws).value(trees, "")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -12,7 +11,7 @@ import numpy as np
 
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.effect import Anchored
-from ..quantities import Array
+from ..quantities import Array, warn_of
 from ..scene.scene import Scene
 from .bodies import Moving
 
@@ -145,9 +144,8 @@ def warn_of_ties(case: AnyCase, plastic: Mapping[str, Plastic]) -> None:
     for name, drawn in plastic.items():
         length = case.links[name].span
         if overdrawn(case.links[name], drawn):
-            warnings.warn(
+            warn_of(
                 f"{name} was drawn out by {1e3 * drawn.elongation:.3g} mm, {drawn.elongation / length:.1%} of its "
                 f"length of {length:g} m. A steel bar breaks at some {PLAUSIBLE:.0%}, and an anchor plate follows "
                 "less; give the tie the elongation up to which it holds as ultimate",
-                stacklevel=3,
             )

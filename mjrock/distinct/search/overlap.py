@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import heapq
-import warnings
 
 import numpy as np
 
 from ...geometry.hull import area_vector
 from ...problem.masonry.case import AnyCase
-from ...quantities import Array, percent_said
+from ...quantities import Array, percent_said, warn_of
 from ..setup import Setup
 from ..system import System
 from ..turning import set_rotations
@@ -75,7 +74,7 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
             said += f" at {t[i]:.4g} s: {what_keeps_apart(share, left, shorter)}"
     said = said if worst > OVERLAP_WARNED_OF + at_start else softened(search, case, h)
     if said:
-        warnings.warn(said, stacklevel=3)
+        warn_of(said)
     return worst
 
 

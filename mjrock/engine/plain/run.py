@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from ...geometry.frames import PLANE
 from ...problem.masonry.case import AnyCase
-from ...quantities import Array, require_size
+from ...quantities import Array, require_size, warn_of
 from ...result.bodies import Moving
 from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, Gathered, forces_of
@@ -249,9 +248,8 @@ def response_of_plain(run: PlainRun, settings: dict[str, float], options: Option
     plastic, account = run.plastic(), run.ledger()
     overlap, said = run.overlap
     if overlap > DOUBTED:
-        warnings.warn(
+        warn_of(
             f"{said}, over the smaller one; a shorter timestep or stiffer joints keep them apart",
-            stacklevel=4,
         )
     residual = float(np.abs(account.residual).max())
     advice = f"the step is long for this motion, take timestep = {0.5 * settings['timestep']:.2g} s"
