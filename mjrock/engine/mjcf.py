@@ -12,6 +12,7 @@ origin.)
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -77,11 +78,12 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.contacts.solref.row`.
         keyframe: of the release. None stands for the scene at rest.
     """
-    middle, half = extent_of(scene)
-    fixed = pair_rows(scene, timestep, newmark_beta)
     keyframe = (
         Keyframe(scene.at_rest, np.zeros_like(scene.bodies.masses), np.empty(0)) if keyframe is None else keyframe
     )
+    scene = near_the_origin(scene)
+    middle, half = extent_of(scene)
+    fixed = pair_rows(scene, timestep, newmark_beta)
     head = HEAD.format(
         title=scene.title.replace("--", "- -"),
         version=__version__,
@@ -110,6 +112,22 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         *section("keyframe", iter(["  " + tag("key", name="release", **keyframe.values)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
+
+
+def near_the_origin(scene: Scene) -> Scene:
+    """A scene moved by whole kilometres, its middle to within one of the origin along each axis.
+
+    MuJoCo rounds the places of bodies in the world, at 10 km by 2e-12 m. Poses are displacements from rest, and stay.
+    """
+    by = 1e3 * np.fix(1e-3 * extent_of(scene)[0])
+    if not by.any():
+        return scene
+    contacts, links = scene.contacts, scene.links
+    face_at = contacts.face_at - np.where(contacts.face_body[:, None] == GROUND, by, 0.0)
+    if links.names:
+        links = replace(links, anchor_at=links.anchor_at - np.where(links.anchor_body[:, None] == GROUND, by, 0.0))
+    bodies, contacts = replace(scene.bodies, rest=scene.bodies.rest - by), replace(contacts, face_at=face_at)
+    return replace(scene, bodies=bodies, contacts=contacts, links=links, settled=scene.at_rest)
 
 
 def extent_of(scene: Scene) -> tuple[Array, float]:

@@ -1,4 +1,5 @@
-"""A dome drawn far from the origin: blocks that share a corner meet at the same places as beside the origin."""
+"""Drawn far from the origin: blocks of a dome that share a corner meet at the same places as beside the origin, and
+MuJoCo moves blocks alike."""
 
 from dataclasses import replace
 
@@ -53,3 +54,42 @@ def test_a_stiff_dome_is_at_rest_alike(by):
     here, there = standing_masonry(dome()), standing_masonry(dome(by))
     force = here.contacts.k * here.bears
     np.testing.assert_allclose(there.contacts.k * there.bears, force, rtol=0, atol=1e-8 * force.max())
+
+
+def stack(by, in_space):
+    """Three blocks on a fixed one, with a tie to the ground and a thrust. Coordinates are binary fractions: 8 km away
+    they are not rounded."""
+    blocks = []
+    for i, (left, right) in enumerate([(-1.0, 1.0), (-0.25, 0.25), (-0.1875, 0.3125), (-0.25, 0.25)]):
+        low, high = 0.5 * i - 0.5, 0.5 * i
+        if in_space:
+            corners = [(x, y, z) for x in (left, right) for y in (-0.5, 0.5) for z in (low, high)]
+            blocks.append(mr.Polyhedron(np.array(corners) + by, name=f"block_{i}", fixed=i == 0))
+        else:
+            corners = [(left, low), (right, low), (right, high), (left, high)]
+            blocks.append(mr.Polygon(np.array(corners) + by, length=1.0, name=f"block_{i}", fixed=i == 0))
+    masonry = mr.Masonry(blocks, joints=mr.Dry(1e10, friction=0.6))
+    if in_space:
+        at, anchor = np.array([(-0.25, 0.0, 1.25), (-1.25, 0.0, 1.0)]) + by
+        effects = (
+            mr.Tie(at=at, anchor=anchor, stiffness=1e6, block="block_3"),
+            mr.Thrust(at=(0.25 + by[0], 0.0, 1.25), direction=(1.0, 0.5, 0.0), force=500.0, block="block_3"),
+        )
+    else:
+        effects = (
+            mr.Tie(height=1.25, stiffness=1e6, length=1.0, block="block_3"),
+            mr.Thrust(height=1.25, force=500.0, block="block_3"),
+        )
+    rates = np.zeros((3, 6 if in_space else 3))
+    rates[:, 0] = 0.05
+    return mr.MasonryCase(masonry, duration=0.05, effects=effects, velocity=rates, settled=False)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_mujoco_has_the_same_model_eight_kilometres_away(in_space):
+    """The same text, so that the motion is equal to the bit. MuJoCo would round places there by 1e-12 m."""
+    here, there = (stack(np.array([x, 0.0, 0.0] if in_space else [x, 0.0]), in_space) for x in (0.0, 8e3))
+    assert mr.mjcf_of(there, None, 1e-4) == mr.mjcf_of(here, None, 1e-4)
+    moved = [mr.simulate(case, timestep=1e-4, coulomb=True).pose for case in (here, there)]
+    assert np.abs(moved[0][..., :2]).max() > 1e-4
+    np.testing.assert_array_equal(moved[1], moved[0])
