@@ -12,6 +12,8 @@ from unittest.mock import patch
 import numpy as np
 
 import mjrock as mr
+from mjrock.distinct.search import contact_search
+from mjrock.distinct.search.softening import Sides, shares_within
 from mjrock.distinct.search.solids import Solids
 from mjrock.distinct.setup import setup_of
 from mjrock.geometry.poses import rotations
@@ -189,6 +191,22 @@ def measured_in_the_plane(scene: Scene) -> Iterator[None]:
         patch.object(SpaceJoint, "width", property(width)),
     ):
         yield
+
+
+@contextmanager
+def softened() -> Iterator[list[float]]:
+    """The least share of their law that searches of runs in space leave contacts for the step [-], one of each search
+    with contacts."""
+    shares: list[float] = []
+
+    def noted(sides: Sides, law: dict[str, np.ndarray], bodies: np.ndarray, step: float) -> np.ndarray:
+        share = shares_within(sides, law, bodies, step)
+        if sides.normals.shape[1] == 3 and len(share):
+            shares.append(float(share.min()))
+        return share
+
+    with patch.object(contact_search, "shares_within", noted):
+        yield shares
 
 
 def has_other_points(scene: Scene) -> bool:
