@@ -57,6 +57,18 @@ def test_every_argument_with_a_unit_declares_it():
     assert without == []
 
 
+@pytest.mark.parametrize(
+    ("maker", "names"),
+    [
+        (running.SCALED, {"periods": "s"}),
+        (declarations.makers_of(mr.Masonry)["between_floors"], {"load": "N", "bearing": "m", "crack": "m"}),
+    ],
+    ids=["scaled_to", "between_floors"],
+)
+def test_arguments_that_are_described_elsewhere_declare_their_unit_too(maker, names):
+    assert {name: maker.keys[name].within.unit for name in names} == names
+
+
 def test_an_argument_without_one_is_noticed():
     class Odd:
         def __init__(self, height: float) -> None:

@@ -41,9 +41,9 @@ from ...quantities import (
 from .formats import esm_text, parse_at2, parse_esm, parse_sac, recognised
 from .oscillator import (
     BuildingDamping,
-    ModePeriod,
     ModeShape,
     Participation,
+    Periods,
     building_modes,
     of_pieces,
     oscillator_steps,
@@ -428,7 +428,7 @@ class GroundMotion:
 
     def through_building(
         self,
-        period: ModePeriod,
+        period: Periods,
         damping: BuildingDamping = 0.05,
         *,
         participation: Participation = 1.0,

@@ -16,7 +16,7 @@ FINENESS = 20
 """Steps to a period at least, between which the peak of a sine is missed by at most 1.2 %."""
 SHORTEST_PERIOD, LONGEST_PERIOD = 0.01, 100.0
 """Bounds of a period [s]."""
-ModePeriod = Annotated[ArrayLike, Within(SHORTEST_PERIOD, LONGEST_PERIOD, "s")]
+Periods = Annotated[ArrayLike, Within(SHORTEST_PERIOD, LONGEST_PERIOD, "s")]
 Participation = Annotated[ArrayLike, Within(-3, 3)]
 ModeShape = Annotated[ArrayLike, Within(-1, 1)]
 BuildingDamping = Annotated[float, Within(0.005, 0.3)]
@@ -123,9 +123,7 @@ class Modes(NamedTuple):
 
 
 @within_ranges
-def building_modes(
-    period: ModePeriod, damping: BuildingDamping, participation: Participation, height: ArrayLike
-) -> Modes:
+def building_modes(period: Periods, damping: BuildingDamping, participation: Participation, height: ArrayLike) -> Modes:
     """The modes of a building.
 
     Args:

@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple, get_args
+from typing import Annotated, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import (
     Array,
+    Within,
     named,
     require_kind,
     require_path,
@@ -30,6 +31,7 @@ from ...quantities import (
 )
 from .formats import recognised
 from .motion import GroundMotion, motion_of
+from .oscillator import Periods
 from .records import NoRecordError, Wanted, read, table_traces
 from .spectrum import SpectrumOfCode, factor_to_spectrum, response_spectrum, scaled_by
 
@@ -246,12 +248,18 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         """The first horizontal component of each record that has one."""
         return [level[0] for components in self.values() if (level := _level(components))]
 
-    def scaled_to(self, spectrum: ArrayLike | SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> RecordSet:
+    def scaled_to(
+        self,
+        spectrum: ArrayLike | SpectrumOfCode,
+        periods: Periods,
+        damping: Annotated[float, Within(0, 0.9)] = 0.05,
+    ) -> RecordSet:
         """The set with each record scaled to a spectrum, all components of a record by one factor.
 
         Args:
             spectrum: of a code, or pseudo-accelerations at the periods [m/s2].
-            periods, damping: as `scaled_together` takes them.
+            periods: at which they are compared [s], 0.01 to 100, shape (n,).
+            damping: damping ratio [-], 0 to 0.9.
 
         Raises:
             TypeError, ValueError: for a value outside its range, a motion at rest, or a record with no horizontal

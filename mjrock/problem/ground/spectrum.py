@@ -36,9 +36,9 @@ from .oscillator import (
     LONGEST_PERIOD,
     SHORTEST_PERIOD,
     BuildingDamping,
-    ModePeriod,
     ModeShape,
     Participation,
+    Periods,
     building_modes,
     of_pieces,
     one_or_row,
@@ -160,7 +160,7 @@ class CodeSpectrum:
 
     def at_height(
         self,
-        period: ModePeriod,
+        period: Periods,
         damping: BuildingDamping = 0.05,
         *,
         participation: Participation = 1.0,
@@ -317,7 +317,7 @@ class PointSpectrum(_Alike):
 
     def at_height(
         self,
-        period: ModePeriod,
+        period: Periods,
         damping: BuildingDamping = 0.05,
         *,
         participation: Participation = 1.0,

@@ -36,7 +36,7 @@ from ...quantities import (
     warn_of,
 )
 from ..damping.contacts import AnyLaw, required_law
-from ..wall.bending import HorizontalBending, VerticalBending
+from ..wall.bending import Bearing, CrackHeight, FloorLoad, HorizontalBending, VerticalBending
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from ..wall.section import Opening
@@ -737,10 +737,10 @@ class Masonry(Drawn):
     def between_floors(
         cls,
         wall: Block,
-        load: float,
+        load: FloorLoad,
         *,
-        bearing: float | None = None,
-        crack: float | None = None,
+        bearing: Bearing = None,
+        crack: CrackHeight = None,
         **options: Unpack[JointOptions],
     ) -> Self:
         """A wall that cracks between two floors, which hold it sideways, seen along its length.

@@ -34,6 +34,9 @@ from .effects import AddedMass, Load, required_effects
 from .section import moments
 from .tie import Tie
 
+FloorLoad = Annotated[float, Within(1, 1e9, "N", "load of the floor")]
+Bearing = Annotated[float | None, Within(1e-6, 20, "m")]
+CrackHeight = Annotated[float | None, Within(1e-4, 200, "m")]
 CRACKS = 0.01, 0.99
 """Lowest and highest crack, over the height of the wall [-]."""
 CURVE_POINTS = 20_001
@@ -143,9 +146,9 @@ class VerticalBending:
     """
 
     wall: Block
-    load: Annotated[float, Within(1, 1e9, "N", "load of the floor")]
-    bearing: Annotated[float | None, Within(1e-6, 20, "m")] = None
-    crack: Annotated[float | None, Within(1e-4, 200, "m")] = None
+    load: FloorLoad
+    bearing: Bearing = None
+    crack: CrackHeight = None
     effects: tuple[Load | AddedMass, ...] = field(default=(), kw_only=True)
 
     __repr__ = short_repr
