@@ -87,10 +87,12 @@ class Assessment:
     def analyses(self) -> dict[str, list[Analysis]]:
         """Tasks of all runs for `campaign`, by mechanism: each record in both polarities, or the release.
 
+        Mechanisms that nothing moves have none. Where nothing moves any of them, each has a run at rest.
+
         Raises:
             AssessmentError: with the line of the mechanism that cannot be run, and why.
         """
-        return {name: self._of(one, one.analyses) for name, one in self.mechanisms.items()}
+        return {name: self._of(one, one.analyses) for name, one in (self.moved or self.mechanisms).items()}
 
     def run(self) -> dict[str, list[Response]]:
         """The responses of all runs, by mechanism, see `analyses`."""
@@ -122,6 +124,8 @@ class Assessment:
 
         def build(value: Any) -> dict[str, MechanismCheck]:
             document = replaced(self.document, place, value)
+            for table in (document, *document.get("mechanisms", {}).values()):
+                table.pop("records", None)  # no condition of a design is about them, and reading them takes long
             whole = assessment_of(document, folder=self.folder, confined=self.confined)
             changed = [str(place[1])] if place[0] == "mechanisms" else list(whole.mechanisms)
             return {name: whole.mechanisms[name].check() for name in changed}
@@ -167,6 +171,11 @@ class Assessment:
             given |= {name: value[""] for name, value in given.items() if name in OF_EACH and value}
         responses: Any = shown.get("", ()) if "" in self.mechanisms else shown or ()
         return report(first, responses, path, **given, **self.texts)
+
+    @property
+    def moved(self) -> dict[str, Mechanism]:
+        """The mechanisms that something moves, by name."""
+        return {name: one for name, one in self.mechanisms.items() if one.is_moved}
 
     @property
     def has_site(self) -> bool:

@@ -48,8 +48,7 @@ def named_checks(checks: Mapping[str, MechanismCheck], words: Words) -> dict[str
 
 def tasks_of(assessment: Assessment) -> dict[str, list[Analysis]]:
     """The runs of each mechanism that something moves, labelled with what does; those that nothing moves have none."""
-    moved = {name: one for name, one in assessment.mechanisms.items() if one.is_moved}
-    found = replace(assessment, mechanisms=moved).analyses()
+    found = assessment.analyses() if assessment.moved else {}
     return {name: [replace(one, labels={"motion": motion_of(one)}) for one in some] for name, some in found.items()}
 
 

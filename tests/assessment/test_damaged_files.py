@@ -9,7 +9,8 @@ import pytest
 import mjrock as mr
 from mjrock.assessment.tables import LARGEST
 
-TEXT = (Path(__file__).parent / "files" / "gable.toml").read_text(encoding="utf-8")
+WHOLE = (Path(__file__).parent / "files" / "gable.toml").read_text(encoding="utf-8")
+TEXT = WHOLE[: WHOLE.index("# The gable above the eaves")]
 LINES = TEXT.splitlines()
 PAIRS = [i for i, line in enumerate(LINES) if " = " in line and not line.startswith("#")]
 HEADS = [i for i, line in enumerate(LINES) if line.startswith("[")]
