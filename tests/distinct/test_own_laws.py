@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import mjrock as mr
+from mjrock.study.campaign.task import fingerprint
 
 K, A, MASS, GRAVITY = 1e9, 2e-5, 2000.0, 9.81
 BED = mr.Dry(k_n=K, k_s=K, friction=0.6, points=5)
@@ -82,6 +83,20 @@ def test_friction_has_the_push_of_the_law(push, slides):
     moved = abs(mr.solve_explicit(case, output_step=1e-2).pose[-1, 0, 0])
     assert (moved > 3e-3) == slides
     assert slides or moved < 2e-4
+
+
+@pytest.mark.parametrize("law", [laws.Linear(), laws.Stiffening(a=A), laws.Hertz(a=A)])
+def test_a_block_that_slides_off_its_joint_stays_at_its_height(law):
+    """It slides by Coulomb's friction over contacts that are found, as deep as it was at rest."""
+    stone = mr.Polygon([(-2, -1), (3, -1), (3, 0), (-2, 0)], fixed=True)
+    cube = mr.Polygon([(-0.5, 0), (0.5, 0), (0.5, 1), (-0.5, 1)], density=2000.0)
+    masonry = mr.Masonry([stone, cube], joints=mr.Dry(K, k_s=K, friction=0.1, law=law))
+    case = mr.MasonryCase(masonry, 0.8, velocity=[[2.0, 0, 0]])
+    answer = mr.solve_explicit(case, output_step=0.1, ledger=True)
+    x, z = answer.pose[:, 0, :2].T
+    assert x[-1] == pytest.approx(2.0 * 0.8 - 0.05 * GRAVITY * 0.8**2, rel=1e-3)
+    assert z[-1] == pytest.approx(z[0], rel=2e-3)
+    assert unpaid(answer) < 1e-6 * 0.5 * MASS * 2.0**2
 
 
 @pytest.mark.parametrize(("speed", "resistance"), [(0.5, 0.4), (0.5, 2.0), (1.0, 2.0), (2.0, 0.5)])
@@ -205,6 +220,8 @@ WRONG = {
     r"Mine.stress is -.* the law pulls where it is closed": {"stress": lambda self, u: -self.k_n * u},
     r"a dashpot acts against the rate of closing": {"damping": lambda self, u, rate: -u * rate if u > 0 else 0.0},
     r"Mine: .*'b'; the law and its lines have k_n, friction$": {"stress": lambda self, u: self.b * u},
+    r"Mine.dampening is never called; a law of a joint has stress, energy, damping": {"dampening": lambda self, u: 0.0},
+    r"Mine has a memory and no remember\(self, u\)": {"memory": ("widest",)},
     r"Mine fails at a closing of .* ZeroDivisionError": {"stress": lambda self, u: u / 0},
 }
 
@@ -215,6 +232,25 @@ def test_what_is_no_law_is_named(said):
     with pytest.raises((TypeError, ValueError), match=said) as error:
         mr.Dry(law=law_of(**methods)())
     assert "\n" not in str(error.value)
+
+
+def test_a_law_that_turns_within_a_small_part_of_the_closing_has_the_integral_as_its_energy():
+    """k u exp(-u / s) with s of 50 um, beside closings of up to millimetres."""
+    scale = 5e-5
+    law = law_of(
+        stress=lambda self, u: self.k_n * u * math.exp(-u / scale) if u > 0 else 0.0,
+        energy=lambda self, u: self.k_n * scale**2 * (1 - (1 + u / scale) * math.exp(-u / scale)) if u > 0 else 0.0,
+    )
+    assert mr.Dry(k_n=1e10, law=law()).law == law()
+
+
+def test_runs_that_are_stored_know_a_law_whose_formula_has_been_changed():
+    first, same, other = (
+        law_of(stress=lambda self, u: 1.0 * self.k_n * u if u > 0 else 0.0),
+        law_of(stress=lambda self, u: 1.0 * self.k_n * u if u > 0 else 0.0),
+        law_of(stress=lambda self, u: 2.0 * self.k_n * u if u > 0 else 0.0),
+    )
+    assert fingerprint(first()) == fingerprint(same()) != fingerprint(other())
 
 
 def test_a_law_that_fails_in_a_run_is_named_with_its_joint():

@@ -26,7 +26,6 @@ from ...problem.masonry.laws.own_law import (
     ANSWERS,
     OF_DAMPING,
     OF_ENERGY,
-    OF_JOINT,
     OF_K_N,
     OF_LOST,
     OF_STRESS,
@@ -108,7 +107,6 @@ class OwnLaws(JointLaw, Table):
         *numbers("area"),  # of the line [m2]
         *numbers("stiffest", "strongest"),  # spring and dashpot for which steps are short enough [N/m, N s/m]
         *numbers("pulls", "damps", "remembers"),  # 1 where the law does
-        *numbers("kept"),  # how many of its values are no memory
         ("values", float, (ROOM,)),  # see `own_law.layout`
     ]
     bond: ClassVar[Any] = Own
@@ -138,7 +136,6 @@ class OwnLaws(JointLaw, Table):
             "pulls": float(bond.pulls),
             "damps": float(bond.damps),
             "remembers": float(bool(bond.law.memory)),
-            "kept": float(ROOM if not bond.law.memory else len(ANSWERS) + len(OF_JOINT) + len(bond.law.numbers)),
             "values": bond.values,
         }
         for name, column in columns.items():
@@ -193,9 +190,11 @@ class OwnLaws(JointLaw, Table):
             self.rows[name][: len(which)][which] = 0.0
 
     def beyond(self, joint: Integers, found: Rows) -> Rows:
-        """A place has its part of the law in proportion to its spring. It presses only, and its memory is empty."""
+        """A place has its part of the law in proportion to its spring. It presses only. A law with a memory ends with
+        its joint: a new place would have to harden again."""
         added = rows(self.rows.dtype, len(joint) if len(self.rows) else 0)
-        for i in np.unique(self.rows["joint"][self.rows["address"] != 0]).tolist():
+        lasting = (self.rows["address"] != 0) & (self.rows["remembers"] == 0)
+        for i in np.unique(self.rows["joint"][lasting]).tolist():
             which = joint == i
             first = np.flatnonzero((self.rows["address"] != 0) & (self.rows["joint"] == i))[:1]
             law = chosen(self.rows, np.repeat(first, which.sum()))
@@ -204,7 +203,6 @@ class OwnLaws(JointLaw, Table):
                 law[name] *= part
             law["k"], law["c"], law["pulls"] = found["k"][which], found["c"][which], 0.0
             law["values"][:, : len(ANSWERS)] = 0.0
-            law["values"] *= np.arange(ROOM) < law["kept"][:, None]
             for name in ("push", "pressed", "gap", "grip", "dragged"):
                 law[name] = 0.0
             added[which] = law

@@ -40,7 +40,7 @@ from .constants import (
     VALID_WAY,
 )
 from .finder import Finder, Found
-from .handover import Blocks, Lines, Pairs, hand_over
+from .handover import Blocks, Lines, Pairs, hand_over, keep_depths
 from .pair_law import SHARED_COLUMNS, LongestSteps, PairLaw, least_among, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
@@ -242,11 +242,12 @@ class ContactSearch:
         share = np.minimum(share, self._stable(found, springs, poses, system, h))
         for name in SHARED_COLUMNS:
             new.rows[name] *= share
+        blocks, pairs = self.blocks._replace(poses=poses), Pairs.belonging(number, pair[which])
+        keep_depths(new, found, gone, pairs, blocks)
         for each, added in own:
             each.soften(added, share)
-            each.bend(added, new.rows, np.maximum(-found.gap, 0.0))
-        blocks = self.blocks._replace(poses=poses)
-        hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks)
+            each.bend(added, new.rows, new.depth)
+        hand_over(new, found, gone, pairs, blocks)
         for each, added in own:
             each.bend(added, new.rows, new.depth)
         for place in unsound(np.asarray(new.rows))[:1]:

@@ -287,6 +287,19 @@ def give_to_nearest(gone: Row, new: Lines, places: tuple[int, int], both: int, b
 
 
 @compiled_at_once
+def keep_depths(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
+    """Write the part of the overlap of each place that had a force, and where lines that are gone have their points,
+    see `hand_over`."""
+    for p in range(len(pairs.low)):
+        begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
+        both = found.face[begin] + found.other[begin]
+        for j in range(ends[0], ends[1]):
+            put(gone.at[j], place_of(gone.rows[j], both, blocks).at)
+        for i in range(begin, end):
+            new.depth[i] = pressed_at(new.rows[i], i, found, gone, ends, blocks)
+
+
+@compiled_at_once
 def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
     """Write the lines of places, and give them the forces of the lines of their pair that they replace.
 
@@ -297,7 +310,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
     forces of a pair are kept.
 
     Args:
-        new: rows with the law of each place, and room for what presses of its overlap and what does not.
+        new: rows with the law of each place, `keep_depths`, and room for what does not press of their overlap.
         found: the places, those of a pair together.
         gone: the lines that are gone, in the order of their pairs.
         pairs: which of both belong together.
@@ -306,10 +319,6 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
     for p in range(len(pairs.low)):
         begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
         both = found.face[begin] + found.other[begin]
-        for j in range(ends[0], ends[1]):
-            put(gone.at[j], place_of(gone.rows[j], both, blocks).at)
-        for i in range(begin, end):
-            new.depth[i] = pressed_at(new.rows[i], i, found, gone, ends, blocks)
         press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
             unpressed = FIRST_OPENING * min(blocks.sizes[found.face[i]], blocks.sizes[found.other[i]])

@@ -81,6 +81,8 @@ def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
             _hand_on(item, add)
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         add(type(value).__name__.encode())
+        if formula := getattr(type(value), "formula", ""):  # of a law of the user
+            add(formula.encode())
         for name in _compared(type(value)):
             add(name.encode())
             _hand_on(getattr(value, name), add)

@@ -7,14 +7,18 @@ the same text runs as plain Python and compiled, in explicit steps and in the se
 
 from __future__ import annotations
 
+import hashlib
 import inspect
+import itertools
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
 import numpy as np
+from scipy.integrate import IntegrationWarning, quad
 
 from ....quantities import Array, Flags, Integers, keep, keep_declared, require_real
 
@@ -38,8 +42,8 @@ LEAST_CLOSING, MOST_CLOSING = 1e-12, 1e-2
 """Closings between which that of a pressure is looked for [m]."""
 INTEGRAL = 1e-3
 """Difference of the energy from the integral of the stress that is put down to quadrature, over the energy [-]."""
-PANELS_OF_STRESS = 16
-"""Panels of the quadrature, of eight points each."""
+DECADES = 6
+"""Decades of the closing that the quadrature looks at apart: a law may turn within a small part of the closing."""
 RATES = (0.01, 0.1, 1.0)
 """Rates of closing for which a dashpot is checked [m/s]."""
 CLOSING_PASSES = 60
@@ -52,6 +56,8 @@ class OwnLaw:
     """What a law of a joint has where its class does not say otherwise, see `joint_law`."""
 
     memory: ClassVar[tuple[str, ...]] = ()
+    formula: ClassVar[str] = ""
+    """A hash of the text of its methods: runs that are stored know a law whose formula has been changed."""
 
     def __post_init__(self) -> None:
         keep_declared(self)
@@ -89,7 +95,8 @@ def joint_law(kind: type[Kind]) -> type[Kind]:
     numbers of the class, its memory, and `k_n` and `friction` of the joint. See docs/own_law.md.
 
     Raises:
-        TypeError: for a class without stress or energy, or with a method of other arguments.
+        TypeError: for a class without stress or energy, with a method of another name or of other arguments, or with a
+            memory that nothing changes.
 
     Examples:
         >>> @mr.joint_law
@@ -113,7 +120,11 @@ def joint_law(kind: type[Kind]) -> type[Kind]:
         if takes is None or len(takes) != 1 + count:
             needed = ", ".join(["self", "u", "rate"][: 1 + count])
             raise TypeError(f"{name}.{method}({', '.join(takes or ())}) is needed as {method}({needed})")
+    _require_methods(kind)
     body = {each: getattr(kind, each) for each in ("__module__", "__qualname__", "__doc__")}
+    body["formula"] = hashlib.sha256(
+        repr([_text(getattr(kind, each, None)) for each in ARGUMENTS]).encode()
+    ).hexdigest()
     made: type[Any] = dataclass(frozen=True)(type(name, (dataclass(frozen=True)(kind), OwnLaw), body))
     names = (*(field.name for field in fields(made)), *made.memory)
     if (most := ROOM - len(ANSWERS) - len(OF_JOINT)) < len(names):
@@ -121,6 +132,24 @@ def joint_law(kind: type[Kind]) -> type[Kind]:
     for twice in {each for each in names if each in OF_JOINT or names.count(each) > 1}:
         raise TypeError(f"{name} has a number {twice} more than once: k_n and friction are those of the joint")
     return made
+
+
+def _require_methods(kind: type) -> None:
+    """Raise a TypeError for a method that is never called, such as a misspelt one, and for a memory without one that
+    changes it."""
+    own = [name for base in kind.__mro__[:-1] for name, one in vars(base).items() if inspect.isfunction(one)]
+    if others := [name for name in own if name not in ARGUMENTS and not name.startswith("__")]:
+        raise TypeError(f"{kind.__name__}.{others[0]} is never called; a law of a joint has {', '.join(ARGUMENTS)}")
+    if getattr(kind, "memory", ()) and "remember" not in own:
+        raise TypeError(f"{kind.__name__} has a memory and no remember(self, u), which changes it")
+
+
+def _text(method: Any) -> object:
+    """What a method does, as its bytecode and constants."""
+    code = getattr(method, "__code__", method)
+    if not inspect.iscode(code):
+        return repr(code)
+    return code.co_code, code.co_names, [_text(one) for one in code.co_consts]
 
 
 @cache
@@ -299,11 +328,13 @@ def _require_integral(own: Own, closing: float) -> None:
     """
     values = own.values
     own.answer(closing, 0.0, values)
-    nodes, weights = np.polynomial.legendre.leggauss(8)
-    width, total = closing / PANELS_OF_STRESS, 0.0
-    for panel in range(PANELS_OF_STRESS):
-        for node, weight in zip(nodes.tolist(), weights.tolist(), strict=True):
-            total += 0.5 * width * weight * own.answer((panel + 0.5 * (1 + node)) * width, 0.0, values.copy()).stress
+    ends = closing * np.append(0.0, np.logspace(-DECADES, 0, DECADES + 1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", IntegrationWarning)  # the difference is looked at
+        total = sum(
+            quad(lambda u: own.answer(u, 0.0, values.copy()).stress, *two, epsrel=0.1 * INTEGRAL, limit=100)[0]
+            for two in itertools.pairwise(ends.tolist())
+        )
     energy = own.answer(closing, 0.0, values.copy()).energy
     if abs(energy - total) > INTEGRAL * max(abs(energy), abs(total)):
         raise ValueError(
