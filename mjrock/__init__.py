@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from .problem.wall.case import Case
     from .problem.wall.earth import EarthPressure
     from .problem.wall.effects import AddedMass, Damper, FrictionDamper, Load, SideStop, Thrust
+    from .problem.wall.own_link import Link, link_law
     from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie, strengths_of_anchor, strengths_of_bar
     from .problem.wall.wedge import Corner, Wedge
@@ -122,9 +123,9 @@ __all__ = [
     "Collapse", "Comparison", "Compound", "ContactParameters", "ContactWarning", "Contacts", "Corner",
     "CoulombFriction", "Damper", "DampingLaw", "Design", "Dry", "DynamicCheck", "EarthPressure", "Fill", "FlexContact",
     "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion", "HorizontalBending", "Impact",
-    "Implausible", "InspectedContact", "Interface", "Island", "Joint", "Ledger", "LimitCurve", "Load", "LoadCheck",
-    "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType",
-    "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome", "OverturningMap", "PairContact",
+    "Implausible", "InspectedContact", "Interface", "Island", "Joint", "Ledger", "LimitCurve", "Link", "Load",
+    "LoadCheck", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse",
+    "MasonryType", "MeasuredContact", "MechanismCheck", "Mortar", "Opening", "Outcome", "OverturningMap", "PairContact",
     "PairContacts", "PairedRatio", "Plan", "PointSpectrum", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet",
     "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum", "ScatteredRestitution", "Scene",
     "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thresholds", "Thrust",
@@ -132,7 +133,7 @@ __all__ = [
     "code_spectrum", "collapse_multiplier", "compare", "components_in", "contact_for", "contact_parameters",
     "contact_stiffness", "contacts_for", "crushed_inset", "design", "dynamic_check", "fit_capacities", "fit_fragility",
     "from_toml", "hertz_stiffness", "ida", "inspect_contacts", "inspect_flexes", "joint_law", "joint_stiffness",
-    "layered_stiffness", "limit_curve", "load", "load_check", "lost", "masonry_mjcf", "masonry_scene",
+    "layered_stiffness", "limit_curve", "link_law", "load", "load_check", "lost", "masonry_mjcf", "masonry_scene",
     "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of",
     "overturning_intensity", "overturning_map", "paired_ratio", "push", "pushover", "records_in", "reference_frequency",
     "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum",

@@ -9,6 +9,26 @@ BALL = mujoco.MjModel.from_xml_string(
     <body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1"/></body></worldbody></mujoco>"""
 )
 """A ball on a floor."""
+
+
+@mr.link_law
+class Elastic:
+    """The law of a link that is a spring."""
+
+    k: float
+
+    def force(self, u, rate):
+        return self.k * u
+
+    def energy(self, u):
+        return 0.5 * self.k * u * u
+
+
+def link(**given):
+    """A link that is a spring."""
+    return mr.Link(own=Elastic(k=1e5), **given)
+
+
 OF_NUMBERS = {
     "Block.from_size": (mr.Block.from_size, {"thickness": 2, "height": 100, "length": 8, "density": 100, "inset": 0.5}),
     "Block.from_slenderness": (mr.Block.from_slenderness, {"slenderness": 100, "R": 50, "length": 8, "density": 100}),
@@ -21,6 +41,7 @@ OF_NUMBERS = {
     "FrictionDamper": (
         mr.FrictionDamper, {"height": 100, "stiffness": 100, "slip_force": 100, "length": 100, "block": 100},
     ),
+    "Link": (link, {"height": 100, "length": 100, "stroke": 1, "block": 100}),
     "Tie": (
         mr.Tie,
         {

@@ -26,6 +26,7 @@ import numpy as np
 
 from ..problem.wall.block import Block
 from ..problem.wall.effect import CombinedEffect, Effect
+from ..problem.wall.own_link import Link
 from ..quantities import OneOf, Within, alternatives
 
 REQUIRED = MISSING
@@ -251,12 +252,13 @@ def is_public(kind: type) -> bool:
 
 
 def classes_of(kinds: Sequence[Any]) -> dict[str, type]:
-    """The public dataclasses that values of some types may be of, by name, with those derived from them."""
+    """The public dataclasses that values of some types may be of, by name, with those derived from them. No file
+    can say the law of a `Link`."""
     public_names()
     bases = [kind for kind in kinds if isinstance(kind, type)]
     bases += [CombinedEffect] if Effect in bases else []
     found = (one for base in bases for one in subclasses_of(base))
-    return {one.__name__: one for one in found if is_dataclass(one) and is_public(one)}
+    return {one.__name__: one for one in found if is_dataclass(one) and is_public(one) and one is not Link}
 
 
 def key_named(key: Key) -> str:

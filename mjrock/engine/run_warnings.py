@@ -118,10 +118,7 @@ def require_known(case: AnyCase) -> None:
     """Raise a ValueError where joints have bonds, or effects are for explicit steps only: contacts of MuJoCo push
     only."""
     case.require_dry("MuJoCo")
-    for i, effect in enumerate(case.effects):
-        if effect.only:
-            name = f"effects[{i}], {type(effect).__name__}"
-            raise ValueError(f"{name}: MuJoCo has no row for it; take {effect.only}")
+    case.require_for("MuJoCo")
 
 
 def require_still(case: AnyCase) -> None:

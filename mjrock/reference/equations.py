@@ -32,6 +32,7 @@ class Wall:
     """
 
     def __init__(self, case: Case, contacts: Contacts) -> None:
+        case.require_for("solve_compliant")
         for name, link in case.links.items():
             if link.law.yields and link.law.push == 0:
                 raise ValueError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,7 +13,6 @@ from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..problem.wall.effect import beyond_text
 from ..quantities import Array, require_array, require_kind, require_within, shown
 from ..scene.course import Course
 from ..scene.masonry import masonry_course, masonry_scene
@@ -130,6 +130,11 @@ def scene_of(case: AnyCase, contacts: Contacts | None = None, method: Method = M
 def require_known_ties(case: AnyCase) -> None:
     """Raise a ValueError that names a tie of a case that can yield, of which a start does not say how far it has."""
     for name, link in case.links.items():
+        if link.asked is not None and link.asked.remembers:
+            raise ValueError(
+                f"start is a pose and a velocity, which do not say what {name} remembers, whose law has a memory; give "
+                "solve_explicit the end of explicit steps of the same structure, or follow the case in one run"
+            )
         if link.law.yields:
             raise ValueError(
                 f"start is a pose and a velocity, which do not say how far {name} has yielded, whose strength is "
@@ -175,8 +180,8 @@ def required_start(start: object, case: AnyCase, *, remembers: bool = False) -> 
 def require_in_text(case: AnyCase) -> None:
     """Raise ValueError for a link whose law the text of a model, and so a fixed step, cannot describe."""
     for name, link in case.links.items():
-        if number := beyond_text(link.law):
+        if (ultimate := link.law.ultimate) < math.inf:
             raise ValueError(
                 f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "
-                f"{number}; leave timestep out, so that steps fit the motion, or leave {number.split()[0]} out"
+                f"ultimate = {ultimate:g} m; leave timestep out, so that steps fit the motion, or leave ultimate out"
             )

@@ -22,6 +22,7 @@ from ..problem.masonry.laws.dry import Meets
 from ..problem.masonry.laws.own_law import Own
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import constant_forces_of, link_effects
+from ..problem.wall.own_link import AskedLink
 from ..quantities import Array, Flags, Integers, frozen, shown
 from .masses import mass_diagonals, principal, products_of
 
@@ -294,6 +295,7 @@ class Links:
             and (t, d).
         law: a `LinkLaw` for each, kept as rows with its numbers, shape (t,).
         anchor_block: number of the block of masonry that the other end moves with, or -1 for the ground, shape (t,).
+        asked: the own law of each, None where `law` has it; empty where none has one.
     """
 
     names: tuple[str, ...] = ()
@@ -303,6 +305,7 @@ class Links:
     anchor_at: Array = field(default_factory=_none)
     law: NDArray[np.void] = field(default_factory=_none)
     anchor_block: Integers = field(default_factory=_none)
+    asked: tuple[AskedLink | None, ...] = ()
 
     def __post_init__(self) -> None:
         t, directions = len(self.names), np.shape(self.at)[-1] if np.size(self.at) else 2
@@ -337,8 +340,23 @@ class Links:
     def of(self, some: Flags) -> Links:
         """Some of the links."""
         chosen = np.flatnonzero(some)
-        arrays = {entry.name: getattr(self, entry.name)[chosen] for entry in fields(self) if entry.name != "names"}
-        return Links(names=tuple(self.names[i] for i in chosen), **arrays)
+        arrays = (entry.name for entry in fields(self) if entry.name not in ("names", "asked"))
+        asked = tuple(self.asked[i] for i in chosen) if self.asked else ()
+        return Links(
+            names=tuple(self.names[i] for i in chosen),
+            asked=asked,
+            **{name: getattr(self, name)[chosen] for name in arrays},
+        )
+
+    @cached_property
+    def owned(self) -> Links:
+        """The links with a law of their own."""
+        return self.of(self.are_owned)
+
+    @cached_property
+    def are_owned(self) -> Flags:
+        """Which links have a law of their own, shape (t,)."""
+        return np.array([law is not None for law in self.asked or (None,) * len(self.names)], dtype=bool)
 
     @cached_property
     def sprung(self) -> Links:
@@ -347,13 +365,13 @@ class Links:
 
     @cached_property
     def bearing(self) -> Links:
-        """The links with a spring that may have a force at rest: those that only pull."""
-        return self.of((self.law["k"] > 0) & (self.law["push"] == 0))
+        """The links that may have a force at rest: those with a spring that only pulls, or a law of their own."""
+        return self.of((self.law["k"] > 0) & (self.law["push"] == 0) | self.are_owned)
 
     @cached_property
     def damped(self) -> Links:
-        """The links with a dashpot, and those without a spring."""
-        return self.of((self.law["c"] > 0) | (self.law["k"] == 0))
+        """The links with a dashpot, and those without a spring and a law of their own."""
+        return self.of(((self.law["c"] > 0) | (self.law["k"] == 0)) & ~self.are_owned)
 
 
 @dataclass(frozen=True, eq=False)
@@ -446,7 +464,8 @@ def attachments(
         ends = np.array([link.anchor_of(point) for link, point in zip(links.values(), points, strict=True)])
         ends = ends - np.where(others[:, None] == GROUND, 0.0, centroids[others])
         laws = np.array([link.law for link in links.values()], dtype=LAW)
-        pulled = Links(tuple(links), bodies, at, others, ends, laws, blocks)
+        asked = tuple(link.asked for link in links.values())
+        pulled = Links(tuple(links), bodies, at, others, ends, laws, blocks, asked if any(asked) else ())
     if forces:
         bodies, _, at = on([effect for effect, _ in forces.values()])
         vectors = np.array([force for _, force in forces.values()])

@@ -181,10 +181,10 @@ class Potential:
     def bonded(self) -> Flags:
         """Which contacts and ties pull as they push, shape (m + t,): those with a bond in tension, or a law that
         pulls."""
-        pulls = self.structure.places.tension > 0
+        pulls = np.append(self.structure.places.tension > 0, np.zeros(len(self.structure.ties.k), dtype=bool))
         if self.own is not None:
-            pulls[self.own.contacts] = self.own.pulls
-        return np.append(pulls, np.zeros(len(self.structure.ties.k), dtype=bool))
+            pulls[self.own.springs] = self.own.pulls
+        return pulls
 
     def closed(self, openings: Array) -> Flags:
         """Which springs act at their openings [m], shape (m + t,)."""
@@ -198,14 +198,14 @@ class Potential:
         """Force [N] and energy [J] of each spring at its opening [m], shape (m + t,) each."""
         force, energy = resting(self.springs, openings, self.bonded)
         if self.own is not None:
-            force[self.own.contacts], energy[self.own.contacts] = self.own.answers(openings)
+            force[self.own.springs], energy[self.own.springs] = self.own.answers(openings)
         return force, energy
 
     def springs_at(self, openings: Array) -> Array:
         """Stiffness of contacts and ties at their openings [N/m], shape (m + t,)."""
         springs = self.springs
         if self.own is not None:
-            springs[self.own.contacts] = self.own.slopes(openings)
+            springs[self.own.springs] = self.own.slopes(openings)
         return springs
 
     @property

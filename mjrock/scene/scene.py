@@ -136,10 +136,14 @@ class Scene:
         return ties._replace(reach=frozen(np.where(ties.squeeze > 0, lengths, ties.reach)))
 
     def _ties(self, links: Links) -> Ties:
-        """Links with a spring, as they are drawn."""
-        k, reach = (frozen(links.law[name]) for name in ("k", "reach"))
+        """Links with a spring, as they are drawn. An own law answers beyond the length that it has there."""
+        ends, own = self._ends_of(links), links.are_owned
+        k, reach = links.law["k"], links.law["reach"]
+        if own.any():
+            k, reach = np.where(own, 1.0, k), np.where(own, np.linalg.norm(ends.between, axis=1), reach)
+        k, reach = frozen(k), frozen(reach)
         stretch, squeeze = frozen(links.law["strength"] / k), frozen(links.law["push"] / k)
-        return Ties(self._ends_of(links), k, reach, stretch, frozen(reach + stretch + links.law["ultimate"]), squeeze)
+        return Ties(ends, k, reach, stretch, frozen(reach + stretch + links.law["ultimate"]), squeeze)
 
     def _ends_of(self, links: Links) -> LinkEnds:
         """The ends of links."""
@@ -161,10 +165,19 @@ class Scene:
         """The energy of all that may bear something at rest, as a function of the pose."""
         axes, given = self.freedom.axes, self.forces
         vectors = (each.reshape(-1, len(axes)) for each in (given.at, given.force))
-        own = self._ties(self.links.bearing), AppliedForces(axes, given.body, *vectors)
+        bearing = self.links.bearing
+        structure = Structure(
+            self.places,
+            self._ties(bearing),
+            AppliedForces(axes, given.body, *vectors),
+            self.bodies.masses,
+            self.bodies.products,
+        )
         points, weight = self.contacts, GRAVITY * float(self.bodies.mass.sum())
         laws = OwnSprings.of(points.bonds, points.joint, np.asarray(points.area), weight)
-        return Potential(Structure(self.places, *own, self.bodies.masses, self.bodies.products), laws)
+        owned = np.flatnonzero(bearing.are_owned)
+        asked = tuple(law for law in bearing.asked if law is not None)
+        return Potential(structure, laws.and_links(len(points.k) + owned, asked))
 
     @cached_property
     def at_rest(self) -> Array:
@@ -222,6 +235,8 @@ class Scene:
             for entry in fields(part):
                 values = getattr(part, entry.name)
                 if part is self.contacts and entry.name in ("k", "c", "k_s", "area", "bonds"):
+                    continue
+                if entry.name == "asked" and not values:
                     continue
                 if entry.name == "parts":
                     values = tuple(part for of_body in values.values() for part in of_body)

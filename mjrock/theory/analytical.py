@@ -155,6 +155,7 @@ def _require_solvable(case: Case, e: AnyRestitution) -> None:
         raise ValueError(
             f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop{low}"
         )
+    case.require_for("rocking theory")
     for name, link in case.links.items():
         if not link.law.holds:
             raise ValueError(

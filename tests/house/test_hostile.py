@@ -627,7 +627,7 @@ def test_every_public_entry_is_tried():
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "FlexContact", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "LimitCurve", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",
-        "records_in", "RecordSet", "components_in", "LoadCheck", "joint_law",
+        "records_in", "RecordSet", "components_in", "LoadCheck", "joint_law", "link_law",
         "Assessment", "AssessmentError", "from_toml", "toml_schema", "load",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ...compiled import inlined
 from ...problem.masonry.case import AnyCase
-from ...problem.wall.effect import DASHPOT, resistance, steepest
-from ...quantities import Array
+from ...problem.wall.effect import resistance
 from ...scene.scene import Scene
 from ..rows import Rows
 from ..system import Books, System
@@ -20,17 +17,13 @@ class Dampers(Kind, Table):
     `rate` is that of the last step [m/s], half a step before the pose, and `lead` by how many steps they look ahead.
     """
 
-    own = (*DASHPOT, "rate", "lead")
+    own = ("c", "rate", "lead")
     booked = ("dashpots",)
 
     @classmethod
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         return cls.linking(scene.links.damped, scene.dampers.links.between, rate=0.0, lead=0.0)
-
-    def springs(self) -> tuple[Array, Array]:
-        """Their steepest slopes."""
-        return np.zeros(len(self.rows)), steepest(self.rows)
 
     def look_ahead(self, lead: float) -> None:
         """All of them."""

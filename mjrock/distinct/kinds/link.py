@@ -22,7 +22,7 @@ from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
 from ..contacts.contact import add_force
-from ..rows import Row, Rows, integers, numbers, rows, vectors
+from ..rows import Fields, Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
 from ..turning import rotation_change
 
@@ -48,6 +48,7 @@ class Kind:
 
     Attributes:
         rows: a row for each link, with the numbers of `table` and `own` ones.
+        further: what its rows have that is no number, such as integers.
         endless: numbers of a row that may be infinite.
         told: "links" where responses tell the forces among those of links, "actuators" among those of actuators.
         booked: the parts of the ledger in which each link has an account. That of row i begins at `rows[i].account` of
@@ -56,6 +57,7 @@ class Kind:
 
     rows: Rows
     own: ClassVar[tuple[str, ...]] = ()
+    further: ClassVar[Fields] = []
     endless: ClassVar[tuple[str, ...]] = INFINITE_IN_LAW
     told: ClassVar[str] = "links"
     booked: ClassVar[tuple[str, ...]] = ()
@@ -71,6 +73,7 @@ class Kind:
             *vectors(d, "between"),  # from the anchor at rest [m]
             *numbers("pulled"),  # force in the last step, negative where it pulls [N]
             *numbers(*cls.own),
+            *cls.further,
         ]
         return rows(np.dtype(fields), count, **{"anchor": -1, "anchor_block": -1, "support": -1} | columns)
 

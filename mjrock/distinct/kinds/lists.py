@@ -18,9 +18,10 @@ from .law import JointLaw
 from .link import Kind
 from .mortar import Bonds
 from .own import OwnLaws
+from .own_links import OwnLinks
 from .ties import Ties
 
-KINDS: tuple[type[Kind], ...] = (Ties, Dampers, Actuators, ConstantForces)
+KINDS: tuple[type[Kind], ...] = (Ties, Dampers, OwnLinks, Actuators, ConstantForces)
 """The kinds of links, in the order in which they act."""
 LAWS: tuple[type[JointLaw], ...] = (Bonds, OwnLaws)
 """The laws of joints beside the dry one, which all lines have."""

@@ -22,17 +22,15 @@ from ...compiled import by_type, inlined
 from ...geometry.vectors import dot, no_spin, plus, put, read, scaled
 from ...patience import compiles
 from ...problem.masonry.laws.joint_law import normal_force, stored
-from ...problem.masonry.laws.own_law import (
+from ...problem.masonry.laws.own_law import OF_K_N, Own
+from ...problem.wall.user_law import (
     ANSWERS,
     OF_DAMPING,
     OF_ENERGY,
-    OF_K_N,
     OF_LOST,
     OF_STRESS,
     OF_TAKEN,
     ROOM,
-    Own,
-    answering,
     layout,
 )
 from ...quantities import GRAVITY, Array, Flags, Integers
@@ -80,7 +78,7 @@ def function_of(kind: Any) -> Any:
         from .own_calls import compiled_text
 
         return compiled_text(kind)
-    plain, row = answering(kind), layout(kind)
+    plain, row = kind.answering(), layout(kind)
 
     def text(values: int, closing: float, rate: float) -> None:
         room = np.ctypeslib.as_array(ctypes.cast(values, ctypes.POINTER(ctypes.c_double)), (ROOM,))

@@ -10,7 +10,7 @@ from numba.core import types
 from numba.core.errors import NumbaError
 from numba.extending import intrinsic
 
-from ...problem.masonry.laws.own_law import ARGUMENTS, answering, layout
+from ...problem.wall.user_law import layout
 
 C_NUMBER, C_BYTES, C_NOTHING = ir.DoubleType(), ir.IntType(8).as_pointer(), ir.VoidType()
 OF_COMPILER = {"nogil": True, "error_model": "numpy"}
@@ -45,7 +45,7 @@ def compiled_text(kind: Any) -> Any:
     """
     row = numba.from_dtype(layout(kind))
     made = {}
-    for name, count in ARGUMENTS.items():
+    for name, count in kind.methods.items():
         method = numba.njit(**OF_COMPILER)(getattr(kind, name))
         try:
             method.compile((row, *[types.float64] * count))
@@ -57,7 +57,7 @@ def compiled_text(kind: Any) -> Any:
                 "functions of its own under numba.njit; MJROCK_INTERPRET=laws runs it as plain Python"
             ) from None
         made[getattr(kind, name)] = method
-    answer, kinds = numba.njit(**OF_COMPILER)(answering(kind, made.__getitem__)), layout(kind)
+    answer, kinds = numba.njit(**OF_COMPILER)(kind.answering(made.__getitem__)), layout(kind)
 
     def text(values: Any, closing: float, rate: float) -> None:
         answer(numba.carray(values, (1,), kinds)[0], closing, rate)

@@ -12,7 +12,6 @@ from itertools import accumulate
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...compiled import inlined
 from ...quantities import (
@@ -154,30 +153,10 @@ class LinkLaw(NamedTuple):
         return np.array(list(slid)[1:])
 
 
-DASHPOT = ("c",)
-"""The numbers of `LinkLaw` that its dashpot has."""
-
-
 @inlined
 def resistance(law: LinkLaw, rate: float) -> float:
-    """Force with which the dashpot of a link resists the rate of its length [N], for all solvers.
-
-    `law` may be a row with the numbers of `DASHPOT`.
-    """
+    """Force with which the dashpot of a link, or of a row, resists the rate of its length [N], for all solvers."""
     return law.c * rate
-
-
-def steepest(law: NDArray[np.void]) -> Array:
-    """The largest slope of `resistance` over the rate [N s/m], from which the longest step follows.
-
-    `law` are rows with the numbers of `DASHPOT`.
-    """
-    return law["c"]
-
-
-def beyond_text(law: LinkLaw) -> str:
-    """The number of a law that the text of a model, and so a fixed step, cannot have, in words; empty for none."""
-    return f"ultimate = {law.ultimate:g} m" if law.ultimate < math.inf else ""
 
 
 class Told(Protocol):
@@ -289,6 +268,7 @@ class Anchored(Effect):
     Attributes:
         colour, dashes: how its line is drawn, in the ways of matplotlib.
         limit: name of its argument that is the force at which it yields.
+        asked: its law where that is one of a user, see `own_link`.
         length: distance from the inner face to the anchor [m].
         anchor: of masonry, the anchor at rest [m]; None is `length` behind the point.
         anchor_block: of masonry, the block that it moves with; None is the ground.
@@ -298,6 +278,7 @@ class Anchored(Effect):
     colour: ClassVar[str] = "#12406b"
     dashes: ClassVar[Literal["-", "--", "-."]] = "-"
     limit: ClassVar[str] = "strength"
+    asked: Any = None
     length: float
     anchor: PointOf | None
     anchor_block: int | None

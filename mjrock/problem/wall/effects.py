@@ -28,6 +28,7 @@ from .effect import (
     PointOf,
     place_or_none,
 )
+from .own_link import Link
 from .tie import Tie
 
 
@@ -275,7 +276,7 @@ class SideStop:
         keep_declared(self, "side stop")
 
 
-EFFECT_KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, AddedMass)
+EFFECT_KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, Link, AddedMass)
 """The kinds of effects, in the order in which scenes, pictures and reports name them."""
 Kind = TypeVar("Kind", bound=Effect)
 
@@ -338,6 +339,13 @@ class Carrying(Drawn):
     def springs(self) -> dict[str, Anchored]:
         """The links with a spring, by name."""
         return {name: effect for name, effect in self.links.items() if effect.law.k > 0}
+
+    def require_for(self, solver: str) -> None:
+        """Raise a ValueError that names an effect which this solver does not take."""
+        for i, effect in enumerate(self.effects):
+            if effect.only:
+                name = f"effects[{i}], {type(effect).__name__}"
+                raise ValueError(f"{name}: {solver} does not know its law; take {effect.only}")
 
     def _keep_sequence(self, *further: type[Effect]) -> None:
         """Keep the effects, or a single one, as a tuple. They are of `EFFECT_KINDS` or `further` ones."""

@@ -194,6 +194,7 @@ def pushover(
         0.14
     """
     require_wall("case", case, "push or collapse_multiplier")
+    case.require_for("push-over")
     require_kind("contacts", contacts, Contacts, type(None))
     points = require_whole("points", points, 20, 100_000)
     asked = np.zeros(0)

@@ -1,90 +1,71 @@
-"""Laws of joints that are classes in a user's own file: what such a class says, what a joint has of it, and its checks.
+"""Laws of joints that are classes in a user's own file: what a joint has of such a class, and its checks.
 
-A law is asked for a line of a joint, by its closing [m], which is negative where the line is open. Its methods take
-their numbers from `self`, a row with the fields of the class, its `memory`, and `k_n` and `friction` of the joint. So
-the same text runs as plain Python and compiled, in explicit steps and in the search for the pose of rest.
+A law is asked for a line of a joint, by its closing [m], which is negative where the line is open. It is given `k_n`
+and `friction` of the joint, see `user_law`.
 """
 
 from __future__ import annotations
 
-import hashlib
-import inspect
-import itertools
 import math
-import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, fields
-from functools import cache, lru_cache
-from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, ClassVar, NamedTuple, dataclass_transform
 
 import numpy as np
-from scipy.integrate import IntegrationWarning, quad
 
-from ....quantities import Array, Flags, Integers, keep, keep_declared, require_real
+from ....quantities import Array, Flags, Integers
+from ...wall.own_link import AskedLink
+from ...wall.user_law import ANSWERS, RATES, AskedLaw, OfUser, UserLaw, law_class, require_integral
 
-Kind = TypeVar("Kind")
-
-ANSWERS = ("stress_", "energy_", "damping_", "lost_", "taken_")
-"""What a law has answered at the last pose, in this order in its row: [Pa], [J/m2], [Pa], [-], and by how much its
-energy fell as its memory changed there [J/m2]."""
-OF_STRESS, OF_ENERGY, OF_DAMPING, OF_LOST, OF_TAKEN = range(len(ANSWERS))
 OF_JOINT = ("k_n", "friction")
 """Numbers of the joint that a law finds in its row."""
 OF_K_N = len(ANSWERS)
 """Where k_n is in a row."""
-ROOM = 24
-"""Numbers of a row."""
-ARGUMENTS = {"stress": 1, "energy": 1, "damping": 2, "remember": 1, "lost": 0}
-"""Methods of a law, and how many numbers each takes."""
 PRESSURES, PROBED = (1e2, 1e5), (0.01, 0.1, 1.0, 10.0)
 """Pressures that lie within what a law is checked for [Pa], and the closings of the checks over that of the larger."""
 LEAST_CLOSING, MOST_CLOSING = 1e-12, 1e-2
 """Closings between which that of a pressure is looked for [m]."""
-INTEGRAL = 1e-3
-"""Difference of the energy from the integral of the stress that is put down to quadrature, over the energy [-]."""
-DECADES = 6
-"""Decades of the closing that the quadrature looks at apart: a law may turn within a small part of the closing."""
-RATES = (0.01, 0.1, 1.0)
-"""Rates of closing for which a dashpot is checked [m/s]."""
 CLOSING_PASSES = 60
 """Halvings of the closing of a pressure, in its logarithm."""
 LITTLE = 1e-3
 """Pressure up to which a stiffness is that of the pressure, over that of the weight of all on all such joints [-]."""
 
 
-class OwnLaw:
+class OwnLaw(UserLaw):
     """What a law of a joint has where its class does not say otherwise, see `joint_law`."""
 
-    memory: ClassVar[tuple[str, ...]] = ()
-    formula: ClassVar[str] = ""
-    """A hash of the text of its methods: runs that are stored know a law whose formula has been changed."""
-
-    def __post_init__(self) -> None:
-        keep_declared(self)
-        keep(
-            self,
-            **{name: require_real(f"{name} of {type(self).__name__}", getattr(self, name)) for name in self.numbers},
-        )
-
-    @property
-    def numbers(self) -> tuple[str, ...]:
-        """Names of the fields."""
-        return tuple(field.name for field in fields(self))  # type: ignore[arg-type]
+    methods: ClassVar[dict[str, int]] = {"stress": 1, "energy": 1, "damping": 2, "remember": 1, "lost": 0}
+    given: ClassVar[tuple[str, ...]] = OF_JOINT
 
     def damping(self, u: float, rate: float) -> float:
         """Pressure of a dashpot of its own [Pa]; without one the joint has that of its xi."""
         return 0.0
 
-    def remember(self, u: float) -> None:
-        """Change the memory of a line."""
-
     def lost(self) -> float:
         """Share of its hold in tension that a line has lost for good [-]."""
         return 0.0
 
+    @classmethod
+    def answering(cls, made: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
+        """Its dashpot answers by itself."""
+        stress, energy, damping, remember, lost = (made(getattr(cls, name)) for name in cls.methods)
+        remembers = bool(cls.memory)
+
+        def answer(row: Any, closing: float, rate: float) -> None:
+            held = energy(row, closing) if remembers else 0.0
+            remember(row, closing)
+            row.stress_ = stress(row, closing)
+            row.energy_ = energy(row, closing)
+            row.taken_ = held - row.energy_ if remembers else 0.0
+            row.damping_ = damping(row, closing, rate)
+            row.lost_ = lost(row)
+
+        return answer
+
 
 @dataclass_transform(frozen_default=True)
-def joint_law(kind: type[Kind]) -> type[Kind]:
+def joint_law(kind: type[OfUser]) -> type[OfUser]:
     """A class that is a law of joints, for `Dry(law=...)` and explicit steps: a frozen dataclass of its numbers.
 
     A line of the joint closes by u [m]; where it is open u is below zero. The class has `stress(self, u)` [Pa], zero at
@@ -109,89 +90,11 @@ def joint_law(kind: type[Kind]) -> type[Kind]:
         >>> mr.Dry(k_n=1e9, law=Stiffening(a=2e-5)).law
         Stiffening(a=2e-05)
     """
-    if not inspect.isclass(kind):
-        raise TypeError(f"joint_law is for a class, and {kind!r} is none")
-    name = kind.__name__
-    for method, count in ARGUMENTS.items():
-        text = getattr(kind, method, getattr(OwnLaw, method, None))
-        if text is None:
-            raise TypeError(f"{name} has no {method}(self, u); a law of a joint has stress and energy")
-        takes = list(inspect.signature(text).parameters) if callable(text) else None
-        if takes is None or len(takes) != 1 + count:
-            needed = ", ".join(["self", "u", "rate"][: 1 + count])
-            raise TypeError(f"{name}.{method}({', '.join(takes or ())}) is needed as {method}({needed})")
-    _require_methods(kind)
-    body = {each: getattr(kind, each) for each in ("__module__", "__qualname__", "__doc__")}
-    body["formula"] = hashlib.sha256(
-        repr([_text(getattr(kind, each, None)) for each in ARGUMENTS]).encode()
-    ).hexdigest()
-    made: type[Any] = dataclass(frozen=True)(type(name, (dataclass(frozen=True)(kind), OwnLaw), body))
-    names = (*(field.name for field in fields(made)), *made.memory)
-    if (most := ROOM - len(ANSWERS) - len(OF_JOINT)) < len(names):
-        raise TypeError(f"{name} has {len(names)} numbers with its memory; the valid range is up to {most}")
-    for twice in {each for each in names if each in OF_JOINT or names.count(each) > 1}:
-        raise TypeError(f"{name} has a number {twice} more than once: k_n and friction are those of the joint")
-    return made
-
-
-def _require_methods(kind: type) -> None:
-    """Raise a TypeError for a method that is never called, such as a misspelt one, and for a memory without one that
-    changes it."""
-    own = [name for base in kind.__mro__[:-1] for name, one in vars(base).items() if inspect.isfunction(one)]
-    if others := [name for name in own if name not in ARGUMENTS and not name.startswith("__")]:
-        raise TypeError(f"{kind.__name__}.{others[0]} is never called; a law of a joint has {', '.join(ARGUMENTS)}")
-    if getattr(kind, "memory", ()) and "remember" not in own:
-        raise TypeError(f"{kind.__name__} has a memory and no remember(self, u), which changes it")
-
-
-def _text(method: Any) -> object:
-    """What a method does, as its bytecode and constants."""
-    code = getattr(method, "__code__", method)
-    if not inspect.iscode(code):
-        return repr(code)
-    return code.co_code, code.co_names, [_text(one) for one in code.co_consts]
-
-
-@cache
-def layout(kind: Any) -> np.dtype[np.void]:
-    """The row of a law, which its methods take for `self`."""
-    names = (*ANSWERS, *OF_JOINT, *(field.name for field in fields(kind)), *kind.memory)
-    return np.dtype([(name, float) for name in names])
-
-
-def answering(kind: Any, made: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
-    """The function that lets a law answer: it writes `ANSWERS` and the memory of a row, for a closing [m] and its rate.
-
-    Args:
-        kind: the law.
-        made: what is made of its methods, such as a compiled one.
-    """
-    stress, energy, damping, remember, lost = (made(getattr(kind, name)) for name in ARGUMENTS)
-
-    remembers = bool(kind.memory)
-
-    def answer(row: Any, closing: float, rate: float) -> None:
-        held = energy(row, closing) if remembers else 0.0
-        remember(row, closing)
-        row.stress_ = stress(row, closing)
-        row.energy_ = energy(row, closing)
-        row.taken_ = held - row.energy_ if remembers else 0.0
-        row.damping_ = damping(row, closing, rate)
-        row.lost_ = lost(row)
-
-    return answer
-
-
-class Answer(NamedTuple):
-    """What a law answers at a closing: stress [Pa], energy [J/m2], pressure of its dashpot [Pa]."""
-
-    stress: float
-    energy: float
-    damping: float
+    return law_class(kind, OwnLaw, "a law of a joint")
 
 
 @dataclass(frozen=True)
-class Own:
+class Own(AskedLaw):
     """An own law on a joint, in the place of its bond.
 
     Args:
@@ -210,50 +113,9 @@ class Own:
     residual_friction: ClassVar[None] = None
 
     @property
-    def name(self) -> str:
-        """Of its class."""
-        return str(self.kind.__name__)
-
-    @property
-    def kind(self) -> Any:
-        """Its class."""
-        return type(self.law)
-
-    @property
-    def values(self) -> Array:
-        """A new row of its numbers, whose memory is empty, shape (ROOM,)."""
-        values = np.zeros(ROOM)
-        given = (self.k_n, self.friction, *(getattr(self.law, name) for name in self.law.numbers))
-        values[len(ANSWERS) : len(ANSWERS) + len(given)] = given
-        return values
-
-    def row(self, values: Array) -> Any:
-        """The row of a law from its numbers."""
-        kind = layout(self.kind)
-        return values[: kind.itemsize // 8].view(kind).view(np.recarray)[0]
-
-    def answer(self, closing: float, rate: float = 0.0, values: Array | None = None) -> Answer:
-        """What it answers at a closing [m] and its rate [m/s], as plain Python, and what it then remembers in a row.
-
-        Raises:
-            TypeError, ValueError: where a method fails, or gives no finite number.
-        """
-        row = self.row(self.values if values is None else values)
-        try:
-            with np.errstate(all="ignore"):  # what is not finite is said below
-                answering(self.kind)(row, closing, rate)
-        except AttributeError as error:
-            has = ", ".join((layout(self.kind).names or ())[len(ANSWERS) :])
-            raise TypeError(f"{self.name}: {error}; the law and its lines have {has}") from None
-        except Exception as error:
-            raise ValueError(f"{self.name} fails at a closing of {closing:g} m: {error!r}") from None
-        found = Answer(float(row.stress_), float(row.energy_), float(row.damping_))
-        for name, value in found._asdict().items():
-            if not math.isfinite(value):
-                raise ValueError(
-                    f"{self.name}.{name} is {value} at a closing of {closing:g} m; a finite number is needed"
-                )
-        return found
+    def given(self) -> tuple[float, ...]:
+        """`OF_JOINT`."""
+        return self.k_n, self.friction
 
     @property
     def pulls(self) -> bool:
@@ -264,11 +126,6 @@ class Own:
     def damps(self) -> bool:
         """Whether it has a dashpot of its own."""
         return self.kind.damping is not OwnLaw.damping
-
-    def slope(self, closing: float) -> float:
-        """Stiffness at a closing [N/m3]."""
-        off = 1e-4 * max(abs(closing), LEAST_CLOSING)
-        return (self.answer(closing + off).stress - self.answer(closing - off).stress) / (2 * off)
 
     def closing_at(self, pressure: float) -> float:
         """The closing at which it has a pressure [m], the widest where it has less there."""
@@ -318,57 +175,40 @@ def require_lawful(own: Own) -> None:
                         "a dashpot acts against the rate of closing, with its sign"
                     )
         for closing in (share * scale, -share * scale):
-            _require_integral(own, closing)
-
-
-def _require_integral(own: Own, closing: float) -> None:
-    """Raise an error unless the energy up to a closing is the integral of the stress, where the memory stays as it is.
-
-    The memory is that of a line which has been there.
-    """
-    values = own.values
-    own.answer(closing, 0.0, values)
-    ends = closing * np.append(0.0, np.logspace(-DECADES, 0, DECADES + 1))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", IntegrationWarning)  # the difference is looked at
-        total = sum(
-            quad(lambda u: own.answer(u, 0.0, values.copy()).stress, *two, epsrel=0.1 * INTEGRAL, limit=100)[0]
-            for two in itertools.pairwise(ends.tolist())
-        )
-    energy = own.answer(closing, 0.0, values.copy()).energy
-    if abs(energy - total) > INTEGRAL * max(abs(energy), abs(total)):
-        raise ValueError(
-            f"{own.name}.energy is {energy:g} J/m2 at a closing of {closing:g} m, and the integral of stress from 0 is "
-            f"{total:g} J/m2"
-        )
+            require_integral(own, closing, "J/m2", "stress")
 
 
 class OwnSprings(NamedTuple):
-    """The contacts of a scene whose joints have own laws, for the search for the pose of rest.
+    """The contacts and links of a scene that have own laws, for the search for the pose of rest.
 
     Args:
-        contacts: their numbers, shape (n,).
+        springs: their numbers among contacts and ties, shape (n,).
         laws: the law of each.
-        area: of each [m2], shape (n,).
-        floor: closing below which each has at least its stiffness there, so that a search can begin [m], shape (n,).
+        area: of each contact [m2], 1 of a link, shape (n,).
+        floor: closing below which each contact has at least its stiffness there, so that a search can begin [m], zero
+            of a link, shape (n,).
     """
 
-    contacts: Integers
-    laws: tuple[Own, ...]
+    springs: Integers
+    laws: tuple[Own | AskedLink, ...]
     area: Array
     floor: Array
 
     @classmethod
-    def of(cls, bonds: tuple[Any, ...], joint: Integers, area: Array, weight: float) -> OwnSprings | None:
-        """Those of contacts with these joints and areas, under a weight [N], or None where no joint has an own law."""
+    def of(cls, bonds: tuple[Any, ...], joint: Integers, area: Array, weight: float) -> OwnSprings:
+        """Those of contacts with these joints and areas, under a weight [N]."""
         some = np.array([isinstance(bonds[i], Own) for i in joint.tolist()]) if bonds else np.zeros(0, dtype=bool)
-        if not some.any():
-            return None
         contacts = np.flatnonzero(some)
         laws = tuple(bonds[i] for i in joint[contacts].tolist())
-        little = LITTLE * weight / float(area[contacts].sum())
+        little = LITTLE * weight / max(float(area[contacts].sum()), 1e-300)
         floors = {law: law.closing_at(little) for law in set(laws)}
         return cls(contacts, laws, area[contacts], np.array([floors[law] for law in laws]))
+
+    def and_links(self, ties: Integers, links: tuple[AskedLink, ...]) -> OwnSprings | None:
+        """These and links, which have these numbers; None where there are none."""
+        springs = np.append(self.springs, ties)
+        area, floor = np.append(self.area, np.ones(len(links))), np.append(self.floor, np.zeros(len(links)))
+        return OwnSprings(springs, (*self.laws, *links), area, floor) if len(springs) else None
 
     @property
     def pulls(self) -> Flags:
@@ -376,14 +216,13 @@ class OwnSprings(NamedTuple):
         return np.array([law.pulls for law in self.laws])
 
     def answers(self, gap: Array) -> tuple[Array, Array]:
-        """Force [N] and energy [J] of each at the gaps of all contacts [m], shape (n,) each."""
-        gaps = gap[self.contacts].tolist()
+        """Force [N] and energy [J] of each at the gaps of all contacts and ties [m], shape (n,) each."""
+        gaps = gap[self.springs].tolist()
         found = [law.answer(-gap) for law, gap in zip(self.laws, gaps, strict=True)]
         return self.area * [each.stress for each in found], self.area * [each.energy for each in found]
 
     def slopes(self, gap: Array) -> Array:
-        """Stiffness of each at the gaps of all contacts [N/m], shape (n,)."""
-        closings = np.where(
-            self.pulls & (gap[self.contacts] > 0), -gap[self.contacts], np.maximum(-gap[self.contacts], self.floor)
-        )
+        """Stiffness of each at the gaps of all contacts and ties [N/m], shape (n,)."""
+        gaps = gap[self.springs]
+        closings = np.where(self.pulls & (gaps > 0), -gaps, np.maximum(-gaps, self.floor))
         return self.area * [law.slope(closing) for law, closing in zip(self.laws, closings.tolist(), strict=True)]

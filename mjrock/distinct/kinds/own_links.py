@@ -1,0 +1,84 @@
+"""Own laws of links, see `problem.wall.own_link`: a class of a user's file answers for each link at each pose."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from ...compiled import inlined
+from ...problem.masonry.case import AnyCase
+from ...problem.wall.user_law import OF_DAMPING, OF_ENERGY, OF_STRESS, OF_TAKEN, ROOM
+from ...quantities import Array
+from ...scene.scene import Scene
+from ..rows import Fields, Row, Rows, integers
+from ..system import Books, System
+from .link import Kind, Named, Table, book_support, lengthening, pull, push_apart
+from .own import address_of, answer
+
+
+class OwnLinks(Kind, Table):
+    """Links with a law of their own, by the length that each has beyond the one as drawn, `reach` [m].
+
+    `stiffest` and `strongest` are the spring and the dashpot for which steps are short enough [N/m, N s/m]. `rate` is
+    that of the last step [m/s], `dragged` the force of the dashpot in it [N], and `lead` by how many steps dashpots
+    look ahead.
+    """
+
+    own = ("reach", "stiffest", "strongest", "rate", "dragged", "lead")
+    further: ClassVar[Fields] = [*integers("address"), ("values", float, (ROOM,))]
+    booked = ("dashpots",)
+
+    @classmethod
+    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+        """Those of a scene."""
+        links = scene.links.owned
+        laws = [law for law in links.asked if law is not None]
+        between = scene.bodies.between(links.body, links.at, links.anchor_body, links.anchor_at)
+        columns: dict[str, Any] = {name: 0.0 for name in cls.own}
+        if laws:
+            k, c = np.array([law.stiffest for law in laws]).T
+            columns |= {"reach": np.linalg.norm(between, axis=1), "stiffest": k, "strongest": c}
+            columns |= {"address": np.array([address_of(law.kind) for law in laws])}
+            columns |= {"values": np.array([law.values for law in laws])}
+        return cls.linking(links, between, **columns)
+
+    def springs(self) -> tuple[Array, Array]:
+        """The largest ones within the strokes."""
+        return np.asarray(self.rows["stiffest"]), np.asarray(self.rows["strongest"])
+
+    def look_ahead(self, lead: float) -> None:
+        """All of them."""
+        self.rows["lead"] = lead
+
+    def going_on(self, before: Self) -> Self:
+        """Addresses are those of this process."""
+        carried = super().going_on(before)
+        carried.rows["address"] = self.rows["address"]
+        return carried
+
+    @inlined
+    def act(self, system: System, books: Books, t: float, h: float) -> None:
+        """They answer at the pose, and what their dashpots and memories take of the work is booked."""
+        for i in range(len(self.rows)):
+            link = self.rows[i]
+            now = pull(link, system)
+            rate = lengthening(link, system, now)
+            ahead = rate + (link.lead if h > 0 else 0.0) * (rate - link.rate)
+            bears, held = link.values[OF_STRESS], link.values[OF_ENERGY]
+            answer(link.values, link.address, now.length - link.reach, ahead)
+            dragged = link.values[OF_DAMPING]
+            books.links[link.account] += 0.5 * h * (link.dragged + dragged) * rate
+            if link.values[OF_TAKEN] != 0 and h > 0:
+                work = 0.5 * h * (bears + link.values[OF_STRESS]) * rate
+                books.links[link.account] += work - (link.values[OF_ENERGY] - held)
+            link.rate, link.dragged = rate, dragged
+            force = -link.values[OF_STRESS] - dragged
+            book_support(link, system, books, now, force, h)
+            push_apart(link, system, now, force)
+
+    @inlined
+    def hold(self, system: System, books: Books, energy: Row) -> None:
+        """What their laws hold."""
+        for i in range(len(self.rows)):
+            energy.elastic += self.rows[i].values[OF_ENERGY]

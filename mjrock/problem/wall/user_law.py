@@ -1,0 +1,243 @@
+"""Laws that are classes in a user's own file: what such a class says, its numbers as a row, and what it answers.
+
+A law has methods of an elongation or closing [m]. They take their numbers from `self`, a row with the fields of the
+class, its `memory`, and what the law is given by what it is a law of. So the same text runs as plain Python and
+compiled, in explicit steps and in the search for the pose of rest.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import itertools
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cache
+from typing import Any, ClassVar, NamedTuple, TypeVar
+
+import numpy as np
+
+from ...quantities import Array, keep, keep_declared, require_real
+
+OfUser = TypeVar("OfUser")
+
+ANSWERS = ("stress_", "energy_", "damping_", "lost_", "taken_")
+"""What a law has answered at the last pose, in this order in its row: its push or pull, energy, what its dashpot adds
+to that, the share that it has lost [-], and by how much its energy fell as its memory changed there. A joint has [Pa]
+and [J/m2], a link [N] and [J]."""
+OF_STRESS, OF_ENERGY, OF_DAMPING, OF_LOST, OF_TAKEN = range(len(ANSWERS))
+ROOM = 24
+"""Numbers of a row."""
+INTEGRAL = 1e-3
+"""Difference of the energy from the integral of the force that is put down to quadrature, over that of its size [-]."""
+DECADES = 6
+"""Decades of the length that the quadrature looks at apart: a law may turn within a small part of the length."""
+RATES = (0.01, 0.1, 1.0)
+"""Rates for which a dashpot is checked [m/s]."""
+
+
+class UserLaw:
+    """What a law has where its class does not say otherwise.
+
+    Attributes:
+        methods: its methods, and how many numbers each takes.
+        given: numbers that a row has beside its fields and its memory.
+    """
+
+    methods: ClassVar[dict[str, int]]
+    given: ClassVar[tuple[str, ...]] = ()
+    memory: ClassVar[tuple[str, ...]] = ()
+    formula: ClassVar[str] = ""
+    """A hash of the text of its methods: runs that are stored know a law whose formula has been changed."""
+
+    def __post_init__(self) -> None:
+        keep_declared(self)
+        keep(
+            self,
+            **{name: require_real(f"{name} of {type(self).__name__}", getattr(self, name)) for name in self.numbers},
+        )
+
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """Names of the fields."""
+        return tuple(field.name for field in fields(self))  # type: ignore[arg-type]
+
+    def remember(self, u: float) -> None:
+        """Change the memory."""
+
+    @classmethod
+    def answering(cls, made: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
+        """The function that lets a law answer: it writes `ANSWERS` and the memory of a row, for a closing or elongation
+        [m] and its rate [m/s].
+
+        Args:
+            made: what is made of its methods, such as a compiled one.
+        """
+        raise NotImplementedError
+
+
+def law_class(kind: type[OfUser], base: type[UserLaw], called: str) -> type[OfUser]:
+    """A class of a user as a law: a frozen dataclass of its numbers.
+
+    Raises:
+        TypeError: for no class, one without a method that is needed, with a method of another name or of other
+            arguments, or with a memory that nothing changes.
+    """
+    if not inspect.isclass(kind):
+        raise TypeError(f"{called} is a class, and {kind!r} is none")
+    name, needed = kind.__name__, [method for method in base.methods if not hasattr(base, method)]
+    for method, count in base.methods.items():
+        takes_all = ", ".join(["self", "u", "rate"][: 1 + count])
+        text = getattr(kind, method, getattr(base, method, None))
+        if text is None:
+            raise TypeError(f"{name} has no {method}({takes_all}); {called} has {' and '.join(needed)}")
+        takes = list(inspect.signature(text).parameters) if callable(text) else None
+        if takes is None or len(takes) != 1 + count:
+            raise TypeError(f"{name}.{method}({', '.join(takes or ())}) is needed as {method}({takes_all})")
+    _require_methods(kind, base, called)
+    body = {each: getattr(kind, each) for each in ("__module__", "__qualname__", "__doc__")}
+    texts = [_text(getattr(kind, each, None)) for each in base.methods]
+    body["formula"] = hashlib.sha256(repr(texts).encode()).hexdigest()
+    made: type[Any] = dataclass(frozen=True)(type(name, (dataclass(frozen=True)(kind), base), body))
+    names = (*(field.name for field in fields(made)), *made.memory)
+    if (most := ROOM - len(ANSWERS) - len(base.given)) < len(names):
+        raise TypeError(f"{name} has {len(names)} numbers with its memory; the valid range is up to {most}")
+    for twice in {each for each in names if each in base.given or names.count(each) > 1}:
+        beside = f": {' and '.join(base.given)} are those of the joint" if base.given else ""
+        raise TypeError(f"{name} has a number {twice} more than once{beside}")
+    return made
+
+
+def _require_methods(kind: type, base: type[UserLaw], called: str) -> None:
+    """Raise a TypeError for a method that is never called, such as a misspelt one, and for a memory without one that
+    changes it."""
+    own = [name for each in kind.__mro__[:-1] for name, one in vars(each).items() if inspect.isfunction(one)]
+    if others := [name for name in own if name not in base.methods and not name.startswith("__")]:
+        raise TypeError(f"{kind.__name__}.{others[0]} is never called; {called} has {', '.join(base.methods)}")
+    if getattr(kind, "memory", ()) and "remember" not in own:
+        raise TypeError(f"{kind.__name__} has a memory and no remember(self, u), which changes it")
+
+
+def _text(method: Any) -> object:
+    """What a method does, as its bytecode and constants."""
+    code = getattr(method, "__code__", method)
+    if not inspect.iscode(code):
+        return repr(code)
+    return code.co_code, code.co_names, [_text(one) for one in code.co_consts]
+
+
+@cache
+def layout(kind: Any) -> np.dtype[np.void]:
+    """The row of a law, which its methods take for `self`."""
+    names = (*ANSWERS, *kind.given, *(field.name for field in fields(kind)), *kind.memory)
+    return np.dtype([(name, float) for name in names])
+
+
+class Answer(NamedTuple):
+    """What a law answers at a closing or elongation: its push or pull, its energy, and what its dashpot adds."""
+
+    stress: float
+    energy: float
+    damping: float
+
+
+class AskedLaw:
+    """A law with what it is given.
+
+    Attributes:
+        law: the law.
+        at: what its length is, in messages.
+        whose: what has its numbers, in messages.
+        says: names of what it answers, in messages.
+        shortest: length from which on a slope is taken over a part of it [m].
+    """
+
+    law: Any
+    at: ClassVar[str] = "a closing"
+    whose: ClassVar[str] = "the law and its lines have"
+    says: ClassVar[tuple[str, str, str]] = ("stress", "energy", "damping")
+    shortest: ClassVar[float] = 1e-12
+
+    @property
+    def given(self) -> tuple[float, ...]:
+        """The numbers that it is given."""
+        return ()
+
+    @property
+    def name(self) -> str:
+        """Of its class."""
+        return str(self.kind.__name__)
+
+    @property
+    def kind(self) -> Any:
+        """Its class."""
+        return type(self.law)
+
+    @property
+    def values(self) -> Array:
+        """A new row of its numbers, whose memory is empty, shape (ROOM,)."""
+        values = np.zeros(ROOM)
+        known = (*self.given, *(getattr(self.law, name) for name in self.law.numbers))
+        values[len(ANSWERS) : len(ANSWERS) + len(known)] = known
+        return values
+
+    def row(self, values: Array) -> Any:
+        """The row of a law from its numbers."""
+        kind = layout(self.kind)
+        return values[: kind.itemsize // 8].view(kind).view(np.recarray)[0]
+
+    def answer(self, u: float, rate: float = 0.0, values: Array | None = None, *, remembers: bool = True) -> Answer:
+        """What it answers at a closing or elongation [m] and its rate [m/s], as plain Python, and what it then
+        remembers in a row, if anything.
+
+        Raises:
+            TypeError, ValueError: where a method fails, or gives no finite number.
+        """
+        row, forgets = self.row(self.values if values is None else values), self.kind.remember
+        try:
+            with np.errstate(all="ignore"):  # what is not finite is said below
+                self.kind.answering(lambda text: UserLaw.remember if text is forgets and not remembers else text)(
+                    row, u, rate
+                )
+        except AttributeError as error:
+            has = ", ".join((layout(self.kind).names or ())[len(ANSWERS) :])
+            raise TypeError(f"{self.name}: {error}; {self.whose} {has}") from None
+        except Exception as error:
+            raise ValueError(f"{self.name} fails at {self.at} of {u:g} m: {error!r}") from None
+        found = Answer(float(row.stress_), float(row.energy_), float(row.damping_))
+        for name, value in zip(self.says, found, strict=True):
+            if not math.isfinite(value):
+                raise ValueError(f"{self.name}.{name} is {value} at {self.at} of {u:g} m; a finite number is needed")
+        return found
+
+    def slope(self, u: float, values: Array | None = None) -> float:
+        """Stiffness at a closing or elongation, of a row whose memory stays as it is."""
+        off = 1e-4 * max(abs(u), self.shortest)
+        ends = [self.answer(u + way, 0.0, None if values is None else values.copy()).stress for way in (off, -off)]
+        return (ends[0] - ends[1]) / (2 * off)
+
+
+def require_integral(asked: AskedLaw, u: float, unit: str, force: str) -> None:
+    """Raise an error unless the energy up to a length [m] is the integral of the force, with the memory of one that has
+    been there."""
+    from scipy.integrate import IntegrationWarning, quad
+
+    values = asked.values
+    asked.answer(u, 0.0, values)
+
+    def force_at(length: float) -> float:
+        return asked.answer(length, 0.0, values, remembers=False).stress
+
+    ends = (u * np.append(0.0, np.logspace(-DECADES, 0, DECADES + 1))).tolist()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", IntegrationWarning)  # the difference is looked at
+        parts = [quad(force_at, *two, epsrel=0.1 * INTEGRAL, limit=100)[0] for two in itertools.pairwise(ends)]
+    total, size = sum(parts), sum(map(abs, parts))
+    first, last = (asked.answer(end, 0.0, values, remembers=False).energy for end in (0.0, u))
+    if abs(last - first - total) > INTEGRAL * max(abs(last - first), size):
+        raise ValueError(
+            f"{asked.name}.energy is {last - first:g} {unit} at {asked.at} of {u:g} m, and the integral of {force} "
+            f"from 0 is {total:g} {unit}"
+        )
