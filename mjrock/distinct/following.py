@@ -16,6 +16,7 @@ from ..quantities import Array, warn_of
 from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
 from .kinds.own import OwnLaws
+from .kinds.own_links import OwnLinks
 from .limit import LEAD, STABLE_AHEAD
 from .loop import Clock, advance
 from .memory import Memory, remember
@@ -172,7 +173,7 @@ def searched(search: ContactSearch, system: System, books: Books, clock: Clock) 
 
 
 def broken_laws(setup: Setup, system: System) -> Iterator[str]:
-    """Own laws that have answered a number that is not finite, with their joints."""
+    """Own laws that have answered a number that is not finite, with their joints and links."""
     contacts = setup.scene.contacts
     for law in system.laws:
         if isinstance(law, OwnLaws) and len(law.rows):
@@ -182,6 +183,9 @@ def broken_laws(setup: Setup, system: System) -> Iterator[str]:
             springs[unsound(law.rows, law.endless)] = False
             for joint in law.rows["joint"][~springs & (law.rows["address"] != 0)].tolist():
                 yield f"the law {contacts.bonds[joint].name} of {contacts.joints[joint]}"
+    for table, names in zip(system.links, setup.names, strict=True):
+        if isinstance(table, OwnLinks):
+            yield from (f"the law of {names[i]}" for i in unsound(table.rows, table.endless).tolist())
 
 
 def breakdown(what: str, t: float) -> RuntimeError:

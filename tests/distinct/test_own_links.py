@@ -167,6 +167,13 @@ def test_what_is_no_law_of_a_link_is_named(said):
     assert "\n" not in str(error.value)
 
 
+def test_a_law_that_fails_in_a_run_is_named_with_its_link():
+    """Beyond the stroke for which it was checked."""
+    own = law_of(force=lambda self, u, rate: self.k * u / (abs(u) < 0.15))
+    with pytest.raises(RuntimeError, match=r"the law of link_0 breaks down by t = .* s: its numbers are not finite"):
+        run(thrown(own, speed=-20.0))
+
+
 @pytest.mark.parametrize("given", [{"own": 7}, {"own": None}, {"stroke": 0.0}, {"stroke": math.nan}])
 def test_what_a_link_is_given_is_checked(given):
     with pytest.raises((TypeError, ValueError), match=f"{next(iter(given))} of the link"):
