@@ -174,7 +174,7 @@ def test_a_law_that_fails_in_a_run_is_named_with_its_link():
         run(thrown(own, speed=-20.0))
 
 
-@pytest.mark.parametrize("given", [{"own": 7}, {"own": None}, {"stroke": 0.0}, {"stroke": math.nan}])
+@pytest.mark.parametrize("given", [{"own": 7}, {"own": None}, {"own": laws.Gap}, {"stroke": 0.0}, {"stroke": math.nan}])
 def test_what_a_link_is_given_is_checked(given):
     with pytest.raises((TypeError, ValueError), match=f"{next(iter(given))} of the link"):
         mr.Link(**{"height": 1.0, "own": laws.Gap(k=1e5, gap=0.01)} | given)

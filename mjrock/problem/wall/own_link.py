@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, dataclass_transform
 
 import numpy as np
 
-from ...quantities import Array, Within, require_kind
+from ...quantities import Array, Within, shown
 from .effect import OF_MASONRY, Anchored, Height, LinkLaw, OfBlock, PointOf
 from .user_law import RATES, AskedLaw, OfUser, UserLaw, law_class, require_integral
 
@@ -163,7 +163,8 @@ class Link(Anchored):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_kind("own of the link", self.own, OwnLinkLaw)
+        if not isinstance(self.own, OwnLinkLaw):
+            raise TypeError(f"own of the link = {shown(self.own)} is no object of a class under mr.link_law; give one")
         require_lawful_link(self.asked)
 
     @property
