@@ -198,7 +198,7 @@ class Within(NamedTuple):
         if self.whole:
             return require_whole(name, value, int(self.low), int(self.high))
         try:
-            return require_within(name, value, self.low, self.high, self.unit)
+            return require_within(name, value, self.low, self.high, " or ".join(dict.fromkeys(self.unit.split(", "))))
         except ValueError as error:
             cause = reason(error)
             raise ValueError(Message("{cause}, or inf", cause=cause) if self.infinite else cause) from None

@@ -323,6 +323,11 @@ def test_places_and_lines_of_the_same_two_blocks_belong_together():
     assert len(none.low) == len(none.high) == 0
 
 
+def hand_over(*given):
+    handover.keep_depths(*given)
+    handover.hand_over(*given)
+
+
 @BOTH
 @pytest.mark.parametrize("k_s", [2e4, math.inf])
 def test_lines_are_handed_over_pair_by_pair(d, k_s):
@@ -342,7 +347,7 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
     old["depth"] = [0.003, 0.002, 0.0]
     new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
     pairs = Pairs.belonging(np.array([5, 5, 1]), np.array([5, 5, 5]))
-    handover.hand_over(new, places, gone, pairs, numbers)
+    hand_over(new, places, gone, pairs, numbers)
     np.testing.assert_allclose(new.depth, [0.0025, 0.0025, 0.0], rtol=1e-9)  # the sum of what pressed before
     opening = FIRST_OPENING * numbers.sizes[:2].min()  # what follows nothing begins open, though its blocks overlap
     np.testing.assert_allclose(new.slack, [0.0015, 0.0015, 0.004 + opening], rtol=1e-11)
@@ -358,7 +363,7 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
         np.testing.assert_allclose(grips, [1e-5, 1e-5, 0.0], rtol=1e-9)
         old["grip"] = grip  # more than the face holds
         new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
-        handover.hand_over(new, places, gone, pairs, numbers)
+        hand_over(new, places, gone, pairs, numbers)
         held = 0.5 * 1e4 * 0.0025 / k_s
         np.testing.assert_allclose(np.linalg.norm(new.rows["grip"], axis=1), [held, held, 0.0], rtol=1e-9)
 
@@ -372,6 +377,6 @@ def test_friction_turns_from_the_face_of_one_block_to_that_of_the_other():
     places.normal[0] *= -1
     new = lines_of(rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), np.zeros(1), 0.0)
     pairs = Pairs.belonging(np.array([5]), np.array([5]))
-    handover.hand_over(new, places, lines_of(old, np.zeros(1), 0.003), pairs, numbers)
+    hand_over(new, places, lines_of(old, np.zeros(1), 0.003), pairs, numbers)
     before, after = turn(3, 1) @ old["grip"][0], turn(3, 2) @ new.rows["grip"][0]
     np.testing.assert_allclose(after, -before, rtol=1e-12)
