@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ..quantities import shown, spelt
+from ..quantities import shown, spelt, warn_of
 
 Tree = Any
 """None, a truth value, a number, a text, a list of trees or a dictionary of them by text."""
@@ -175,7 +175,8 @@ class Writer:
             cached = {name for base in kind.__mro__ for name, one in vars(base).items() if _is_cached(one)}
             for name in sorted(vars(value).keys() - parts.keys() - cached):
                 self._lose(getattr(value, name), f"{path}.{name}")
-        return {"class": name_of(kind)} | parts
+        formula = {"formula": kind.formula} if getattr(kind, "formula", "") else {}  # of a law of the user
+        return {"class": name_of(kind)} | formula | parts
 
     def _lose(self, value: object, path: str) -> Tree:
         what = f"{type(value).__name__} {getattr(value, '__qualname__', '') or spelt(value)[:60]}"
@@ -262,7 +263,12 @@ class Reader:
             if tree.get("member") not in kind.__members__:
                 raise UnreadableError(f"{path} is {tree.get('member')!r}, which {tree['class']} does not know")
             return kind[tree["member"]]
-        given, known = tree.keys() - {"class"}, fields_of(kind)
+        given, known = tree.keys() - {"class", "formula"}, fields_of(kind)
+        if tree.get("formula", "") != getattr(kind, "formula", tree.get("formula", "")):
+            warn_of(
+                f"{path} is of the class {tree['class']}, whose methods have changed since the file was written, or "
+                "are compiled by another Python: a run that goes on from it may be another"
+            )
         usual = _usual(kind)
         odd = [*sorted(given - set(known)), *(name for name in known if name not in given and name not in usual)]
         if odd:

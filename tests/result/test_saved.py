@@ -392,6 +392,15 @@ def test_own_laws_of_joints_go_on_to_the_bit(path):
     on = [mr.solve_explicit(one.case, start=one.end) for one in (found, read)]
     assert differences(on[0].motion, on[1].motion) == []
     assert read.end.memory is not None
+    with pytest.warns(UserWarning, match=r"masonry\.bond is of the class .*Stiffening, whose methods have changed"):
+        mr.load(path, laws=[changed(Stiffening)])
+
+
+def changed(law):
+    """A law of the same name that remembers something else."""
+    methods = {name: getattr(law, name) for name in ("stress", "energy", "remember")}
+    body = {"__annotations__": {"a": float}, "memory": ("most", "least"), **methods}
+    return mr.joint_law(type(law.__name__, (), body))
 
 
 def test_a_class_of_the_user_takes_the_place_of_none_of_mjrock(path):

@@ -50,7 +50,7 @@ class UserLaw:
     given: ClassVar[tuple[str, ...]] = ()
     memory: ClassVar[tuple[str, ...]] = ()
     formula: ClassVar[str] = ""
-    """A hash of the text of its methods: runs that are stored know a law whose formula has been changed."""
+    """A hash of its memory and the text of its methods, by which runs that are stored know a law that has changed."""
 
     def __post_init__(self) -> None:
         keep_declared(self)
@@ -98,7 +98,7 @@ def law_class(kind: type[OfUser], base: type[UserLaw], called: str) -> type[OfUs
             raise TypeError(f"{name}.{method}({', '.join(takes or ())}) is needed as {method}({takes_all})")
     _require_methods(kind, base, called)
     body = {each: getattr(kind, each) for each in ("__module__", "__qualname__", "__doc__")}
-    texts = [_text(getattr(kind, each, None)) for each in base.methods]
+    texts = [getattr(kind, "memory", ()), *(_text(getattr(kind, each, None)) for each in base.methods)]
     body["formula"] = hashlib.sha256(repr(texts).encode()).hexdigest()
     made: type[Any] = dataclass(frozen=True)(type(name, (dataclass(frozen=True)(kind), base), body))
     names = (*(field.name for field in fields(made)), *made.memory)
