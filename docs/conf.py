@@ -43,7 +43,7 @@ nitpicky = True  # a name that leads nowhere is an error
 # The site is built without a network, so that names of other packages lead nowhere; nor do types that are not in the
 # reference, such as parts of a public class.
 nitpick_ignore_regex = [
-    ("py:class", r"(numpy|matplotlib|collections|concurrent|pathlib|os|typing|mujoco|pandas)\b.*"),
+    ("py:class", r"(numpy|matplotlib|collections|concurrent|pathlib|os|typing|mujoco|pandas|xarray)\b.*"),
     ("py:class", r"mjrock\.[\w.]+"),
     ("py:class", r"Array|ArrayLike|Flags|Integers|Path"),
 ]
