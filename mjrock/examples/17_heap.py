@@ -15,7 +15,7 @@ from mjrock import plotting
 wall = mr.Masonry.running_bond(
     2.0, 2.0, unit=(0.5, 0.25), k_n=1e9, friction=0.6
 )  # m, N/m3
-shake = mr.GroundMotion.sine(amplitude=12.0, period=0.8)  # m/s2, s
+shake = mr.GroundMotion.sine(amplitude=12.0, period=1.2)  # m/s2, s
 answer = mr.solve_explicit(
     mr.MasonryCase(wall, 4.0, motion=shake), output_step=0.02
 )
@@ -26,6 +26,6 @@ print(f"the first block falls at {min(answer.fallen.values()):.2f} s")
 figure = plotting.panels(
     [
         (f"{t} s", lambda ax, t=t: plotting.blocks(ax, answer, at=t))
-        for t in (1.4, 4.0)
+        for t in (2.0, 4.0)
     ]
 )
