@@ -172,7 +172,7 @@ def test_forces_are_columns_of_the_table():
     answer = mr.solve_explicit(case)
     assert "force of actuator_0 [N]" in answer.csv()
     assert answer.actuators["actuator_0"][-1] > 0
-    with pytest.raises(ValueError, match=r"effects\[0\], Actuator: MuJoCo has no row for it; take solve_explicit"):
+    with pytest.raises(ValueError, match=r"effects\[0\], Actuator: MuJoCo does not know it; take solve_explicit"):
         mr.simulate(case)
 
 

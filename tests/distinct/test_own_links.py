@@ -189,7 +189,7 @@ def test_other_solvers_refuse_it_by_name():
         mr.Case(wall, 0.1, 0.2, effects=link, side_stop=False),
         mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05),
     )
-    said = r"effects\[0\], Link: {} does not know its law; take solve_explicit"
+    said = r"effects\[0\], Link: {} does not know it; take solve_explicit"
     with pytest.raises(ValueError, match=said.format("MuJoCo")):
         mr.simulate(case, contacts)
     with pytest.raises(ValueError, match=said.format("solve_compliant")):

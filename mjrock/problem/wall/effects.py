@@ -345,7 +345,7 @@ class Carrying(Drawn):
         for i, effect in enumerate(self.effects):
             if effect.only:
                 name = f"effects[{i}], {type(effect).__name__}"
-                raise ValueError(f"{name}: {solver} does not know its law; take {effect.only}")
+                raise ValueError(f"{name}: {solver} does not know it; take {effect.only}")
 
     def _keep_sequence(self, *further: type[Effect]) -> None:
         """Keep the effects, or a single one, as a tuple. They are of `EFFECT_KINDS` or `further` ones."""
