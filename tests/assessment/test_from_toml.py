@@ -330,7 +330,9 @@ def test_every_public_effect_and_builder_is_in_the_schema():
         kind for kind in (getattr(mr, name) for name in dir(mr)) if isinstance(kind, type) and issubclass(kind, Effect)
     ]
     assert len(effects) >= 7
-    assert {kind.__name__ for kind in effects} <= set(parts)
+    assert {kind.__name__ for kind in effects} - {"Link"} <= set(
+        parts
+    )  # its law is a class, for which a file has no words
     for builder in ("arch", "stack", "running_bond", "dome", "facade", "corner", "from_obj", "between_sides"):
         assert f"Masonry.{builder}!" in parts
     assert {"Tie.of_bar", "Wedge", "EarthPressure", "Block.from_slenderness!"} <= set(parts)
