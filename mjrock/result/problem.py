@@ -130,7 +130,7 @@ def scene_of(case: AnyCase, contacts: Contacts | None = None, method: Method = M
 def require_known_ties(case: AnyCase) -> None:
     """Raise a ValueError that names a tie of a case that can yield, of which a start does not say how far it has."""
     for name, link in case.links.items():
-        if link.asked is not None and link.asked.remembers:
+        if link.user_law is not None and link.user_law.remembers:
             raise ValueError(
                 f"start is a pose and a velocity, which do not say what {name} remembers, whose law has a memory; give "
                 "solve_explicit the end of explicit steps of the same structure, or follow the case in one run"

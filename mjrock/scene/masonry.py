@@ -96,7 +96,7 @@ def require_held(scene: Scene, pose: Array) -> None:
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
     """Raise ValueError with the names of the blocks that fall if rigid blocks cannot carry the weight without ties."""
     falls = falling(masonry, applied(masonry, effects))
-    if falls and not any(link.law.holds or link.asked for link in link_effects(effects).values()):
+    if falls and not any(link.law.holds or link.user_law for link in link_effects(effects).values()):
         lacking = friction_lacking(masonry, applied(masonry, effects))
         remedy = "" if lacking is None else f"; joints that need friction of {lacking[0]:g}: {named(lacking[1])}"
         if masonry.in_space and not any(abs(joint.direction[2]) > BED for joint in masonry.space_joints):

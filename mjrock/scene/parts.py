@@ -22,7 +22,7 @@ from ..problem.masonry.laws.dry import Meets
 from ..problem.masonry.laws.own_law import Own
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import constant_forces_of, link_effects
-from ..problem.wall.own_link import AskedLink
+from ..problem.wall.own_link import AppliedLink
 from ..quantities import Array, Flags, Integers, frozen, shown
 from .masses import mass_diagonals, principal, products_of
 
@@ -295,7 +295,7 @@ class Links:
             and (t, d).
         law: a `LinkLaw` for each, kept as rows with its numbers, shape (t,).
         anchor_block: number of the block of masonry that the other end moves with, or -1 for the ground, shape (t,).
-        asked: the own law of each, None where `law` has it; empty where none has one.
+        user_laws: the own law of each, None where `law` has it; empty where none has one.
     """
 
     names: tuple[str, ...] = ()
@@ -305,7 +305,7 @@ class Links:
     anchor_at: Array = field(default_factory=_none)
     law: NDArray[np.void] = field(default_factory=_none)
     anchor_block: Integers = field(default_factory=_none)
-    asked: tuple[AskedLink | None, ...] = ()
+    user_laws: tuple[AppliedLink | None, ...] = ()
 
     def __post_init__(self) -> None:
         t, directions = len(self.names), np.shape(self.at)[-1] if np.size(self.at) else 2
@@ -340,11 +340,11 @@ class Links:
     def of(self, some: Flags) -> Links:
         """Some of the links."""
         chosen = np.flatnonzero(some)
-        arrays = (entry.name for entry in fields(self) if entry.name not in ("names", "asked"))
-        asked = tuple(self.asked[i] for i in chosen) if self.asked else ()
+        arrays = (entry.name for entry in fields(self) if entry.name not in ("names", "user_laws"))
+        user_laws = tuple(self.user_laws[i] for i in chosen) if self.user_laws else ()
         return Links(
             names=tuple(self.names[i] for i in chosen),
-            asked=asked,
+            user_laws=user_laws,
             **{name: getattr(self, name)[chosen] for name in arrays},
         )
 
@@ -356,7 +356,7 @@ class Links:
     @cached_property
     def are_owned(self) -> Flags:
         """Which links have a law of their own, shape (t,)."""
-        return np.array([law is not None for law in self.asked or (None,) * len(self.names)], dtype=bool)
+        return np.array([law is not None for law in self.user_laws or (None,) * len(self.names)], dtype=bool)
 
     @cached_property
     def sprung(self) -> Links:
@@ -464,8 +464,8 @@ def attachments(
         ends = np.array([link.anchor_of(point) for link, point in zip(links.values(), points, strict=True)])
         ends = ends - np.where(others[:, None] == GROUND, 0.0, centroids[others])
         laws = np.array([link.law for link in links.values()], dtype=LAW)
-        asked = tuple(link.asked for link in links.values())
-        pulled = Links(tuple(links), bodies, at, others, ends, laws, blocks, asked if any(asked) else ())
+        user_laws = tuple(link.user_law for link in links.values())
+        pulled = Links(tuple(links), bodies, at, others, ends, laws, blocks, user_laws if any(user_laws) else ())
     if forces:
         bodies, _, at = on([effect for effect, _ in forces.values()])
         vectors = np.array([force for _, force in forces.values()])

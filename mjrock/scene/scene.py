@@ -176,7 +176,7 @@ class Scene:
         points, weight = self.contacts, GRAVITY * float(self.bodies.mass.sum())
         laws = OwnSprings.of(points.bonds, points.joint, np.asarray(points.area), weight)
         owned = np.flatnonzero(bearing.are_owned)
-        asked = tuple(law for law in bearing.asked if law is not None)
+        asked = tuple(law for law in bearing.user_laws if law is not None)
         return Potential(structure, laws.and_links(len(points.k) + owned, asked))
 
     @cached_property

@@ -6,7 +6,7 @@ whatever their number.
 - A cantilever, one block on a base: (f_t + g rho h) t / (3 rho g h^2). Once cracked it rocks from t / h on.
 - A strip between two floors, in n blocks with n + 1 equal joints. At rest half of its weight hangs. The moment at its
   ends is the mean over the joints of q z (h - z) / 2, since their rotations cancel, and the joint at its head cracks.
-- A corner: a façade of one block bonded by poor lime to two return walls over its height. It has no base and hangs on
+- A corner: a façade of one block bonded by poor lime to two return walls over its height. It has no base and depends on
   them, with the moment of its weight W t / 2. It is pulled off at the tops.
 Prints the accelerations over g.
 

@@ -33,7 +33,7 @@ class OwnLinks(Kind, Table):
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         links = scene.links.owned
-        laws = [law for law in links.asked if law is not None]
+        laws = [law for law in links.user_laws if law is not None]
         between = scene.bodies.between(links.body, links.at, links.anchor_body, links.anchor_at)
         columns: dict[str, Any] = {name: 0.0 for name in cls.own}
         if laws:

@@ -268,7 +268,7 @@ class Anchored(Effect):
     Attributes:
         colour, dashes: how its line is drawn, in the ways of matplotlib.
         limit: name of its argument that is the force at which it yields.
-        asked: its law where that is one of a user, see `own_link`.
+        user_law: its law where that is one of a user, see `own_link`.
         length: distance from the inner face to the anchor [m].
         anchor: of masonry, the anchor at rest [m]; None is `length` behind the point.
         anchor_block: of masonry, the block that it moves with; None is the ground.
@@ -278,7 +278,7 @@ class Anchored(Effect):
     colour: ClassVar[str] = "#12406b"
     dashes: ClassVar[Literal["-", "--", "-."]] = "-"
     limit: ClassVar[str] = "strength"
-    asked: Any = None
+    user_law: Any = None
     length: float
     anchor: PointOf | None
     anchor_block: int | None

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...quantities import Array, Within, shown
 from .effect import OF_MASONRY, Anchored, Height, LinkLaw, OfBlock, PointOf
-from .user_law import RATES, AskedLaw, OfUser, UserLaw, law_class, require_integral
+from .user_law import RATES, AppliedLaw, OfUser, UserLaw, law_class, require_integral
 
 STROKES = np.geomspace(1e-4, 1.0, 17)
 """Elongations at which a law is checked, over the stroke [-]."""
@@ -68,7 +68,7 @@ def link_law(kind: type[OfUser]) -> type[OfUser]:
 
 
 @dataclass(frozen=True)
-class AskedLink(AskedLaw):
+class AppliedLink(AppliedLaw):
     """An own law of a link.
 
     Args:
@@ -106,25 +106,25 @@ class AskedLink(AskedLaw):
     @cached_property
     def stiffest(self) -> tuple[float, float]:
         """The largest stiffness [N/m] and damping coefficient [N s/m] within the stroke."""
-        asked = [(u, values) for values in self.histories for u in self.ways]
-        k = max(self.slope(u, values) for u, values in asked)
-        c = max(abs(self.answer(u, rate, values.copy()).damping) / rate for u, values in asked for rate in RATES)
+        states = [(u, values) for values in self.histories for u in self.ways]
+        k = max(self.slope(u, values) for u, values in states)
+        c = max(abs(self.answer(u, rate, values.copy()).damping) / rate for u, values in states for rate in RATES)
         return max(k, 0.0), c
 
 
 @lru_cache(maxsize=256)
-def require_lawful_link(asked: AskedLink) -> None:
+def require_lawful_link(law: AppliedLink) -> None:
     """Raise an error for a law that fails within the stroke, whose rate drives what it should damp, or whose energy is
     not the integral of its force."""
-    for u in asked.ways:
+    for u in law.ways:
         for rate in (*RATES, *(-rate for rate in RATES)):
-            if (damping := asked.answer(u, rate).damping) * rate < 0:
+            if (damping := law.answer(u, rate).damping) * rate < 0:
                 raise ValueError(
-                    f"{asked.name}.force changes by {damping:g} N with a rate of {rate:g} m/s at {asked.at} of {u:g} "
+                    f"{law.name}.force changes by {damping:g} N with a rate of {rate:g} m/s at {law.at} of {u:g} "
                     "m: a dashpot acts against the rate of the length, and adds to the force with its sign"
                 )
-    for u in (-asked.stroke, -0.1 * asked.stroke, 0.1 * asked.stroke, asked.stroke):
-        require_integral(asked, u, "J", "force")
+    for u in (-law.stroke, -0.1 * law.stroke, 0.1 * law.stroke, law.stroke):
+        require_integral(law, u, "J", "force")
 
 
 @dataclass(frozen=True, repr=False)
@@ -165,12 +165,12 @@ class Link(Anchored):
         super().__post_init__()
         if not isinstance(self.own, OwnLinkLaw):
             raise TypeError(f"own of the link = {shown(self.own)} is no object of a class under mr.link_law; give one")
-        require_lawful_link(self.asked)
+        require_lawful_link(self.user_law)
 
     @property
-    def asked(self) -> AskedLink:
+    def user_law(self) -> AppliedLink:
         """Its law with the stroke."""
-        return AskedLink(self.own, self.stroke)
+        return AppliedLink(self.own, self.stroke)
 
     @property
     def law(self) -> LinkLaw:

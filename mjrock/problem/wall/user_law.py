@@ -143,7 +143,7 @@ class Answer(NamedTuple):
     damping: float
 
 
-class AskedLaw:
+class AppliedLaw:
     """A law with what it is given.
 
     Attributes:
@@ -219,25 +219,25 @@ class AskedLaw:
         return (ends[0] - ends[1]) / (2 * off)
 
 
-def require_integral(asked: AskedLaw, u: float, unit: str, force: str) -> None:
+def require_integral(law: AppliedLaw, u: float, unit: str, force: str) -> None:
     """Raise an error unless the energy up to a length [m] is the integral of the force, with the memory of one that has
     been there."""
     from scipy.integrate import IntegrationWarning, quad
 
-    values = asked.values
-    asked.answer(u, 0.0, values)
+    values = law.values
+    law.answer(u, 0.0, values)
 
     def force_at(length: float) -> float:
-        return asked.answer(length, 0.0, values, remembers=False).stress
+        return law.answer(length, 0.0, values, remembers=False).stress
 
     ends = (u * np.append(0.0, np.logspace(-DECADES, 0, DECADES + 1))).tolist()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", IntegrationWarning)  # the difference is looked at
         parts = [quad(force_at, *two, epsrel=0.1 * INTEGRAL, limit=100)[0] for two in itertools.pairwise(ends)]
     total, size = sum(parts), sum(map(abs, parts))
-    first, last = (asked.answer(end, 0.0, values, remembers=False).energy for end in (0.0, u))
+    first, last = (law.answer(end, 0.0, values, remembers=False).energy for end in (0.0, u))
     if abs(last - first - total) > INTEGRAL * max(abs(last - first), size):
         raise ValueError(
-            f"{asked.name}.energy is {last - first:g} {unit} at {asked.at} of {u:g} m, and the integral of {force} "
+            f"{law.name}.energy is {last - first:g} {unit} at {law.at} of {u:g} m, and the integral of {force} "
             f"from 0 is {total:g} {unit}"
         )

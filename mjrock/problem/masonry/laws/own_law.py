@@ -15,8 +15,8 @@ from typing import Any, ClassVar, NamedTuple, dataclass_transform
 import numpy as np
 
 from ....quantities import Array, Flags, Integers
-from ...wall.own_link import AskedLink
-from ...wall.user_law import ANSWERS, RATES, AskedLaw, OfUser, UserLaw, law_class, require_integral
+from ...wall.own_link import AppliedLink
+from ...wall.user_law import ANSWERS, RATES, AppliedLaw, OfUser, UserLaw, law_class, require_integral
 
 OF_JOINT = ("k_n", "friction")
 """Numbers of the joint that a law finds in its row."""
@@ -94,7 +94,7 @@ def joint_law(kind: type[OfUser]) -> type[OfUser]:
 
 
 @dataclass(frozen=True)
-class Own(AskedLaw):
+class Own(AppliedLaw):
     """An own law on a joint, in the place of its bond.
 
     Args:
@@ -190,7 +190,7 @@ class OwnSprings(NamedTuple):
     """
 
     springs: Integers
-    laws: tuple[Own | AskedLink, ...]
+    laws: tuple[Own | AppliedLink, ...]
     area: Array
     floor: Array
 
@@ -204,7 +204,7 @@ class OwnSprings(NamedTuple):
         floors = {law: law.closing_at(little) for law in set(laws)}
         return cls(contacts, laws, area[contacts], np.array([floors[law] for law in laws]))
 
-    def and_links(self, ties: Integers, links: tuple[AskedLink, ...]) -> OwnSprings | None:
+    def and_links(self, ties: Integers, links: tuple[AppliedLink, ...]) -> OwnSprings | None:
         """These and links, which have these numbers; None where there are none."""
         springs = np.append(self.springs, ties)
         area, floor = np.append(self.area, np.ones(len(links))), np.append(self.floor, np.zeros(len(links)))
