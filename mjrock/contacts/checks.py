@@ -166,7 +166,8 @@ def require_within(name: str, value: object, low: float, high: float, unit: str 
     """
     number = require_real(name, value)
     if not low <= number <= high:
-        values = {"name": name, "number": number, "low": low, "high": high, "unit": unit and f" {unit}"}
+        units = " or ".join(dict.fromkeys(unit.split(", ")))  # a row of numbers may have several
+        values = {"name": name, "number": number, "low": low, "high": high, "unit": units and f" {units}"}
         raise ValueError(
             Message("{name} = {number:g}{unit} is outside the valid range {low:g} to {high:g}{unit}", **values)
         )
@@ -198,7 +199,7 @@ class Within(NamedTuple):
         if self.whole:
             return require_whole(name, value, int(self.low), int(self.high))
         try:
-            return require_within(name, value, self.low, self.high, " or ".join(dict.fromkeys(self.unit.split(", "))))
+            return require_within(name, value, self.low, self.high, self.unit)
         except ValueError as error:
             cause = reason(error)
             raise ValueError(Message("{cause}, or inf", cause=cause) if self.infinite else cause) from None

@@ -195,12 +195,10 @@ class AppliedLaw:
         Raises:
             TypeError, ValueError: where a method fails, or gives no finite number.
         """
-        row, forgets = self.row(self.values if values is None else values), self.kind.remember
+        row = self.row(self.values if values is None else values)
         try:
             with np.errstate(all="ignore"):  # what is not finite is said below
-                self.kind.answering(lambda text: UserLaw.remember if text is forgets and not remembers else text)(
-                    row, u, rate
-                )
+                _plain(self.kind, remembers)(row, u, rate)
         except AttributeError as error:
             has = ", ".join((layout(self.kind).names or ())[len(ANSWERS) :])
             raise TypeError(f"{self.name}: {error}; {self.whose} {has}") from None
@@ -217,6 +215,18 @@ class AppliedLaw:
         off = 1e-4 * max(abs(u), self.shortest)
         ends = [self.answer(u + way, 0.0, None if values is None else values.copy()).stress for way in (off, -off)]
         return (ends[0] - ends[1]) / (2 * off)
+
+
+@cache
+def _plain(kind: Any, remembers: bool) -> Callable[[Any, float, float], None]:
+    """What lets a law answer as plain Python, with its memory or with one that stays as it is."""
+    forgets = kind.remember
+
+    def text_of(method: Any) -> Any:
+        return UserLaw.remember if method is forgets and not remembers else method
+
+    answering: Callable[[Any, float, float], None] = kind.answering(text_of)
+    return answering
 
 
 def require_integral(law: AppliedLaw, u: float, unit: str, force: str) -> None:
