@@ -8,15 +8,13 @@ two answers side by side.
 A name is imported when it is first used: `contact_for` alone imports MuJoCo and NumPy only.
 """
 
-import contextlib
 import importlib
-import importlib.metadata
-import sys
 from typing import TYPE_CHECKING
 
 from ._version import __version__
 from .contacts.names import homes
 from .interrupts import interrupts_held_back
+from .notebook import Drawn
 
 if TYPE_CHECKING:
     from . import plotting as plotting
@@ -146,17 +144,13 @@ HOME = homes(__file__)
 """The module of each public name."""
 
 
-def _require_mujoco(version: str) -> None:
-    """Raise an ImportError that names what to install, if MuJoCo is older than this package needs."""
-    if int(version.split(".")[0]) < 4:
-        raise ImportError(f"mjrock needs MuJoCo 4.0 or newer, and {version} is installed: pip install 'mujoco>=4.0'")
+def _png_of(shown: object) -> bytes | None:
+    """The picture of a problem or an answer as a PNG, for notebooks."""
+    made: bytes | None = importlib.import_module(".plotting.notebook", __name__).png_of(shown)
+    return made
 
 
-if "mujoco" in sys.modules:
-    _require_mujoco(sys.modules["mujoco"].__version__)
-else:
-    with contextlib.suppress(importlib.metadata.PackageNotFoundError):  # importing mujoco then says that it is missing
-        _require_mujoco(importlib.metadata.version("mujoco"))
+Drawn._png_of = staticmethod(_png_of)
 
 
 def __getattr__(name: str) -> object:

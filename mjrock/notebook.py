@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
-from importlib import import_module
+from typing import ClassVar
 
 VERDICTS = {"HOLDS": "#2c6e49", "FAILS": "#b5402a"}
 """Of the words of a verdict."""
@@ -13,9 +13,11 @@ VERDICTS = {"HOLDS": "#2c6e49", "FAILS": "#b5402a"}
 class Drawn:
     """What a notebook shows as a picture, that of its type in `mjrock.plotting.notebook`."""
 
+    _png_of: ClassVar[Callable[[object], bytes | None]]
+    """Draws it. The top of the package sets this, since pictures stand above what they show."""
+
     def _repr_png_(self) -> bytes | None:
-        shown: bytes | None = import_module("mjrock.plotting.notebook").png_of(self)
-        return shown
+        return Drawn._png_of(self)
 
 
 def html_of(said: str, *tables: Iterable[Sequence[str]]) -> str:

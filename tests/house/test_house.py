@@ -65,7 +65,7 @@ def nodes(path):
 
 @cache
 def imports(path):
-    """Modules of the package that a module imports, as names below the package, and all others that it imports."""
+    """Modules of the package that a module imports, by their text too, as names below it, and all others."""
     own, others, here = [], [], path.relative_to(ROOT).with_suffix("").parts
     for node in nodes(path):
         if isinstance(node, ast.ImportFrom) and node.level:
@@ -73,6 +73,12 @@ def imports(path):
             own.append(".".join((*base, *(node.module or "").split("."))).strip("."))
         elif isinstance(node, ast.Import | ast.ImportFrom):
             others += [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""]
+        elif isinstance(node, ast.Call) and "import_module" in (
+            getattr(node.func, "attr", ""),
+            getattr(node.func, "id", ""),
+        ):
+            text = getattr(node.args[0], "value", "")
+            own += [text.partition(".")[2]] if str(text).startswith(f"{ROOT.name}.") else []
     return own, others
 
 

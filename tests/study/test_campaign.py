@@ -171,7 +171,7 @@ def test_failures_are_tried_again_when_asked(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_another_version_makes_other_rows(tmp_path, monkeypatch):
     path = mr.campaign(squares(tmp_path, 3), tmp_path / "c.sqlite", workers=1)
-    monkeypatch.setattr("mjrock.study.campaign.task.VERSION", "mjrock 99")
+    monkeypatch.setattr("mjrock.study.campaign.task.programs", lambda: "mjrock 99")
     mr.campaign(squares(tmp_path, 3), path, workers=1)
     assert len(table(path).splitlines()) == 7
 

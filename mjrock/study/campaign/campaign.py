@@ -24,7 +24,7 @@ from ...quantities import is_iterable, require_flag, require_path, require_real,
 from .pool import CHUNK_SECONDS, QUIT, Workers
 from .progress import CampaignProgress
 from .store import Store
-from .task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
+from .task import Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed, programs
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
@@ -257,7 +257,7 @@ class Runner:
             self.progress.warned.add(text)
         self.file.add(
             [
-                {"key": job.key, "position": job.position, "version": VERSION, **job.task.labels, **row}
+                {"key": job.key, "position": job.position, "version": programs(), **job.task.labels, **row}
                 for job, row in zip(jobs, rows, strict=True)
             ]
         )

@@ -104,9 +104,6 @@ def _compared(kind: type) -> tuple[str, ...]:
     return tuple(field.name for field in dataclasses.fields(kind) if field.compare)
 
 
-VERSION = f"mjrock {__version__}, MuJoCo {importlib.metadata.version('mujoco')}"
-"""The programs that made a row; its task has another key with other versions."""
-
 Row = dict[str, Any]
 
 
@@ -154,6 +151,12 @@ class Refused:
         raise ValueError(self.error)
 
 
+@cache
+def programs() -> str:
+    """The versions of mjrock and MuJoCo that make a row; its task has another key with other versions."""
+    return f"mjrock {__version__}, MuJoCo {importlib.metadata.version('mujoco')}"
+
+
 def keyed(task: Task) -> tuple[str, Task]:
     """The key of a task, and the task. One that has no key, or labels that no table holds, becomes a `Refused`."""
     labels = getattr(task, "labels", {})
@@ -162,10 +165,10 @@ def keyed(task: Task) -> tuple[str, Task]:
             raise TypeError(f"{table_text(task)} is not a task, which can be called and has labels and COLUMNS")
         for name, value in labels.items():
             _named(f"the label {name}", value)
-        return fingerprint(VERSION, task), task
+        return fingerprint(programs(), task), task
     except Exception as error:
         refused = Refused.because(error, labels)
-        return fingerprint(VERSION, refused), refused
+        return fingerprint(programs(), refused), refused
 
 
 def column_names(task: Task) -> tuple[str, ...]:

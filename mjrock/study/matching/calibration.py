@@ -42,7 +42,7 @@ from ...quantities import (
     short_repr,
 )
 from ..campaign.campaign import CampaignOptions, completed
-from ..campaign.task import VERSION, Row
+from ..campaign.task import Row, programs
 from .match import (
     K_N_RANGE,
     R_RANGE,
@@ -183,7 +183,7 @@ def calibrate(
     law = DampingLaw(
         name=name,
         source=f"mjrock.calibration over Table 1 of the paper up to {plan.k_n[1]:.0e} N/m3, {points} contact lines a "
-        f"face, {VERSION}; scripts/paper/calibrate.py makes it",
+        f"face, {programs()}; scripts/paper/calibrate.py makes it",
         base=base.form,
         side=side.form,
         R_range=R_RANGE,
