@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ._version import __version__
 from .contacts.names import homes
 from .interrupts import interrupts_held_back
-from .notebook import Drawn
+from .notebook import NotebookPicture
 
 if TYPE_CHECKING:
     from . import plotting as plotting
@@ -150,7 +150,7 @@ def _png_of(shown: object) -> bytes | None:
     return made
 
 
-Drawn._png_of = staticmethod(_png_of)
+NotebookPicture._png_of = staticmethod(_png_of)
 
 
 def __getattr__(name: str) -> object:

@@ -94,11 +94,11 @@ class Bar:
             self.bar.close()
 
     def add(self, more: float = 1.0) -> None:
-        """There is so much more."""
+        """Advance by an amount."""
         self.to(self.n + more)
 
     def to(self, n: float) -> None:
-        """Say how much there is."""
+        """Set the amount that is done."""
         self.n = n if self.total is None else min(n, self.total)
         if (listener := _listener.get()) is not None:
             listener(Progress(self.what, self.n, self.total))

@@ -65,8 +65,8 @@ def add_output(made: argparse.ArgumentParser, what: str, default: str = "") -> N
         what: what the file or folder is, in words.
         default: where it is without `--output`, in words.
     """
-    said = f"{what}; without it {default}" if default else what
-    made.add_argument("-o", "--output", type=Path, metavar="PATH", help=said)
+    text = f"{what}; without it {default}" if default else what
+    made.add_argument("-o", "--output", type=Path, metavar="PATH", help=text)
     made.add_argument("-f", "--force", action="store_true", help="replace files that exist")
 
 

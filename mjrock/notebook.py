@@ -10,25 +10,25 @@ VERDICTS = {"HOLDS": "#2c6e49", "FAILS": "#b5402a"}
 """Of the words of a verdict."""
 
 
-class Drawn:
+class NotebookPicture:
     """What a notebook shows as a picture, that of its type in `mjrock.plotting.notebook`."""
 
     _png_of: ClassVar[Callable[[object], bytes | None]]
     """Draws it. The top of the package sets this, since pictures stand above what they show."""
 
     def _repr_png_(self) -> bytes | None:
-        return Drawn._png_of(self)
+        return NotebookPicture._png_of(self)
 
 
-def html_of(said: str, *tables: Iterable[Sequence[str]]) -> str:
+def html_of(text: str, *tables: Iterable[Sequence[str]]) -> str:
     """A line of text above tables, the words of a verdict in their colours.
 
     Args:
-        said: the line.
+        text: the line.
         tables: rows of cells, all texts.
     """
     made = ["".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows) for rows in tables]
-    return f"<p>{escape(said)}</p>" + "".join(f"<table>{rows}</table>" for rows in made)
+    return f"<p>{escape(text)}</p>" + "".join(f"<table>{rows}</table>" for rows in made)
 
 
 def _cell(text: str) -> str:

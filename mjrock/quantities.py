@@ -61,16 +61,16 @@ Real = TypeVar("Real", float, Array)
 
 
 class Implausible(UserWarning):
-    """A value that can be, and is most often one in another unit or of another wall."""
+    """A possible value that is usually an error of unit, or belongs to another wall."""
 
 
-def ratio_said(ratio: float) -> str:
+def ratio_text(ratio: float) -> str:
     """Capacity over demand with two decimals, cut off and not rounded, so that none below one reads as one."""
     cut = math.floor(100 * ratio + 1e-9) if ratio <= 99 else 9900
     return "> 99" if ratio > 99 else f"{(min(cut, 99) if ratio < 1 else cut) / 100:.2f}"
 
 
-def share_said(share: float) -> str:
+def share_text(share: float) -> str:
     """Demand over capacity with two decimals, rounded up, so that none above one reads as one."""
     if math.isinf(share):
         return "inf"
@@ -78,7 +78,7 @@ def share_said(share: float) -> str:
     return f"{(max(up, 101) if share > 1 else up) / 100:.2f}"
 
 
-def percent_said(share: float) -> str:
+def percent_text(share: float) -> str:
     """A part of a whole in percent: only all of it reads as 100%, and only nothing as 0%."""
     if 0 < share < 0.01:
         return "<1%"
@@ -107,7 +107,7 @@ def require_one_of(name: str, value: object, known: Collection[str]) -> str:
 
 
 def takes(value: object, count: int) -> bool:
-    """Whether a value is a function that so many arguments by position call."""
+    """Whether a value is a function that takes a given number of positional arguments."""
     if not callable(value):
         return False
     try:

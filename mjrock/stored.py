@@ -1,4 +1,4 @@
-"""Compiled loops on disk, and what a user is told while they are compiled. Importing this module imports numba."""
+"""Compiled loops on disk, and messages while they are compiled. Importing this module imports numba."""
 
 from __future__ import annotations
 

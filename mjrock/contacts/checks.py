@@ -109,8 +109,8 @@ def brief(value: object) -> str:
 def short_repr(instance: Any) -> str:
     """A dataclass as it would be written, on a line: numbers with six digits, and nothing that has its default."""
     shown = ((each, getattr(instance, each.name)) for each in fields(instance) if each.repr)
-    said = (f"{each.name}={_shortened(value)}" for each, value in shown if not _same(value, each.default))
-    return f"{type(instance).__name__}({', '.join(said)})"
+    arguments = (f"{each.name}={_shortened(value)}" for each, value in shown if not _same(value, each.default))
+    return f"{type(instance).__name__}({', '.join(arguments)})"
 
 
 def _same(value: object, default: object) -> bool:
@@ -233,7 +233,7 @@ def alternatives(hint: object) -> tuple[object, ...]:
     return (hint,)
 
 
-class Declared(NamedTuple):
+class Declaration(NamedTuple):
     """What is declared of a field or an argument.
 
     Args:
@@ -249,7 +249,7 @@ class Declared(NamedTuple):
     computed: bool = False
 
     @classmethod
-    def of(cls, hint: object) -> Declared | None:
+    def of(cls, hint: object) -> Declaration | None:
         """What an annotation declares; None without a range."""
         within = next((one for one in getattr(hint, "__metadata__", ()) if isinstance(one, Within)), None)
         if within is None:
@@ -277,10 +277,10 @@ class Declared(NamedTuple):
 
 
 @cache
-def declared(kind: Callable[..., object]) -> dict[str, Declared]:
+def declared(kind: Callable[..., object]) -> dict[str, Declaration]:
     """What each field of a class, or argument of a function, declares that has a range."""
     hints = get_type_hints(kind, include_extras=True)
-    found = {name: Declared.of(hint) for name, hint in hints.items()}
+    found = {name: Declaration.of(hint) for name, hint in hints.items()}
     return {name: one for name, one in found.items() if one is not None}
 
 

@@ -53,10 +53,10 @@ def worst_first(found: Sequence[InspectedContact]) -> list[InspectedContact]:
     """Contacts that can gain energy, then those with a long step, then those with notes; immovable ones last."""
 
     def rank(contact: InspectedContact) -> tuple[float, ...]:
-        said = " ".join(contact.notes)
-        immobile = any(part in said for part in IMMOBILE)
+        notes = " ".join(contact.notes)
+        immobile = any(part in notes for part in IMMOBILE)
         frequency = contact.frequency if contact.mass < math.inf else 0.0
-        return immobile, GAINS_NOTE not in said, LONG not in said, not contact.notes, -frequency
+        return immobile, GAINS_NOTE not in notes, LONG not in notes, not contact.notes, -frequency
 
     return sorted(found, key=rank)
 
@@ -118,8 +118,8 @@ def flex_report(model: mujoco.MjModel) -> str:
     found = [str(contact) for contact in inspect_flexes(model)]
     if not found:
         return ""
-    said = [f"For all of them: {sentence}." for sentence in model_spoilers(model)]
-    return "\n".join(["", "Contacts of flexes, at zero penetration:", *found, *said])
+    remarks = [f"For all of them: {sentence}." for sentence in model_spoilers(model)]
+    return "\n".join(["", "Contacts of flexes, at zero penetration:", *found, *remarks])
 
 
 def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:

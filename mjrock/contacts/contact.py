@@ -382,11 +382,11 @@ class PairContacts:
                 setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
             if iterations:
                 each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
-        found = [Changed(pair, before, ModelRow.of(pair)) for pair, before in others]
+        found = [StiffnessChange(pair, before, ModelRow.of(pair)) for pair, before in others]
         changed = [each for each in found if not math.isclose(*each.stiffness, rel_tol=SAME)]
         changed = [each for each in changed if not (keep_others and _keep(model, each))]
         if changed:
-            warn_of(changes_said(changed), ContactWarning)
+            warn_of(changes_message(changed), ContactWarning)
         for sentence in dict.fromkeys(each for contact in self for each in few_iterations(whole.opt, contact.needs)):
             warn_of(sentence, ContactWarning)
 
@@ -430,7 +430,7 @@ def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> mujoco.MjsPair:
     return next(listed, None) or spec.add_pair(geomname1=first, geomname2=second)
 
 
-class Changed(NamedTuple):
+class StiffnessChange(NamedTuple):
     """A contact that the options change, and its rows before and after."""
 
     pair: GeomPair
@@ -465,19 +465,19 @@ class Changed(NamedTuple):
         return self.before.loaded(self.pair.load), self.after.loaded(self.pair.load)
 
 
-def changes_said(changed: Collection[Changed]) -> str:
+def changes_message(changed: Collection[StiffnessChange]) -> str:
     """Contacts that the options change, the one that changes most first, as a sentence."""
-    told = []
+    changes = []
     for each in sorted(changed, key=lambda one: -abs(math.log(one.stiffness[1] / one.stiffness[0]))):
-        told.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(each.pair.labels), *each.stiffness))
+        changes.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(each.pair.labels), *each.stiffness))
     return (
-        f"the options that the contact needs change the stiffness of {len(told)} other contacts of the model under the "
-        f"weight: {named(told)}; contacts_for gives them numbers of their own, or keep_others=True writes pairs that "
-        "keep named geoms as they were"
+        f"the options that the contact needs change the stiffness of {len(changes)} other contacts of the model under "
+        f"the weight: {named(changes)}; contacts_for gives them numbers of their own, or keep_others=True writes pairs "
+        "that keep named geoms as they were"
     )
 
 
-def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
+def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: StiffnessChange) -> bool:
     """Write the numbers that keep a contact as it was; returns whether MuJoCo has such numbers."""
     geoms, numbers = changed.pair, changed.kept
     if numbers is None or len(geoms.listed) > 1:
@@ -571,7 +571,7 @@ def step_spoilers(contact: PairContact) -> Iterator[str]:
     if omega * h > UNSOUND:
         yield (
             f"timestep = {h:g} s does not resolve a contact of omega = {omega:.4g} rad/s: it rebounds with less than "
-            f"0.6 whatever is asked; {rounded_down(longest)} s resolves it, {softer}"
+            f"0.6 whatever is requested; {rounded_down(longest)} s resolves it, {softer}"
         )
     elif h > longest:
         yield (

@@ -45,7 +45,7 @@ class InspectedContact:
         inertia: inertia that the row adds in a contact, beyond what the Euler step takes [kg].
         mass: effective mass of the whole contact in the pose [kg]; infinity if the geoms cannot approach each other.
         impedance: d at zero penetration [-].
-        points: contact points that share the mass; frequency, xi and restitution are those of so many.
+        points: contact points that share the mass; frequency, xi and restitution are those of all of them together.
         load: static load of each contact point in the pose [N], or what was given.
         k_loaded: load over the indentation at which the contact carries it [N/m].
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
@@ -273,7 +273,7 @@ def _flex_contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
     for flex in range(model.nflex):
         start = int(model.flex_vertadr[flex])
         bodies = model.flex_vertbodyid[start : start + int(model.flex_vertnum[flex])]
-        if model.flex_interp[flex]:  # its vertices hang on nodes
+        if model.flex_interp[flex]:  # nodes move its vertices
             start = int(model.flex_nodeadr[flex])
             bodies = model.flex_nodebodyid[start : start + int(model.flex_nodenum[flex])]
         vertices = model.body_invweight0[bodies, 0]

@@ -127,7 +127,7 @@ def contact_for(
     """
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    asked = ContactRequest(
+    request = ContactRequest(
         k=k,
         k_face=k_face,
         k_n=k_n,
@@ -146,7 +146,7 @@ def contact_for(
         newmark_beta=newmark_beta,
     )
     pose = Pose(whole, keyframe, qpos)
-    made = _made(pose, [(pair, asked)])
+    made = _made(pose, [(pair, request)])
     for _, sentence in _sentences(whole, made):
         warn_of(sentence, ContactWarning)
     return made.contacts[0]
@@ -196,7 +196,7 @@ def contacts_for(
 
     Args:
         model: a compiled model or a specification; it is not changed.
-        pairs: what is asked of the contacts of two geoms, by their names or numbers: arguments of `contact_for` by
+        pairs: what is requested of the contacts of two geoms, by their names or numbers: arguments of `contact_for` by
             name, such as `{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}`. Names may have the wildcards `*`, `?`
             and `[...]`. They are looked for among the geoms, and where none has it among the bodies with one geom. They
             name what MuJoCo lets collide, by contype and conaffinity, `<exclude>`, and parent and child, or by an
@@ -223,26 +223,26 @@ def contacts_for(
     pose = Pose(whole, keyframe, qpos)
     meant: dict[frozenset[int], tuple[tuple[int, int], ContactRequest, bool]] = {}
     for key, values in pairs.items():
-        asked = _asked(key, values, timestep)
+        request = _request(key, values, timestep)
         for geoms in _meant(whole, key):
-            if not meant.get(frozenset(geoms), (geoms, asked, True))[2]:
+            if not meant.get(frozenset(geoms), (geoms, request, True))[2]:
                 raise ValueError(f"pairs name the geoms {GeomPair(whole, geoms).labels} twice, last by {shown(key)}")
-            meant[frozenset(geoms)] = geoms, asked, any(map(_is_wild, key))
+            meant[frozenset(geoms)] = geoms, request, any(map(_is_wild, key))
     if not meant:
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
-    made = _made(pose, [(GeomPair.named(whole, *geoms), asked) for geoms, asked, _ in meant.values()])
+    made = _made(pose, [(GeomPair.named(whole, *geoms), request) for geoms, request, _ in meant.values()])
     for sentence in merged(_sentences(whole, made)):
         warn_of(sentence, ContactWarning)
     return made
 
 
-def _made(pose: Pose, asked: Sequence[tuple[GeomPair, ContactRequest]]) -> PairContacts:
+def _made(pose: Pose, request: Sequence[tuple[GeomPair, ContactRequest]]) -> PairContacts:
     """The requested contacts in a pose, with the iterations that they need and remarks on what lands with each."""
-    found = [contact_of(pair, pose, each) for pair, each in asked]
+    found = [contact_of(pair, pose, each) for pair, each in request]
     made = {frozenset(contact.ids): contact for contact, _ in found}
     landed = {
         frozenset(pair.geoms): (contact, pose.along(each.normal).landing(pair))
-        for (pair, each), (contact, _) in zip(asked, found, strict=True)
+        for (pair, each), (contact, _) in zip(request, found, strict=True)
     }
     needs = solver_need(pose, tuple(landed.values()))
     whole = (replace(beside(contact, neighbours, made), needs=needs) for contact, neighbours in found)
@@ -257,7 +257,7 @@ def _sentences(model: mujoco.MjModel, contacts: PairContacts) -> Iterator[tuple[
             yield contact, sentence
 
 
-def _asked(key: object, values: object, timestep: float | None) -> ContactRequest:
+def _request(key: object, values: object, timestep: float | None) -> ContactRequest:
     if not isinstance(key, tuple) or len(key) != 2:
         raise TypeError(f"pairs have the key {shown(key)}; it has to be two geoms, such as ('foot*', 'floor')")
     if not isinstance(values, Mapping):
@@ -382,36 +382,36 @@ TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "t
 """Arguments that each contact of several may have."""
 
 
-def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Neighbours]:
+def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[PairContact, Neighbours]:
     """The contact of a pair in a pose, with `remarks` on how it differs from the request, and what lands
     with it."""
-    option, pose = pair.model.opt, pose.along(asked.normal)
-    asked = asked.by_point(pair, pose)
-    h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
-    grip, mixed = Grip.of(pair, asked.friction), Mixed.of(pair)
+    option, pose = pair.model.opt, pose.along(request.normal)
+    request = request.by_point(pair, pose)
+    h = require_within("timestep", option.timestep if request.timestep is None else request.timestep, 1e-12, 1e3, "s")
+    grip, mixed = Grip.of(pair, request.friction), Mixed.of(pair)
     met = meeting_of_geoms(
         pair,
         pose,
-        contacts=asked.contacts,
-        at=asked.at,
-        alone=asked.mass is not None,
+        contacts=request.contacts,
+        at=request.at,
+        alone=request.mass is not None,
         friction=grip.sliding,
-        frequency=LONG_STEP / h if asked.k is None else None,
-        k=asked.k,
+        frequency=LONG_STEP / h if request.k is None else None,
+        k=request.k,
     )
-    if asked.mass is None and not met.effective.mass < math.inf:
+    if request.mass is None and not met.effective.mass < math.inf:
         raise ValueError(
             f"geom1 and geom2 = {pair.labels} cannot approach each other along their normal at {pose.label}, so that "
             "the model gives no mass for the restitution; give mass"
         )
-    share = met.share if asked.mass is None else asked.mass / met.points
+    share = met.share if request.mass is None else request.mass / met.points
     gravity = met.effective.gravity
-    k = _stiffest(pair, asked, h, share, gravity) if asked.k is None else asked.k
-    c = asked.c
+    k = _stiffest(pair, request, h, share, gravity) if request.k is None else request.k
+    c = request.c
     if c is None:
-        c = 2 * _damping_ratio(asked, math.sqrt(k / share), gravity) * math.sqrt(k * share)
+        c = 2 * _damping_ratio(request, math.sqrt(k / share), gravity) * math.sqrt(k * share)
     staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, asked.newmark_beta, staged)
+    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, request.newmark_beta, staged)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
     contact = PairContact(
         *pair.names,
@@ -428,17 +428,17 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
         adhesion=mixed.adhesion,
         gap=mixed.gap,
-        speed=asked.speed,
+        speed=request.speed,
         gravity=max(0.0, gravity),
         pose=pose.label,
-        load=pose.load(pair, met.points, asked.contacts) if asked.load is None else asked.load / met.points,
+        load=pose.load(pair, met.points, request.contacts) if request.load is None else request.load / met.points,
     )
-    remarks = [*unused(asked.friction, grip), *shape_spoilers(pair, pose), *turned(pair, pose, k)]
-    remarks += _remarks(pair, pose, asked, met, k, c, grip.sliding)
-    if asked.restitution is not None:
+    remarks = [*unused(request.friction, grip), *shape_spoilers(pair, pose), *turned(pair, pose, k)]
+    remarks += _remarks(pair, pose, request, met, k, c, grip.sliding)
+    if request.restitution is not None:
         remarks += weight_spoilers(contact)
     remarks += blow_spoilers(contact, pair)
-    if asked.k is None:
+    if request.k is None:
         remarks += soft_spoilers(contact, ModelRow.of(pair).loaded(contact.load), pair.thickness)
     return replace(contact, remarks=tuple(remarks)), met.neighbours
 
@@ -465,45 +465,45 @@ def beside(contact: PairContact, neighbours: Neighbours, made: Mapping[frozenset
     return replace(contact, remarks=(*contact.remarks, *remarks))
 
 
-def _damping_ratio(asked: ContactRequest, omega: float, gravity: float) -> float:
+def _damping_ratio(request: ContactRequest, omega: float, gravity: float) -> float:
     """The damping ratio [-] of a frequency, from the restitution or the damping ratio that is given."""
-    if asked.xi is not None:
-        return asked.xi
-    e = max(asked.restitution or 0.0, LEAST_RESTITUTION)
-    if asked.speed is None or gravity <= 0:
+    if request.xi is not None:
+        return request.xi
+    e = max(request.restitution or 0.0, LEAST_RESTITUTION)
+    if request.speed is None or gravity <= 0:
         return rebound_damping(e)
-    pull = gravity / (omega * asked.speed)
+    pull = gravity / (omega * request.speed)
     if pull > MOST_PULL:
         slowest = gravity / (omega * MOST_PULL)
         raise ValueError(
-            f"speed = {asked.speed:g} m/s is too slow to rebound; the valid range is from {slowest:.3g} m/s on"
+            f"speed = {request.speed:g} m/s is too slow to rebound; the valid range is from {slowest:.3g} m/s on"
         )
     return falling_damping(e, pull)
 
 
-def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, gravity: float) -> float:
+def _stiffest(pair: GeomPair, request: ContactRequest, h: float, mass: float, gravity: float) -> float:
     """The stiffest contact that the step resolves, rounded down [N/m]."""
     omega = LONG_STEP / h
     for _ in range(20):  # with gravity the damping depends on the frequency, a little
-        k = stiffest(h, _damping_ratio(asked, omega, gravity), mass)
+        k = stiffest(h, _damping_ratio(request, omega, gravity), mass)
         omega = math.sqrt(k / mass)
     most = 0.4 * inertia_of(WITHIN[1], pair.inverse_weight) / h**2
     return float(rounded_down(min(0.999 * k, most), 3))
 
 
 def _remarks(
-    pair: GeomPair, pose: Pose, asked: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
+    pair: GeomPair, pose: Pose, request: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
 ) -> Iterator[str]:
     """Reasons in the pose for which a contact differs from the request, one sentence each."""
-    if asked.mass is not None:
+    if request.mass is not None:
         return
-    xi, speed = c / (2 * math.sqrt(k * met.share)), asked.speed or 1.0
-    if asked.at is None:
+    xi, speed = c / (2 * math.sqrt(k * met.share)), request.speed or 1.0
+    if request.at is None:
         yield from unknown(pair, pose)
     yield from giving_way(pair, pose, met, k, xi, mu, speed)
     yield from holding(pose, met.effective, k * met.points, xi, speed)
-    if asked.c is None and asked.at is None:
-        yield from other_keyframes(pair, pose, met, asked.contacts, mu)
+    if request.c is None and request.at is None:
+        yield from other_keyframes(pair, pose, met, request.contacts, mu)
 
 
 def _row(

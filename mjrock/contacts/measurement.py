@@ -34,7 +34,7 @@ LONGEST_BLOW = 40.0
 """Longest blow that is waited for, in periods of the contact over 2 pi [-]; what is overdamped takes longer."""
 
 
-class Compared(NamedTuple):
+class MeasuredValue(NamedTuple):
     """A number that was measured, and what the contact promises.
 
     Args:
@@ -63,11 +63,11 @@ class Measurement:
 
     contact: InspectedContact
     speed: float
-    restitution: Compared
-    depth: Compared
-    force: Compared
+    restitution: MeasuredValue
+    depth: MeasuredValue
+    force: MeasuredValue
     friction: float
-    creep: Compared
+    creep: MeasuredValue
     blow: Array
     rest: Array
 
@@ -175,11 +175,13 @@ class Bench:
         return Measurement(
             contact,
             speed,
-            restitution=Compared(float(np.mean([e for e, _ in blows])), contact.restitution_at(speed)),
-            depth=Compared(found_depth, depth),
-            force=Compared(float(pressed.forces.sum()), load),
+            restitution=MeasuredValue(float(np.mean([e for e, _ in blows])), contact.restitution_at(speed)),
+            depth=MeasuredValue(found_depth, depth),
+            force=MeasuredValue(float(pressed.forces.sum()), load),
             friction=pushed.friction,
-            creep=Compared(pushed.slip, self.row.creep(each, found_depth)) if holds else Compared(math.nan, math.nan),
+            creep=MeasuredValue(pushed.slip, self.row.creep(each, found_depth))
+            if holds
+            else MeasuredValue(math.nan, math.nan),
             blow=blows[0][1],
             rest=rest,
         )

@@ -194,7 +194,7 @@ def stiffest(h: float, xi: float, mass: float) -> float:
 
 
 def rounded_down(value: float, digits: int = 2) -> str:
-    """A positive number as text with so many digits, never above what it is."""
+    """A positive number as text with a number of digits, rounded down."""
     return f"{float(Context(prec=digits, rounding=ROUND_DOWN).create_decimal_from_float(value)):g}"
 
 
@@ -266,7 +266,7 @@ def holding(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: fl
     if effective.slides:
         yield (
             "the joints let the point approach only while it slides, so that friction takes part in the blow and the "
-            "restitution depends on it; with friction=0 it is what was asked for"
+            "restitution depends on it; with friction=0 it is the requested one"
         )
     if effective.yielding:
         names = [_name(model, CONSTRAINT, number) for number in effective.yielding]

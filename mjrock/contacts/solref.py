@@ -107,7 +107,7 @@ def row(
       thousands of times the mass of the body.
     * A dashpot that is stiff for the step, c h W > `overdamped`, acts on the velocity at the end of the step, m_i = h c
       instead of h c / 2. Centred in the step, it would throw back the contact that it should stop.
-    * A row whose impedance MuJoCo would clamp has the least inertia that it represents. More inertia than asked for
+    * A row whose impedance MuJoCo would clamp has the least inertia that it represents. More inertia than requested
       then changes a frequency by less than 1e-4, and it damps nothing.
 
     Args:

@@ -130,7 +130,7 @@ class SolverTrial:
         self.named = np.sort([contact.ids for contact in contacts], axis=1)
 
     def run(self, cap: int, searches: int) -> Found:
-        """Step with so many iterations and line searches, and compare each step with those of the model."""
+        """Step with at most `cap` iterations and `searches` line searches, and compare with the steps of the model."""
         found = Found()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -150,7 +150,7 @@ class SolverTrial:
         return found
 
     def _right(self, data: mujoco.MjData, cap: int, searches: int) -> tuple[int, Array]:
-        """Iterations of the model's solver, of `cap` with so many line searches, and the forces of Newton's method [N].
+        """Iterations of the model's solver, of `cap` with `searches` line searches, and forces of Newton's method [N].
 
         A solver that ends at its last iteration may only miss its tolerance. Half of the iterations, and so on, count
         then where they find the forces of Newton's method.
@@ -179,7 +179,7 @@ class SolverTrial:
         mujoco.mj_projectConstraint(model, data)
 
     def _forces(self, data: mujoco.MjData, iterations: int, searches: int, solver: int | None = None) -> Array:
-        """The forces that a solver, or that of the model, finds with so many iterations and line searches [N]."""
+        """The forces that a solver, or that of the model, finds with a number of iterations and line searches [N]."""
         option = self.model.opt
         own, option.solver = option.solver, option.solver if solver is None else solver
         option.iterations, option.ls_iterations = iterations, searches

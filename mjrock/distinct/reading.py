@@ -11,12 +11,12 @@ import numpy as np
 
 from ..problem.masonry.case import AnyCase
 from ..quantities import GRAVITY, Array, Integers, warn_of
-from ..result.forces import Forces, Gathered, forces_of
+from ..result.forces import Forces, KeptForces, forces_of
 from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion, thinned
 from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
-from ..result.ties import Plastic, plastic_of, told_of_ties
+from ..result.ties import Plastic, plastic_of, ties_message
 from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
 from .following import Followed
@@ -102,7 +102,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         t=run.t[kept],
         motion=SampledMotion(samples.pose[kept], samples.velocity[kept], run.energy[kept]),
         outcome=reading.outcome,
-        message=reading.message + told_of_ties(yielded),
+        message=reading.message + ties_message(yielded),
         rocking=reading.rocking,
         joints=reading.joints,
         plastic=yielded,
@@ -137,7 +137,7 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
         damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
     jacks = np.array([*driven.values()]).T.copy() if driven else None
-    gathered = Gathered(run.t[kept], *loads, pulled, jacks, samples.guided, damage)
+    gathered = KeptForces(run.t[kept], *loads, pulled, jacks, samples.guided, damage)
     return forces_of(run.case, run.case.standing.frames, gathered)
 
 

@@ -96,7 +96,7 @@ class Samples(NamedTuple):
             are apart.
         dashpots, links: what `Books` say, (samples, accounts), without a ledger (samples, 0).
         pulled: force of each link [N], shape (samples, links).
-        loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
+        loads, held: forces of joints and of fixed blocks, see `result.forces.KeptForces`, shapes (samples, joints, nv)
             and (samples, blocks, d).
         damage: share of its bond that each joint has lost, the mean over its area [-], shape (samples, joints).
         guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape

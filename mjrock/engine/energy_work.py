@@ -211,7 +211,7 @@ def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> f
     return dot(slip_of(meets.normal, over_face(places, i, meets, frames, way)).way, velocity)
 
 
-class Pressed(NamedTuple):
+class ContactForces(NamedTuple):
     """A contact in a step.
 
     Args:
@@ -234,7 +234,7 @@ class Pressed(NamedTuple):
 @inlined
 def pressed_in(
     points: Points, record: Record, step: Step, room: LedgerRoom, impratio: float, n: int, i: int
-) -> Pressed:
+) -> ContactForces:
     """Contact i in step n of a record, whose frames, rates and rows are in the room."""
     places, inertia = points.places, room.inertia[i]
     closed = gap(places, i, room.frames, room.middle, room.acceleration)
@@ -250,7 +250,7 @@ def pressed_in(
             slip = slip_along(places, i, room.frames, record.after[n], record.after[n])
             stopping = -impratio * inertia * slip / step.h
             row, along = cone_force(pressed, stopping, impratio * inertia, inertia, places.friction[i])
-    return Pressed(closed.value, dashpot, pressed, row, along, coulomb)
+    return ContactForces(closed.value, dashpot, pressed, row, along, coulomb)
 
 
 @compiled

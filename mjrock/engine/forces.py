@@ -18,7 +18,7 @@ from ..geometry.vectors import increase, moment, plus, scaled, vector
 from ..problem.masonry.case import AnyCase
 from ..quantities import Array, Integers
 from ..result.bodies import Moving
-from ..result.forces import Forces, Gathered, forces_of
+from ..result.forces import Forces, KeptForces, forces_of
 from ..result.ties import Plastic, motion_of_ties
 from ..scene.scene import Scene
 from .energy_work import LedgerRoom, pressed_in, take_rows, take_step
@@ -35,7 +35,7 @@ class Loads(NamedTuple):
         sense: 1 where the body of a contact is above its joint or -1, shape (m,).
         fixed: number of the fixed block below each joint, or -1, shape (joints,).
         rest: centroids of the bodies at rest [m].
-        loads, held: see `Gathered`.
+        loads, held: see `KeptForces`.
     """
 
     steps: Integers
@@ -65,7 +65,7 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
     of = chosen[sample]
     pulled = {name: ties[name].force[of] for name in scene.links.sprung.names}
     pulled |= dict(zip(scene.links.damped.names, -steps.record.damping[of].T, strict=True))
-    return forces_of(case, frames, Gathered(steps.t[of], pose[of], loads.loads[sample], loads.held[sample], pulled))
+    return forces_of(case, frames, KeptForces(steps.t[of], pose[of], loads.loads[sample], loads.held[sample], pulled))
 
 
 @compiled

@@ -34,11 +34,11 @@ from .sliding import (
     sliding_changed,
     time_to_stop,
 )
-from .sticking import Joints, Moved, put_sticking_edges_back
+from .sticking import Joints, StepPoses, put_sticking_edges_back
 from .touches import Openings, Touches, closure_changed, follow_openings, step_to_break, step_to_touch
 
 
-class Shaken(NamedTuple):
+class GroundResponse(NamedTuple):
     """The ground in the last step, and the answer of the bodies. Directions are x, z, and y in space, as in `Ground`.
 
     The acceleration of the ground has a kink at every sample of its record, and bodies on stiff contacts answer to it
@@ -57,7 +57,7 @@ class Shaken(NamedTuple):
     answer: Array
 
     @classmethod
-    def of(cls, setting: Setting) -> Shaken:
+    def of(cls, setting: Setting) -> GroundResponse:
         """Before the first step."""
         directions = len(setting.points.places.axes) if setting.splits else 0
         return cls(np.zeros(directions), np.zeros((directions, len(setting.masses))))
@@ -65,44 +65,44 @@ class Shaken(NamedTuple):
 
 @inlined
 def find_answer(
-    memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, shaken: Shaken, t: float
+    memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, ground_response: GroundResponse, t: float
 ) -> None:
     """Find how the bodies answer to the ground at the pose, with the step and the velocity that are set."""
     if not slide(memory, setting, sliding, frames, t):
         push(memory, setting, frames, t)
         memory.forward(memory.model, memory.data)
-    for d in range(len(shaken.mean)):
+    for d in range(len(ground_response.mean)):
         for j in range(len(memory.acceleration)):
-            shaken.answer[d, j] = -memory.acceleration[j]
+            ground_response.answer[d, j] = -memory.acceleration[j]
     axes, masses = setting.points.places.axes, setting.masses
-    for d in range(len(shaken.mean)):
+    for d in range(len(ground_response.mean)):
         if len(setting.ground[d].accel) > 0:
             push_along(d, 1.0, masses, axes, memory.applied)
             memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
             push_along(d, -1.0, masses, axes, memory.applied)
             for j in range(len(memory.acceleration)):
-                shaken.answer[d, j] += memory.acceleration[j]
+                ground_response.answer[d, j] += memory.acceleration[j]
     give_rows_back(memory, sliding)
 
 
 @inlined
-def add_change(shaken: Shaken, ground: Ground, t: float, h: float, weight: float, to: Array) -> None:
+def add_change(ground_response: GroundResponse, ground: Ground, t: float, h: float, weight: float, to: Array) -> None:
     """Add to `to` the weight times what the bodies answer to the change of the ground.
 
     The change is that of its mean acceleration, from the window of the last step to a time h [s] around t [s].
     """
-    for d in range(len(shaken.mean)):
+    for d in range(len(ground_response.mean)):
         if len(ground[d].accel) > 0:
-            change = mean_acceleration(ground[d], t, h) - shaken.mean[d]
+            change = mean_acceleration(ground[d], t, h) - ground_response.mean[d]
             for j in range(len(to)):
-                to[j] += weight * change * shaken.answer[d, j]
+                to[j] += weight * change * ground_response.answer[d, j]
 
 
 @inlined
-def take_mean(shaken: Shaken, ground: Ground, t: float, h: float) -> None:
+def take_mean(ground_response: GroundResponse, ground: Ground, t: float, h: float) -> None:
     """Take the mean acceleration of the ground over the window of a step h [s] at t [s]."""
-    for d in range(len(shaken.mean)):
-        shaken.mean[d] = mean_acceleration(ground[d], t, h)
+    for d in range(len(ground_response.mean)):
+        ground_response.mean[d] = mean_acceleration(ground[d], t, h)
 
 
 LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
@@ -125,7 +125,7 @@ class Progress(NamedTuple):
         touches: room for the touches of a step.
         joints: where sticking edges stuck.
         sliding: which contacts slide.
-        shaken: the ground in the last step, and how the bodies answer to it.
+        ground_response: the ground in the last step, and how the bodies answer to it.
     """
 
     acceleration: Array
@@ -140,7 +140,7 @@ class Progress(NamedTuple):
     touches: Touches
     joints: Joints
     sliding: Sliding
-    shaken: Shaken
+    ground_response: GroundResponse
 
     @classmethod
     def of(cls, memory: EngineArrays, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
@@ -151,7 +151,7 @@ class Progress(NamedTuple):
         acceleration, rate, change, velocity_now, acceleration_now = np.zeros((5, len(memory.velocity)))
         rates = acceleration, rate, change, velocity_now, acceleration_now
         touching = Openings.of(count), np.zeros(count, dtype=np.bool_), touches
-        return cls(*rates, frames, frames.copy(), *touching, joints, sliding, Shaken.of(setting))
+        return cls(*rates, frames, frames.copy(), *touching, joints, sliding, GroundResponse.of(setting))
 
 
 class StepClock(NamedTuple):
@@ -164,7 +164,7 @@ class StepClock(NamedTuple):
         energy: twice the kinetic energy at the last touch [J], by which changes are measured, see `Method.faster`.
         calm_steps: how many steps in a row changed little.
         no_rate: whether no rate of the acceleration is known: after a touch, and at the release.
-        unpredictable: whether the last step changed the velocity so much that it says nothing of the next.
+        unpredictable: whether the last step changed the velocity too much for it to predict the next.
         touches: how many touches have been met.
         ended: whether the run is over.
     """
@@ -233,8 +233,8 @@ def at_the_pose(memory: EngineArrays, setting: Setting, state: Progress, t: floa
         state.velocity_now[j] = memory.velocity[j] + 0.5 * previous * state.acceleration_now[j]
     if previous > 0:
         half = 0.5 * previous
-        add_change(state.shaken, setting.ground, t - 0.5 * half, half, half, state.velocity_now)
-        add_change(state.shaken, setting.ground, t + half, previous, 1.0, state.acceleration_now)
+        add_change(state.ground_response, setting.ground, t - 0.5 * half, half, half, state.velocity_now)
+        add_change(state.ground_response, setting.ground, t + half, previous, 1.0, state.acceleration_now)
     follow_now(setting, state)
 
 
@@ -259,11 +259,11 @@ def shift_velocity(
 ) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
     if setting.splits:
-        find_answer(memory, setting, state.sliding, state.frames, state.shaken, t)
+        find_answer(memory, setting, state.sliding, state.frames, state.ground_response, t)
     late, middle = 0.5 * (step - previous), 0.25 * (previous + step)
     for j in range(len(state.rate)):
         memory.velocity[j] -= late * (state.acceleration[j] + (previous - middle) * state.rate[j])
-    add_change(state.shaken, setting.ground, t - middle, abs(late), -late, memory.velocity)
+    add_change(state.ground_response, setting.ground, t - middle, abs(late), -late, memory.velocity)
 
 
 @inlined
@@ -307,8 +307,8 @@ def change_of_acceleration(
         state.acceleration[j] = memory.acceleration[j]
     slid = any_slid(state.sliding)
     counts = kinetic(setting.masses, setting.products, state.change) if slid else 0.0
-    add_change(state.shaken, setting.ground, t, step, -1.0, state.change)
-    take_mean(state.shaken, setting.ground, t, step)
+    add_change(state.ground_response, setting.ground, t, step, -1.0, state.change)
+    take_mean(state.ground_response, setting.ground, t, step)
     for j in range(len(state.change)):
         state.rate[j] = 0.0 if no_rate else state.change[j] / previous
     if not slid:
@@ -338,7 +338,7 @@ def make_step(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: 
 @inlined
 def settle_pose(memory: EngineArrays, setting: Setting, pace: Pace, state: Progress, record: Record, n: int) -> None:
     """Put sticking edges back after step n of the record, take frames of the new pose, and let ties yield and break."""
-    moved = Moved(record.pose[n], state.frames, memory.pose, state.next_frames)
+    moved = StepPoses(record.pose[n], state.frames, memory.pose, state.next_frames)
     put_sticking_edges_back(setting.points, pace, state.joints, record, n, moved, memory.options[IMPRATIO])
     for body in range(len(state.frames)):
         copy_into(state.next_frames[body], state.frames[body])
@@ -371,7 +371,7 @@ def fitted_loop(
     """
     t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
-    axes, shaken = points.places.axes, setting.splits
+    axes, on_moving_ground = points.places.axes, setting.splits
     if previous == 0:
         set_step(memory, points, pace, allowed)
         before_the_release(memory, setting, state, allowed)
@@ -386,9 +386,9 @@ def fitted_loop(
         least = pace.method.faded * pace.accuracy * energy
         to_touch = 0.0
         if not unpredictable:
-            ahead = step / pace.method.approach if shaken else step
+            ahead = step / pace.method.approach if on_moving_ground else step
             to_touch = step_to_touch(state.touches, openings, ahead, allowed, least, pace.short)
-            if shaken:
+            if on_moving_ground:
                 stop = time_to_stop(points.places, sliding, state.frames, state.velocity_now, state.acceleration_now)
                 step, to_touch = approached(pace, min(step, max(pace.method.approach * stop, pace.short)), to_touch)
             to_break = step_to_break(setting.ties, openings, step, pace.short)

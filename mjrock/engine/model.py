@@ -71,7 +71,7 @@ class Engine:
             if not math.isclose(weighed, inverse[j], rel_tol=1e-9):
                 raise SimulationError(
                     f"MuJoCo {mujoco.__version__} gives the body {name} the inverse weight {weighed:g} 1/kg instead of "
-                    f"{inverse[j]:g} 1/kg: its contact stiffness would not be the one asked for"
+                    f"{inverse[j]:g} 1/kg: its contact stiffness would not be the requested one"
                 )
         if tuple(model.pair(i).name for i in range(model.npair)) != scene.contacts.point_names:
             raise SimulationError(f"MuJoCo {mujoco.__version__} does not keep the order of the contacts in the text")

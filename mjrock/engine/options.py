@@ -17,7 +17,7 @@ NewmarkBeta = Annotated[float, Within(0, 10)]
 """Newmark's beta of the contact rows."""
 
 SPACING = 1e-3
-"""Distance of samples between fitted steps, where none is asked for [s]."""
+"""Distance of samples between fitted steps, where no spacing is given [s]."""
 
 
 @dataclass(frozen=True)

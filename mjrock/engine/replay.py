@@ -28,7 +28,7 @@ KEYFRAME = "release"
 ENDED = "The window was closed"
 PAUSED, REPLAYED, SIMULATED = "paused", "replay", "simulation"
 BROKEN = "stopped: the model has only the contacts of rest"
-"""What is said where blocks have come so far from their joints that MuJoCo cannot follow them."""
+"""The message where blocks have come so far from their joints that MuJoCo cannot follow them."""
 TILTED = math.sqrt(0.5)
 """Cosine of the tilt from which a block has fallen, as in `mjrock.result.joint_motion` [-]."""
 LOOKS = 64
@@ -43,7 +43,7 @@ COORDINATES = {
 }
 """Columns of `Response.csv` with the coordinates of a joint."""
 OTHER = ("the joint {axis}{of}",)
-"""What is said of a joint of another model."""
+"""The column that a joint of another model misses."""
 
 
 def read_motion(model: mujoco.MjModel, path: Path) -> tuple[Array, Array]:
@@ -238,7 +238,7 @@ def arguments() -> argparse.ArgumentParser:
 
 @contextlib.contextmanager
 def unwarned() -> Iterator[None]:
-    """Leave out the warnings of MuJoCo, which the window says itself."""
+    """Leave out the warnings of MuJoCo, which the window shows itself."""
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda text: None)
     try:

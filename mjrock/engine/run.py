@@ -13,7 +13,7 @@ from ..result.motion import SampledMotion
 from ..result.problem import Problem
 from ..result.reading import Reading
 from ..result.response import Response
-from ..result.ties import Plastic, plastic_of, told_of_ties
+from ..result.ties import Plastic, plastic_of, ties_message
 from ..scene.course import Course
 from ..scene.fixed_step import sound_timestep
 from ..scene.potential import breaks
@@ -36,7 +36,7 @@ class EngineRun:
     """A run of the engine that has been checked.
 
     Args:
-        problem, scene, course: what was asked, what stands, and what happened to it.
+        problem, scene, course: the problem, the bodies with their contacts, and what happened to them.
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
@@ -96,7 +96,7 @@ class EngineRun:
             t=t,
             motion=SampledMotion(pose, velocity, np.interp(t, steps.t, self.energy)),
             outcome=reading.outcome,
-            message=reading.message + told_of_ties(plastic),
+            message=reading.message + ties_message(plastic),
             rocking=reading.rocking,
             joints=reading.joints,
             plastic=plastic,

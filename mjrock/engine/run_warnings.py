@@ -196,5 +196,5 @@ def warn_of_gain(response: Response, run: EngineRun, advice: str) -> None:
     elif response.ledger is not None:
         fell = response.joints is not None and bool(response.joints.fallen)
         unpaid = run.problem.unpaid(response.ledger, response.motion, run.scale)
-        said = ENDLESS if fell else advice
-        warn_if_open(unpaid.energy, unpaid.whole, unpaid.share, unpaid.said, lambda share: said)
+        remedy = ENDLESS if fell else advice
+        warn_if_open(unpaid.energy, unpaid.whole, unpaid.share, unpaid.label, lambda share: remedy)

@@ -13,7 +13,7 @@ from ..geometry.frames import PLANE
 from ..quantities import Array
 from ..scene.parts import GROUND
 from ..scene.scene import Scene
-from ..scene.tints import TINTS, told_apart
+from ..scene.tints import TINTS, distinct_tints
 
 BALL = (("x", "slide", "1 0 0"), ("y", "slide", "0 1 0"), ("z", "slide", "0 0 1"))
 """The slides of a body of space, by the name, kind and axis of the joint. A ball joint `turn` follows them."""
@@ -35,7 +35,7 @@ def section(name: str, lines: Iterator[str]) -> list[str]:
 
 
 def value_text(value: object) -> str:
-    """A quoted attribute: texts as they are, numbers with every digit that tells them from their neighbours."""
+    """A quoted attribute: texts as they are, numbers with every digit that distinguishes them from their neighbours."""
     if isinstance(value, str):
         return quoted(value)
     return f'"{" ".join(repr(float(number)) for number in np.ravel(np.asarray(value)))}"'
@@ -71,7 +71,7 @@ def tints(scene: Scene) -> list[dict[str, object]]:
     """Colours of the bodies, each another one than those of the bodies that it touches."""
     count, contacts = len(scene.bodies.names), scene.contacts
     touching = zip(contacts.body.tolist(), contacts.face_body.tolist(), strict=True)
-    chosen = told_apart(count, (pair for pair in touching if GROUND not in pair))
+    chosen = distinct_tints(count, (pair for pair in touching if GROUND not in pair))
     return [{"rgba": (*TINTS[tint], 1.0)} for tint in chosen]
 
 

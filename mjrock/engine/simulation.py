@@ -40,11 +40,11 @@ from .run_warnings import (
 from .stepping import fitted_steps, fixed_steps
 
 ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
-"""Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground, whose rocking
+"""Accuracy of fitted steps by default [-], the second for a wall on moving ground, whose rocking
 multiplies what an impact errs by (`scripts/measure/records_accuracy.py`)."""
 FINEST_REPEATED, SHARE_REPEATED = 1e-6, 1e-2
-"""Accuracy down to which a run that breaks down is repeated where none was asked for [-], and the share of one that was
-asked for down to which it is [-]."""
+"""Accuracy down to which a run that breaks down is repeated by default [-], and the same as a share of the accuracy
+that a user gave [-]."""
 
 
 def simulate(
@@ -166,7 +166,7 @@ def require_left_out(**given: object) -> None:
 
 
 def default_accuracy(case: AnyCase) -> float:
-    """What fitted steps aim at where nothing else is asked for [-]."""
+    """Default accuracy of fitted steps [-]."""
     return ACCURACY_SHAKEN if case.rocks_on_moving_ground else ACCURACY
 
 

@@ -79,7 +79,7 @@ def _height(body: int, below: dict[int, set[int]]) -> int:
     return count
 
 
-class Moved(NamedTuple):
+class StepPoses(NamedTuple):
     """Poses and frames before and after a step, of which those after it may still be changed."""
 
     from_pose: Array
@@ -132,7 +132,7 @@ def presses(points: Points, body: int, frames: Array) -> bool:
 
 
 @inlined
-def rolled(places: Places, i: int, meets: Meeting, way: Vector, moved: Moved) -> float:
+def rolled(places: Places, i: int, meets: Meeting, way: Vector, moved: StepPoses) -> float:
     """How far point i moves along one way of its face in a step without slip, as the bodies turn [m]."""
     axes, face = places.axes, places.face_body[i]
     turned = turn_between(moved.from_pose, moved.pose, places.body[i], axes)
@@ -150,7 +150,7 @@ def shift(frames: Array, body: int, way: Vector, distance: float) -> None:
 
 
 @inlined
-def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> None:
+def put_back(points: Points, joints: Joints, j: int, i: int, moved: StepPoses) -> None:
     """Shift the body on joint j along its face so that point i, its deepest and sticking, is where it stuck.
 
     i is -1 where the deepest point does not stick. Joints, and pose and frames after the step, are brought up to date.
@@ -180,7 +180,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> No
 
 @inlined
 def put_sticking_edges_back(
-    points: Points, pace: Pace, joints: Joints, record: Record, n: int, moved: Moved, impratio: float
+    points: Points, pace: Pace, joints: Joints, record: Record, n: int, moved: StepPoses, impratio: float
 ) -> None:
     """Take the frames of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
     step = step_of(pace, record.h[n])

@@ -32,7 +32,7 @@ class Openings(NamedTuple):
 
     @classmethod
     def of(cls, count: int) -> Openings:
-        """Room for so many openings."""
+        """Room for a number of openings."""
         return cls(*np.zeros((4, count)))
 
 

@@ -30,7 +30,7 @@ from ..quantities import (
 from ..result.bodies import Moving
 from ..result.response import Response
 from ..result.ties import LinkEnd, elongation_of, link_ends
-from ..scene.tints import FIXED_COLOUR, TINTS, colours_of, told_apart
+from ..scene.tints import FIXED_COLOUR, TINTS, colours_of, distinct_tints
 from .style import Look
 
 STONE, GROUND_COLOUR, FORCE = TINTS[0], FIXED_COLOUR, "#a8201a"
@@ -183,7 +183,7 @@ class Bodies:
         magnify = require_within("magnify", magnify, 0.01, 1e4)
         case = cast(AnyCase, Loose(free, require_array("rests", rests, (len(free), 2)), stays))
         moving = Moving(case, times, require_array("poses", poses, (len(times), len(free), 3)), magnify)
-        colours = np.array([TINTS[tint] for tint in told_apart(len(free), ())])
+        colours = np.array([TINTS[tint] for tint in distinct_tints(len(free), ())])
         return cls(moving, colours, required_limits(limits, "xz"))
 
     @property

@@ -17,7 +17,7 @@ from ..problem.damping.restitution import Restitution
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.spectrum import CodeSpectrum, FloorSpectrum, PointSpectrum
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.laws.dry import Dry, asked_pair
+from ..problem.masonry.laws.dry import Dry, requested_pair
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.bending import HorizontalBending, VerticalBending
@@ -359,7 +359,7 @@ def _joint_rows(masonry: Masonry, written: Callable[[float], str]) -> list[tuple
 def _pair_rows(masonry: Masonry, written: Callable[[float], str]) -> list[tuple[str, ...]]:
     """A row for each pair of blocks that the function of the user gives something."""
     named = combinations(masonry.names, 2)
-    given = ((one, other, asked_pair(masonry.pairs, one, other)) for one, other in named)
+    given = ((one, other, requested_pair(masonry.pairs, one, other)) for one, other in named)
     return [
         (one, other, *(DASH if x is None else written(x) for x in (dry.friction, dry.xi, dry.frequency)))
         for one, other, dry in given

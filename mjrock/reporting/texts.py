@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ..quantities import NAMED, Message, ratio_said, require_kind, require_one_of
+from ..quantities import NAMED, Message, ratio_text, require_kind, require_one_of
 
 FILE = Path(__file__).with_name("texts.toml")
 """The texts of all languages. A further language is a further line of each."""
@@ -150,8 +150,8 @@ class Words:
         return self.marked(said).replace("-", MINUS)
 
     def ratio(self, value: float) -> str:
-        """A ratio of capacity over demand, see `ratio_said`."""
-        return self.marked(ratio_said(value))
+        """A ratio of capacity over demand, see `ratio_text`."""
+        return self.marked(ratio_text(value))
 
     def quantity(self, value: float, unit: str, digits: int = GIVEN) -> str:
         """A number with its unit and the prefix that suits it."""

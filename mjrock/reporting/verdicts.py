@@ -170,8 +170,8 @@ def verdict_table(order: Sequence[Mechanism], words: Words) -> Markup:
     rows = []
     for mechanism in order:
         held, count = mechanism.held, len(mechanism.verdicts)
-        said_of = words("conditions_held", held=held, count=count)
-        name = element("td", element("b", mechanism.name), Markup("<br>"), said_of, rowspan=str(count))
+        conditions = words("conditions_held", held=held, count=count)
+        name = element("td", element("b", mechanism.name), Markup("<br>"), conditions, rowspan=str(count))
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
     return table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))

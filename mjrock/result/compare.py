@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contacts.files import csv_text
-from ..notebook import Drawn
+from ..notebook import NotebookPicture
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_kind
 from .ending import Outcome
@@ -46,7 +46,7 @@ OF_AN_IMPACT = (
 
 
 @dataclass(frozen=True)
-class Comparison(Drawn):
+class Comparison(NotebookPicture):
     """The differences of `candidate` from `reference`. Rebounds are counted from 1; NaN where one has fewer.
 
     On a base at rest the first impact of one belongs to the first of the other. Under ground motion impacts are paired
@@ -64,11 +64,11 @@ class Comparison(Drawn):
 
     def __repr__(self) -> str:
         pair = self.restitution[0] if len(self.restitution) else (math.nan, math.nan)
-        said = ["none" if math.isnan(value) else f"{value:.4g}" for value in pair]
+        shown = ["none" if math.isnan(value) else f"{value:.4g}" for value in pair]
         which = "impact 1 under ground motion" if self.case.shaken else "rebound 1"
         return (
-            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {which} {said[1]} for "
-            f"{said[0]}, RMS of theta/alpha {self.rms:.3g}>"
+            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {which} {shown[1]} for "
+            f"{shown[0]}, RMS of theta/alpha {self.rms:.3g}>"
         )
 
     @property

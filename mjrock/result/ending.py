@@ -98,13 +98,13 @@ def ending(
         outcome = Outcome.AT_REST
     else:
         outcome = Outcome.TIME_ENDED
-    said = describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
+    message = describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
     if outcome is not Outcome.OVERTURNED:
-        said += f" {standstill.described('it')}"
+        message += f" {standstill.described('it')}"
     over = -float(theta.min()) / case.wall.alpha
     if case.one_sided and over >= 1:
-        said += f" It leaned inwards over the side stop of {case.stop_top:g} m, by up to {over:.3g} alpha."
-    return outcome, said
+        message += f" It leaned inwards over the side stop of {case.stop_top:g} m, by up to {over:.3g} alpha."
+    return outcome, message
 
 
 def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:
@@ -138,10 +138,10 @@ def masonry_ending(
         if others:
             fell = f"{len(fallen)} blocks fell, the first at {first:.4g} s: {named(list(fallen))}."
         return Outcome.OVERTURNED, f"{fell} The motion was followed for {t_end:.4g} s{left_out}."
-    said = standstill.described(standstill.name)
+    message = standstill.described(standstill.name)
     if quiet and standstill.rests:
-        return Outcome.AT_REST, f"The masonry is at rest at the end of the run ({t_end:.4g} s). {said}"
-    return Outcome.TIME_ENDED, f"The masonry still moves at the end of the run ({t_end:.4g} s). {said}"
+        return Outcome.AT_REST, f"The masonry is at rest at the end of the run ({t_end:.4g} s). {message}"
+    return Outcome.TIME_ENDED, f"The masonry still moves at the end of the run ({t_end:.4g} s). {message}"
 
 
 class Stopwatch:

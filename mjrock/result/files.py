@@ -83,8 +83,8 @@ def linear(colour: Array) -> list[float]:
 
 def comments_text(record: Mapping[str, Json]) -> str:
     """A record as comments of a table, a line each. A text stands as it is, and all else as JSON."""
-    said = {name: one if isinstance(one, str) else json.dumps(one) for name, one in record.items()}
-    return "".join(f"# {name}: {' '.join(text.split())}\n" for name, text in said.items())
+    texts = {name: one if isinstance(one, str) else json.dumps(one) for name, one in record.items()}
+    return "".join(f"# {name}: {' '.join(text.split())}\n" for name, text in texts.items())
 
 
 def write_gltf(path: str | Path, t: Array, bodies: list[Body], record: Json) -> Path:
@@ -208,8 +208,8 @@ def _grid(
     )
     piece = f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n{text}\n</Piece>'
     if record:  # as bytes, since meshio reads no texts
-        said = np.frombuffer(json.dumps(record).encode(), np.uint8)
-        piece = f"<FieldData>\n{_array('answer', said, tuples=len(said))}\n</FieldData>\n{piece}"
+        content = np.frombuffer(json.dumps(record).encode(), np.uint8)
+        piece = f"<FieldData>\n{_array('answer', content, tuples=len(content))}\n</FieldData>\n{piece}"
     return _file("UnstructuredGrid", piece)
 
 
@@ -233,7 +233,7 @@ def results_text(case: MasonryCase, bodies: list[Body], at: float, forces: Force
     """The text of a file.
 
     Args:
-        case: what was asked.
+        case: the problem.
         bodies: all blocks at one time.
         at: that time [s].
         forces: of the run, or None.

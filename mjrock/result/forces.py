@@ -20,7 +20,7 @@ ANCHORS = "anchors"
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Forces:
-    """Forces at the samples of a run that was asked to keep them.
+    """Forces at the samples of a run with `forces=True`.
 
     A force is the one that acts at the pose of its sample, with dashpots and friction. The steps of a solver let it act
     from half a step before the pose to half a step after it: the sum of the reactions and of the constant forces is the
@@ -98,7 +98,7 @@ class Forces:
         return f"<Forces of {len(self.joints)} joints, largest reaction {self.largest_reaction:.4g} N>"
 
 
-class Gathered(NamedTuple):
+class KeptForces(NamedTuple):
     """The forces that a solver has kept at some poses.
 
     Args:
@@ -124,7 +124,7 @@ class Gathered(NamedTuple):
     damage: Array | None = None
 
 
-def forces_of(case: AnyCase, frames: JointFrames, gathered: Gathered) -> Forces:
+def forces_of(case: AnyCase, frames: JointFrames, gathered: KeptForces) -> Forces:
     """The forces of a run from those that were kept."""
     d = frames.middle.shape[1]
     middle, axes = Moving(case, gathered.t, gathered.pose).joints(frames)
@@ -151,7 +151,7 @@ def forces_of(case: AnyCase, frames: JointFrames, gathered: Gathered) -> Forces:
     return Forces(frames, *along_faces, dict(gathered.pulled), reactions, guides, damage)
 
 
-def guides_of(case: AnyCase, gathered: Gathered) -> dict[str, Array]:
+def guides_of(case: AnyCase, gathered: KeptForces) -> dict[str, Array]:
     """Forces of guides on the blocks of actuators, see `Forces`: they balance all other forces on these blocks."""
     guides: dict[str, Array] = {}
     d = 3 if case.in_space else 2
@@ -165,7 +165,7 @@ def guides_of(case: AnyCase, gathered: Gathered) -> dict[str, Array]:
     return guides
 
 
-def add_links(case: AnyCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
+def add_links(case: AnyCase, gathered: KeptForces, reactions: dict[str, Array]) -> None:
     """Add the forces of links to the reactions of the blocks that they are anchored on, and to that of all anchors."""
     moving, blocks = Moving(case, gathered.t, gathered.pose), case.blocks
     for name, pulled in gathered.pulled.items():
@@ -186,7 +186,7 @@ def required_room(case: AnyCase, samples: float) -> tuple[int, int, int, int]:
     """How many joints, fixed blocks, links and actuators a case has.
 
     Raises:
-        ValueError: if their forces at so many samples do not fit into memory.
+        ValueError: if their forces at the samples do not fit into memory.
     """
     frames = case.standing.frames
     d, driven = frames.middle.shape[1], len(case.actuators)

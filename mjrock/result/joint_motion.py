@@ -191,7 +191,7 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
     size = max(1, AT_ONCE // max(1, count))
     for first in range(0, len(pose), size):
         some = slice(first, first + size)
-        seen = _looked(scene, points, pose[some], shift[some])
+        seen = _joint_gaps(scene, points, pose[some], shift[some])
         far, off[some] = _slid_off(case.standing, seen.slid)
         parted[some] = (far > widths) | (seen.nearest > PARTED * widths)
         opening, sliding = np.maximum(opening, seen.opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
@@ -202,7 +202,7 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
 def slips(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Array:
     """How far the block above each joint has slid on the one below [m], shape (steps, joints, d)."""
     shift = displacements(case.supports, t, scene.freedom.translations)
-    return _looked(scene, JointPoints.of(case, scene), pose, shift).slid
+    return _joint_gaps(scene, JointPoints.of(case, scene), pose, shift).slid
 
 
 def displacements(supports: Sequence[Support], t: Array, d: int) -> Array:
@@ -252,7 +252,7 @@ class JointPoints(NamedTuple):
         return cls(at_rest, scene.sense, support)
 
 
-class Looked(NamedTuple):
+class JointGaps(NamedTuple):
     """Joints at some steps: the gap at the widest point and at the nearest [m], shape (steps, joints), and how
     far the block above has slid at the nearest [m], shape (steps, joints, d)."""
 
@@ -261,10 +261,10 @@ class Looked(NamedTuple):
     slid: Array
 
 
-def _looked(scene: Scene, points: JointPoints, pose: Array, shift: Array) -> Looked:
+def _joint_gaps(scene: Scene, points: JointPoints, pose: Array, shift: Array) -> JointGaps:
     """The joints at poses, shape (steps, n nq), with supports that are displaced [m], (steps, supports, d)."""
     size = len(pose), len(scene.contacts.joints)
-    seen = Looked(np.empty(size), np.empty(size), np.empty((*size, scene.freedom.translations)))
+    seen = JointGaps(np.empty(size), np.empty(size), np.empty((*size, scene.freedom.translations)))
     pose, shift = np.ascontiguousarray(pose), np.ascontiguousarray(shift)
     _look(scene.places, points, pose, shift, scene.freedom.frames(len(scene.bodies.names)), seen)
     return seen
@@ -288,8 +288,8 @@ def _met(places: Places, i: int, frames: Array, shift: Array, support: int) -> M
 
 
 @compiled
-def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames: Array, seen: Looked) -> None:
-    """Write gaps and slips of joints, see `_looked`; `frames` is room for those of a pose."""
+def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames: Array, seen: JointGaps) -> None:
+    """Write gaps and slips of joints, see `_joint_gaps`; `frames` is room for those of a pose."""
     opened, nearest, slid = seen
     for n in range(len(pose)):
         take_frames(pose[n], frames, places.axes)
@@ -345,7 +345,7 @@ def past_support(
     return found
 
 
-def told_of_overhang(past: Mapping[str, float]) -> str:
+def overhang_message(past: Mapping[str, float]) -> str:
     """A sentence that names the blocks that overhang, and how far; empty where none does."""
     far = [f"{name} by {past[name]:.3g} m" for name in sorted(past, key=past.__getitem__, reverse=True)]
     return (

@@ -36,8 +36,8 @@ def require_no_gain(t: Array, balance: Array, scale: float) -> None:
     worst = int(gains.argmax())
     if gains[worst] > ENERGY_GAIN * scale:
         share = float(gains[worst] / scale)
-        said = f"{gains[worst]:.3g} J, {share:.2%} of the energy there was, appeared from nowhere"
-        raise StepError(said, float(t[worst]), share)
+        message = f"{gains[worst]:.3g} J, {share:.2%} of the energy there was, appeared from nowhere"
+        raise StepError(message, float(t[worst]), share)
 
 
 def warn_if_open(unpaid: float, scale: float, largest: float, of: str, advice: Callable[[float], str]) -> None:
@@ -51,8 +51,8 @@ def warn_if_open(unpaid: float, scale: float, largest: float, of: str, advice: C
     """
     if unpaid > largest * scale:
         share = unpaid / scale
-        said = f"the ledger does not close: {unpaid:.3g} J, {share:.1%} of {of}, have no account; {advice(share)}"
-        warn_of(said)
+        message = f"the ledger does not close: {unpaid:.3g} J, {share:.1%} of {of}, have no account; {advice(share)}"
+        warn_of(message)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -57,7 +57,7 @@ RelativeError = Annotated[float, Within(1e-14, 0.1)]
 
 
 def required_spacing(output_step: OutputStep, duration: float, otherwise: float = 1e-3) -> float:
-    """The largest spacing of samples that is asked for, checked; `otherwise` where none is [s]."""
+    """The requested largest spacing of samples, checked; `otherwise` where none is [s]."""
     if output_step is None:
         return min(otherwise, duration)
     return require_within("output_step", output_step, 1e-9, duration, "s")
@@ -106,7 +106,7 @@ def interpolated(t: Array, y: Array, v: Array, at: Array) -> tuple[Array, Array]
     Args:
         t: times of the steps [s], shape (steps,). Two may be equal, where a rate jumps.
         y, v: values and rates at the steps, shape (steps, columns).
-        at: times asked for [s], increasing and within those of the steps, shape (samples,).
+        at: requested times [s], increasing and within those of the steps, shape (samples,).
     """
     values, rates = np.empty((len(at), y.shape[1])), np.empty((len(at), y.shape[1]))
     _interpolate(t, y, v, at, values, rates)

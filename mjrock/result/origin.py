@@ -34,8 +34,8 @@ class Origin:
 def sources(case: AnyCase) -> dict[str, str]:
     """Names of the ground motions of a case, with the fields of the headers of their files; artificial ones have their
     seed there."""
-    said = {}
-    for name, motion in case.grounds.items():
+    names = {}
+    for component, motion in case.grounds.items():
         header = ", ".join(f"{field}: {value}" for field, value in motion.header.items())
-        said[name] = f"{motion.name} ({header})" if header else motion.name
-    return said
+        names[component] = f"{motion.name} ({header})" if header else motion.name
+    return names

@@ -39,7 +39,7 @@ class Unpaid(NamedTuple):
 
     energy: float
     whole: float
-    said: str
+    label: str
     share: float
 
 

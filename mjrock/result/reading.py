@@ -23,10 +23,10 @@ from .joint_motion import (
     in_order,
     joint_motion,
     left_joints,
+    overhang_message,
     past_support,
     slips,
     sunk_ground,
-    told_of_overhang,
 )
 from .motion import SampledMotion
 from .rocking import Rocking, rocking_history
@@ -105,18 +105,18 @@ def masonry_reading(
     if beside is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
         past = past_support(case.standing, joints, lambda some: slips(case, scene, t[some], pose[some]))
-        told = told_of_overhang({name: far for name, far in past.items() if name not in fallen})
+        place = overhang_message({name: far for name, far in past.items() if name not in fallen})
     else:
         elsewhere = beside.left or bool(case.supports) or bool(case.actuators)  # energy at rest is another one there
         quiet = quiet or (elsewhere and t[-1] > TIME_AT_REST)
         gone = below_everything(masonry, case.supports, t, drop)
-        told = f" Below all fixed blocks, past the edge of any ground: {named(gone)}." if gone else ""
+        place = f" Below all fixed blocks, past the edge of any ground: {named(gone)}." if gone else ""
         np.maximum.at(opening, scene.contacts.joint, beside.widest)
     end = min(float(t[-1]), case.duration)
     outcome, message = masonry_ending(fallen, standstill, quiet, end, everywhere=beside is not None)
     return Reading(
         outcome,
-        message + told,
+        message + place,
         joints=JointMotion(opening, joints.sliding, fallen, {} if beside is None else beside.cracked),
         count=int(np.searchsorted(t, next(iter(fallen.values()), np.inf))),
         stats={"deepest": joints.deepest},

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..contacts.files import csv_text, write_text
 from ..geometry.poses import angle_of, tilt_of
-from ..notebook import Drawn
+from ..notebook import NotebookPicture
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.standing import in_space
@@ -61,7 +61,7 @@ class End:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Response(Drawn):
+class Response(NotebookPicture):
     """The motion that a solver found, of a wall or of masonry.
 
     A wall is one body. The bodies of masonry are its blocks that are not fixed, in order. What is read from the motion
@@ -69,7 +69,7 @@ class Response(Drawn):
     samples, outcome, and impacts or fallen blocks.
 
     Args:
-        case: what was asked.
+        case: the problem.
         solver: which solver answered.
         t: times [s], shape (n,).
         motion: pose, velocity and energy of the bodies at these times.
@@ -78,7 +78,7 @@ class Response(Drawn):
         rocking: impacts and peaks of a wall; None for masonry.
         joints: openings and slidings of joints, and fallen blocks; None for a wall.
         plastic: what ties have yielded, and when they broke, by tie.
-        ledger: every part of the energy, or None where none was asked for.
+        ledger: every part of the energy, or None without `ledger=True`.
         stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time`, `processor_time` [s], and
             of the steps alone `stepping_time` and `stepping_processor_time` [s]. Solvers on compliant contacts add the
             `base_displacement` of a wall when the duration is over, and the deepest penetration of masonry, `deepest`
@@ -86,7 +86,7 @@ class Response(Drawn):
         actuators: force of each actuator at the samples, by its name [N], shape (n,), positive where it pushes its
             block along its direction.
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
-        kept_forces: what `forces` and `reactions` give, or None where they were not asked for.
+        kept_forces: what `forces` and `reactions` give, or None without `forces=True`.
         origin: what the solver was given beside the case, and versions and processor, see `Origin`.
     """
 
@@ -180,7 +180,7 @@ class Response(Drawn):
 
     @property
     def energy_residual(self) -> Array | None:
-        """Closure error of the energy ledger [J], shape (n,), or None where none was asked for."""
+        """Closure error of the energy ledger [J], shape (n,), or None without `ledger=True`."""
         return None if self.ledger is None else self.ledger.residual
 
     @property
@@ -188,7 +188,7 @@ class Response(Drawn):
         """Forces of joints and links at the samples, see `Forces`.
 
         Raises:
-            AttributeError: where the run was not asked to keep them.
+            AttributeError: where the run was made without `forces=True`.
         """
         if self.kept_forces is None:
             raise AttributeError(
@@ -204,7 +204,7 @@ class Response(Drawn):
         Along x and z, in space x, y and z. They sum to the weight at rest. What counts is described at `Forces`.
 
         Raises:
-            AttributeError: where the run was not asked to keep them.
+            AttributeError: where the run was made without `forces=True`.
         """
         return self.forces.reactions
 

@@ -34,7 +34,7 @@ NUMBERS_IN_JSON = re.compile(r"\[\n\s+([-\d][^\[\]{}\"]*?)\n\s+\]")
 """A list of numbers in JSON, one a line."""
 
 
-class Held(NamedTuple):
+class StoredArray(NamedTuple):
     """An array of a file that is at no place of the top: the array, its unit and what it is."""
 
     values: Any
@@ -66,14 +66,14 @@ def write_answer(answer: Any, path: str | Path) -> Path:
         UserWarning: of what the file cannot hold, such as a function of the user; the rest is kept.
     """
     path, h5py = require_path("path", path), hdf5()
-    variables, held = variables_of(answer), dict[str, Held]()
+    variables, held = variables_of(answer), dict[str, StoredArray]()
     places = {id(variable.values): name for name, variable in variables.items()}
 
     def keep(at: str, values: Any, of: type, field: str) -> str:
         if id(values) not in places:
             unit, text = unit_and_text(of, field)
             name = f"{GROUP}/arrays/{at.replace('/', '_')}"
-            held[name] = Held(values, unit or ("SI" if values.dtype.names else "-"), f"{at}: {text or MEMORY}")
+            held[name] = StoredArray(values, unit or ("SI" if values.dtype.names else "-"), f"{at}: {text or MEMORY}")
             places[id(values)] = name
         return places[id(values)]
 
@@ -107,7 +107,7 @@ def _write_variables(file: Any, variables: Mapping[str, Variable]) -> None:
             made.dims[axis].label = dim
 
 
-def _write_parts(file: Any, held: Mapping[str, Held], texts: Tree) -> None:
+def _write_parts(file: Any, held: Mapping[str, StoredArray], texts: Tree) -> None:
     """Write the other arrays, the texts, and the checksums of all."""
     for name, one in held.items():
         made = _dataset(file, name, one.values, one.units, one.text)

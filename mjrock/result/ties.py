@@ -125,7 +125,7 @@ def across(moving: Moving, tie: Anchored) -> Array:
     return np.asarray(held.point - anchor.point + at_held - at_anchor)
 
 
-def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
+def ties_message(plastic: Mapping[str, Plastic]) -> str:
     """Which ties broke, and when, as sentences after a message; an empty text where none did."""
     broken = sorted((tie.broken, name, tie) for name, tie in plastic.items() if tie.broken < math.inf)
     return "".join(

@@ -272,8 +272,8 @@ class Reader:
         usual = _usual(kind)
         odd = [*sorted(given - set(known)), *(name for name in known if name not in given and name not in usual)]
         if odd:
-            said = f"{path} is of the class {tree['class']}, which has other fields in this version of mjrock"
-            raise UnreadableError(f"{said}: {', '.join(odd)}")
+            message = f"{path} is of the class {tree['class']}, which has other fields in this version of mjrock"
+            raise UnreadableError(f"{message}: {', '.join(odd)}")
         at = f"{path}." if path else ""
         values = {name: self.value(tree[name], at + name) if name in given else usual[name]() for name in known}
         if is_named_tuple(kind):

@@ -50,9 +50,14 @@ def variables_of(answer: Any) -> dict[str, Variable]:
 def attributes_of(answer: Any) -> dict[str, str]:
     """What a file says of a response as a whole, by name."""
     origin, ground = answer.origin, sources(answer.case)
-    said = {"title": repr(answer), "solver": answer.solver, "outcome": answer.outcome.value, "message": answer.message}
-    said |= {"mjrock_version": origin.version, "machine": origin.machine} if origin is not None else {}
-    return said | {f"ground_{name}": text for name, text in ground.items()}
+    attributes = {
+        "title": repr(answer),
+        "solver": answer.solver,
+        "outcome": answer.outcome.value,
+        "message": answer.message,
+    }
+    attributes |= {"mjrock_version": origin.version, "machine": origin.machine} if origin is not None else {}
+    return attributes | {f"ground_{name}": text for name, text in ground.items()}
 
 
 def record_of(answer: Any) -> dict[str, Tree]:
@@ -98,8 +103,8 @@ def _of_motion(answer: Any) -> Iterator[tuple[str, Variable]]:
     yield "velocity", Variable(("t", "body", "rate"), answer.velocity, units[1], "rate of the pose")
     yield "energy", Variable(("t",), answer.energy, "J", "kinetic, potential and elastic energy above rest")
     for name, motion in answer.case.grounds.items():
-        said = f"acceleration of the ground, {'horizontal' if name == 'motion' else name}"
-        yield f"ground_{name}", Variable(("t",), motion(answer.t), "m/s2", said)
+        description = f"acceleration of the ground, {'horizontal' if name == 'motion' else name}"
+        yield f"ground_{name}", Variable(("t",), motion(answer.t), "m/s2", description)
     for name, force in answer.actuators.items():
         yield f"actuator {name}", Variable(("t",), force, "N", "force of an actuator along its direction")
     if answer.rocking is not None:

@@ -34,8 +34,8 @@ def stepping_seconds(steps: float, lines: int, *, sprung: bool, in_space: bool) 
 def warn_if_tiny(timestep: float, needed: float) -> None:
     """Warn of a step far below the one that a scene needs [s]."""
     if timestep < TINY * needed:
-        said = f"timestep = {timestep:.3g} s, and {needed:.3g} s is short enough for these contacts: is it in s?"
-        warn_of(said, Implausible)
+        message = f"timestep = {timestep:.3g} s, and {needed:.3g} s is short enough for these contacts: is it in s?"
+        warn_of(message, Implausible)
 
 
 def stable_step(stiffness: float, damping: float) -> float:

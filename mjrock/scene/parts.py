@@ -32,7 +32,7 @@ LAW = np.dtype([(name, float) for name in LinkLaw._fields])
 """A row with the numbers of the law of a link."""
 
 
-def said_of(part: object) -> str:
+def label_of(part: object) -> str:
     """The name of a part in a message."""
     names = {"Bodies": "bodies", "ContactPoints": "contacts", "Links": "links", "ConstantForces": "forces"}
     return names[type(part).__name__]
@@ -54,34 +54,34 @@ def keep_array(
         TypeError, ValueError: for what is not an array of numbers, another shape or a value out of range. The message
             names it.
     """
-    given, said = getattr(part, name), f"{name} of the {said_of(part)}"
+    given, label = getattr(part, name), f"{name} of the {label_of(part)}"
     try:
         values: NDArray[Any] = np.ascontiguousarray(given, dtype=kind)
     except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"{said} = {shown(given)} is not an array of numbers") from None
+        raise TypeError(f"{label} = {shown(given)} is not an array of numbers") from None
     values = values if values.size else values.reshape(shape)
     if values.shape != shape:
-        raise ValueError(f"{said} has the shape {values.shape}; {shape} is needed")
-    require_values(said, values, above, least, infinite)
+        raise ValueError(f"{label} has the shape {values.shape}; {shape} is needed")
+    require_values(label, values, above, least, infinite)
     object.__setattr__(part, name, frozen(values))
 
 
 def require_values(
-    said: str, values: NDArray[Any], above: float | None = None, least: float | None = None, infinite: bool = False
+    label: str, values: NDArray[Any], above: float | None = None, least: float | None = None, infinite: bool = False
 ) -> None:
     """Raise a ValueError for a value that is no number, infinite where none may be, or not above or from `least` on."""
     if np.isnan(values).any() or not (infinite or np.isfinite(values).all()):
-        raise ValueError(f"{said} holds a value that is not finite")
+        raise ValueError(f"{label} holds a value that is not finite")
     if above is not None and not (values > above).all():
-        raise ValueError(f"{said} = {values.min():g} is outside the valid range, which is above {above:g}")
+        raise ValueError(f"{label} = {values.min():g} is outside the valid range, which is above {above:g}")
     if least is not None and not (values >= least).all():
-        raise ValueError(f"{said} = {values.min():g} is outside the valid range, which starts at {least:g}")
+        raise ValueError(f"{label} = {values.min():g} is outside the valid range, which starts at {least:g}")
 
 
 def require_others(part: ContactPoints | Links, name: str) -> None:
     """Raise a ValueError where a face or an anchor is on the body that carries the point."""
     if (getattr(part, name) == part.body).any() or (getattr(part, name) < GROUND).any():
-        raise ValueError(f"{name} of the {said_of(part)} is another body, or {GROUND} for the ground")
+        raise ValueError(f"{name} of the {label_of(part)} is another body, or {GROUND} for the ground")
 
 
 def require_on(bodies: Bodies, parts: Iterable[ContactPoints | Links | ConstantForces]) -> None:
@@ -89,13 +89,13 @@ def require_on(bodies: Bodies, parts: Iterable[ContactPoints | Links | ConstantF
     n, directions = len(bodies.names), bodies.rest.shape[1]
     for part in parts:
         if len(part.body) and part.at.shape[1] != directions:
-            said = f"at of the {said_of(part)}"
-            raise ValueError(f"{said} has the shape {part.at.shape}; {(len(part.body), directions)} is needed")
+            label = f"at of the {label_of(part)}"
+            raise ValueError(f"{label} has the shape {part.at.shape}; {(len(part.body), directions)} is needed")
         for name in ("body", "face_body", "anchor_body"):
             least = 0 if name == "body" else GROUND
             on = getattr(part, name, np.empty(0))
             if not ((on >= least) & (on < n)).all():
-                raise ValueError(f"{name} of the {said_of(part)} is outside the valid range {least} to {n - 1}")
+                raise ValueError(f"{name} of the {label_of(part)} is outside the valid range {least} to {n - 1}")
 
 
 def require_inertia(inertia: Array) -> None:

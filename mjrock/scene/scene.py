@@ -176,8 +176,8 @@ class Scene:
         points, weight = self.contacts, GRAVITY * float(self.bodies.mass.sum())
         laws = OwnSprings.of(points.bonds, points.joint, np.asarray(points.area), weight)
         owned = np.flatnonzero(bearing.are_owned)
-        asked = tuple(law for law in bearing.user_laws if law is not None)
-        return Potential(structure, laws.and_links(len(points.k) + owned, asked))
+        user_laws = tuple(law for law in bearing.user_laws if law is not None)
+        return Potential(structure, laws.and_links(len(points.k) + owned, user_laws))
 
     @cached_property
     def at_rest(self) -> Array:
@@ -235,8 +235,6 @@ class Scene:
             for entry in fields(part):
                 values = getattr(part, entry.name)
                 if part is self.contacts and entry.name in ("k", "c", "k_s", "area", "bonds"):
-                    continue
-                if entry.name == "asked" and not values:
                     continue
                 if entry.name == "parts":
                     values = tuple(part for of_body in values.values() for part in of_body)

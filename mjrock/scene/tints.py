@@ -24,7 +24,7 @@ GOLDEN = 0.5 * (5**0.5 - 1)
 """Steps of this length around a circle leave no two of few places close to each other [-]."""
 
 
-def told_apart(count: int, touching: Iterable[tuple[int, int]]) -> list[int]:
+def distinct_tints(count: int, touching: Iterable[tuple[int, int]]) -> list[int]:
     """The number of the tint of each body, another one than those of the bodies that touch it.
 
     Where a body touches bodies of all tints, it has one of theirs.
@@ -49,5 +49,5 @@ def colours_of(standing: Standing) -> Array:
     """Red, green and blue of each solid, 0 to 1, shape (solids, 3)."""
     body = [solid.body for solid in standing.solids]
     pairs = ((body[joint.below], body[joint.above]) for joint in standing.joints)
-    told = told_apart(max(body) + 1, (pair for pair in pairs if min(pair) >= 0))
-    return np.array([FIXED_COLOUR if number < 0 else TINTS[told[number]] for number in body])
+    numbers = distinct_tints(max(body) + 1, (pair for pair in pairs if min(pair) >= 0))
+    return np.array([FIXED_COLOUR if number < 0 else TINTS[numbers[number]] for number in body])

@@ -14,7 +14,7 @@ from typing import Unpack
 import numpy as np
 
 from ..contacts.files import aligned, csv_text
-from ..notebook import Drawn
+from ..notebook import NotebookPicture
 from ..quantities import Array, require_flag, require_kind, require_path, require_size, require_text, shown
 from .campaign.campaign import CampaignOptions, completed
 from .campaign.task import Row, Task, axis_label, labelled
@@ -24,7 +24,7 @@ MEASURE_UNITS = {"peak_over_alpha": "alpha", "g": "g", "m": "m", "s": "s", "rad"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sensitivity(Drawn):
+class Sensitivity(NotebookPicture):
     """A measure of a wall for every setting that was tried.
 
     Args:

@@ -23,7 +23,7 @@ from ..result.ending import Outcome, Stopwatch, describe
 from ..result.motion import OutputStep, RelativeError, intervals, required_spacing
 from ..result.response import Response, recorded
 from ..result.rocking import Impact, Rocking
-from ..result.ties import Plastic, told_of_ties, warn_of_ties
+from ..result.ties import Plastic, ties_message, warn_of_ties
 from .arcs import RockingMotion, rock
 
 
@@ -98,7 +98,7 @@ def solve_analytical(
         rocking=Rocking(tuple(map(Impact._make, motion.impacts.tolist())), np.append(released, motion.peaks)),
         outcome=outcome,
         plastic=plastic,
-        message=describe(outcome, case, t_end, float(theta[-1])) + told_of_ties(plastic),
+        message=describe(outcome, case, t_end, float(theta[-1])) + ties_message(plastic),
         stats={**watch.took(), "evaluations": motion.evaluations, "rtol": rtol},
     )
     return recorded(response, given)

@@ -331,7 +331,7 @@ def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: f
 
     Args:
         case: the wall, its release, its ties and its ground motion.
-        restitutions: gives those of the next so many impacts [-], as the root of the energy that is left; negative
+        restitutions: gives those of a number of next impacts [-], as the root of the energy that is left; negative
             where the wall leaves to the side that it came from.
         least: an impact that leaves less energy than this leaves the wall at rest [J].
         rtol: sets the longest step, see NYSTROEM.

@@ -31,7 +31,7 @@ SLACK, TAUT, YIELDING, BROKEN = 0, 1, 2, 3
 """What a tie does in a step."""
 
 
-class Shaken(NamedTuple):
+class GroundArrays(NamedTuple):
     """A ground motion in one direction: a_g / g at the samples [-], and their time step or instants [s], see
     `mjrock.scene.course.Shaking`."""
 
@@ -40,7 +40,7 @@ class Shaken(NamedTuple):
     instants: Array
 
     @classmethod
-    def of(cls, motion: GroundMotion | None) -> Shaken:
+    def of(cls, motion: GroundMotion | None) -> GroundArrays:
         """The arrays of a motion; empty ones stand for a base at rest."""
         if motion is None:
             return cls(np.empty(0), 1.0, np.empty(0))
@@ -103,15 +103,19 @@ class RockingLaw(NamedTuple):
 
     outer: Toe
     inner: Toe
-    x: Shaken
-    z: Shaken
+    x: GroundArrays
+    z: GroundArrays
     ties: WallTies
 
     @classmethod
     def of(cls, case: Case) -> RockingLaw:
         """The law of a case."""
         return cls(
-            Toe.of(case, 1.0), Toe.of(case, -1.0), Shaken.of(case.motion), Shaken.of(case.vertical), WallTies.of(case)
+            Toe.of(case, 1.0),
+            Toe.of(case, -1.0),
+            GroundArrays.of(case.motion),
+            GroundArrays.of(case.vertical),
+            WallTies.of(case),
         )
 
     @property
@@ -134,7 +138,7 @@ class Push(NamedTuple):
 
 
 @inlined
-def piece(shaken: Shaken, t: float) -> tuple[float, float, float]:
+def piece(shaken: GroundArrays, t: float) -> tuple[float, float, float]:
     """a_g / g at a time [-], its rate [1/s], and the end of the interval in which it is linear [s]."""
     if len(shaken.instants) > 0:
         return piece_between(shaken, last_before(shaken.instants, t + 1e-9 * shaken.dt), t)
@@ -146,7 +150,7 @@ def piece(shaken: Shaken, t: float) -> tuple[float, float, float]:
 
 
 @inlined
-def piece_between(shaken: Shaken, i: int, t: float) -> tuple[float, float, float]:
+def piece_between(shaken: GroundArrays, i: int, t: float) -> tuple[float, float, float]:
     """The same in the interval that begins at instant i."""
     if i >= len(shaken.instants) - 1:
         return 0.0, 0.0, math.inf
@@ -156,7 +160,7 @@ def piece_between(shaken: Shaken, i: int, t: float) -> tuple[float, float, float
 
 
 @inlined
-def pushed(horizontal: Shaken, vertical: Shaken, t: float) -> tuple[Push, float]:
+def pushed(horizontal: GroundArrays, vertical: GroundArrays, t: float) -> tuple[Push, float]:
     """The motion of the base from a time on, and the end of the interval in which it is linear [s]."""
     x, x_rate, x_end = piece(horizontal, t)
     if len(vertical.shares) == 0:

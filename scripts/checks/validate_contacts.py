@@ -136,7 +136,7 @@ def amplitude_table(rows: Sequence[Row]) -> str:
                 continue
             told = [shares(r["e_1"] for r in own if r["told"] is way) for way in (False, True)]
             lines.append([points, f"{phi:g}", len(own) // 2, *told[0], *told[1]])
-    header = ["lines", "theta_0/alpha", "walls", "not told: median", "95 %", "told: median", "95 %"]
+    header = ["lines", "theta_0/alpha", "walls", "default amplitude: median", "95 %", "amplitude given: median", "95 %"]
     return cli.table(header, lines)
 
 
@@ -175,7 +175,7 @@ def friction_table(rows: Sequence[Row]) -> str:
                 ]
             )  # fmt: skip
     header = [
-        "lines", "mu base", "mu side", "walls", "reached", "matched: median", "95 %", "law not told: median",
+        "lines", "mu base", "mu side", "walls", "reached", "matched: median", "95 %", "law without friction: median",
         "second rebound, signed",
     ]  # fmt: skip
     return cli.table(header, lines)

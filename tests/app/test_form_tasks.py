@@ -38,7 +38,7 @@ def test_a_verdict_is_that_of_the_file(name):
     first = min(checks.values(), key=lambda check: min(one.ratio for one in check.verdicts))
     least, held = min(one.ratio for one in first.verdicts), [one.holds for one in first.verdicts]
     word = "✓ HOLDS" if all(held) else "✓✗ HOLDS IN PART" if any(held) else "✗ FAILS"
-    assert found["ratio"] == f"{word} {mr.quantities.ratio_said(least)}"
+    assert found["ratio"] == f"{word} {mr.quantities.ratio_text(least)}"
     assert word in found["verdict"]
     assert found["sketch"].startswith("data:image/svg+xml;base64,")
     assert "C8.7.1.2.1" in found["verdict"]

@@ -15,7 +15,7 @@ import pytest
 import mjrock as mr
 from mjrock.__main__ import main
 from mjrock.command_line import Status
-from mjrock.quantities import ratio_said
+from mjrock.quantities import ratio_text
 
 WALL = """
 side_stop = false
@@ -112,7 +112,7 @@ def test_masonry_under_records_has_the_verdict_of_its_runs(here, capsys):
         )
         table = said[said.index("mechanism ") :]
         for one in found.verdicts:
-            assert f" {ratio_said(one.ratio)} " in table
+            assert f" {ratio_text(one.ratio)} " in table
         assert re.search(r"^record +ends +largest rotation \[rad\]$", said, re.MULTILINE)
 
 

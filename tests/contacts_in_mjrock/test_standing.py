@@ -12,7 +12,7 @@ from pairs import BALL, BOX, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 import mjrock as mr
 from mjrock.contacts.contact import weight_spoilers
 from mjrock.contacts.meeting import Pose
-from scripts.checks import asked_and_found as study
+from scripts.checks import requested_and_found as study
 
 LEG = study.leg(others=study.BENT).text()
 BENT = [0, 0, 0.6, 1, 0, 0, 0, 0.7, -1.4]
@@ -38,7 +38,7 @@ def test_the_restitution_that_was_asked_for(name):
 @pytest.mark.slow
 def test_every_landing_is_right_or_warned_of(tmp_path):
     study.main(["--out", str(tmp_path)])
-    table = (tmp_path / "asked_and_found.txt").read_text()
+    table = (tmp_path / "requested_and_found.txt").read_text()
     assert "WRONG" not in table
     assert table.count("  right\n") >= 20
 

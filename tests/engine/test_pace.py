@@ -10,7 +10,7 @@ from scenes import changed, course, two_blocks
 import mjrock as mr
 from mjrock.engine.pace import Pace, judged, resolves, short_step, while_loaded, while_taut
 from mjrock.engine.rows import points_of
-from mjrock.engine.sticking import Joints, Moved, deepest, presses, rolled
+from mjrock.engine.sticking import Joints, StepPoses, deepest, presses, rolled
 from mjrock.engine.touches import Openings
 from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import gap, gaps, meeting
@@ -203,7 +203,7 @@ def test_an_edge_rolls_about_the_place_of_friction(i):
     depth = [-gap(scene.places, i, frames_of(q), q, q).value for q in (pose, later)]
     relative = turn if i == 1 else -2 * turn
     meets = meeting(scene.places, i, frames_of(later))
-    step = Moved(pose, frames_of(pose), later, frames_of(later))
+    step = StepPoses(pose, frames_of(pose), later, frames_of(later))
     assert rolled(scene.places, i, meets, tangent(meets.normal), step) == pytest.approx(
         -relative * 0.5 * np.mean(depth), rel=1e-12
     )

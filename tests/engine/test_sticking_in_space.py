@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from space_scenes import box, course, fitted, fixed
 
 import mjrock as mr
-from mjrock.engine.sticking import Joints, Moved, deepest, rolled, ways_along
+from mjrock.engine.sticking import Joints, StepPoses, deepest, rolled, ways_along
 from mjrock.geometry.frames import SPACE, frames_of
 from mjrock.geometry.kinematics import depth, meeting
 from mjrock.geometry.poses import moved
@@ -93,7 +93,7 @@ def test_a_point_rolls_as_its_body_turns_over_its_face():
     motion = np.zeros(12)
     motion[3:6], motion[9:12] = turns
     pose = moved(start, motion, SPACE)
-    step = Moved(start, frames_of(start, SPACE), pose, frames_of(pose, SPACE))
+    step = StepPoses(start, frames_of(start, SPACE), pose, frames_of(pose, SPACE))
     for i in (int(np.flatnonzero(scene.contacts.body == body)[0]) for body in (0, 1)):
         meets = meeting(scene.places, i, step.frames)
         pressed = 0.5 * (depth(scene.places, i, step.from_frames) + depth(scene.places, i, step.frames))

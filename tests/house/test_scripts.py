@@ -106,7 +106,7 @@ WRITES = {
     "four_masses": {f"four_masses.{ending}" for ending in ("png", "csv", "txt")},
     "rocking_by_the_guide": {"rocking_by_the_guide.csv", "rocking_by_the_guide.txt"},
     "rest_on_processors": {"rest_on_processors.txt"},
-    "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
+    "requested_and_found": {"requested_and_found.csv", "requested_and_found.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
     "fragility_coverage": {"fragility_coverage.txt"},
     "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},

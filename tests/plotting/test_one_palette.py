@@ -15,7 +15,7 @@ from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
 from mjrock.plotting.solids import Solids
-from mjrock.scene.tints import FIXED_COLOUR, TINTS, colours_of, told_apart
+from mjrock.scene.tints import FIXED_COLOUR, TINTS, colours_of, distinct_tints
 
 FLAT = mr.Masonry.running_bond(1.2, 0.8, (0.4, 0.2), k_n=1e9)
 DEEP = mr.Masonry.facade(1.2, 0.6, 0.6, (0.4, 0.2), k_n=1e9)
@@ -109,6 +109,6 @@ def test_a_block_has_its_colour_in_every_output(output, masonry, tmp_path):
 
 def test_a_body_that_touches_bodies_of_all_tints_has_one_of_theirs():
     last = len(TINTS)
-    told = told_apart(last + 1, [(i, j) for i in range(last + 1) for j in range(i)])
+    told = distinct_tints(last + 1, [(i, j) for i in range(last + 1) for j in range(i)])
     assert sorted(told[:last]) == list(range(last))
     assert told[last] in range(last)

@@ -221,7 +221,7 @@ PICTURES = {
 }
 
 
-def said_of(name, seed):
+def label_of(name, seed):
     """What is wrong with the words of a picture of random things."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what is drawn may be odd
@@ -238,11 +238,11 @@ def test_every_public_picture_is_tried():
 
 @pytest.mark.parametrize("name", PICTURES)
 def test_words_of_a_picture_are_free(name):
-    assert said_of(name, 0) == []
+    assert label_of(name, 0) == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PICTURES)
 def test_words_of_every_picture_are_free(name):
-    found = {seed: said for seed in range(INPUTS) if (said := said_of(name, seed))}
+    found = {seed: said for seed in range(INPUTS) if (said := label_of(name, seed))}
     assert found == {}

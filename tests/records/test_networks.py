@@ -8,7 +8,7 @@ from record_files import CSMIP, GEONET, HEADS, KNET, READ, SAMPLES, SMC, UNAM, b
 
 import mjrock as mr
 
-SAID = {
+STATED = {
     "knet": ("XYZ001 NS 2001/02/03 04:05:06", "NS", "XYZ001"),
     "geonet": ("WXYZ N10E 2001 February 03         04:05:06 UT", "N10E", "WXYZ"),
     "csmip": ("12345 360", "360", "12345"),
@@ -18,12 +18,12 @@ SAID = {
 }
 
 
-@pytest.mark.parametrize("ending", SAID)
+@pytest.mark.parametrize("ending", STATED)
 def test_what_a_file_states(ending, tmp_path):
     motion = READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + body(ending)))
     np.testing.assert_allclose(motion.accel, SAMPLES, rtol=1e-12)
     assert motion.dt == pytest.approx(0.01, rel=1e-12)
-    assert (motion.name, motion.header["STREAM"], motion.header.get("STATION_CODE")) == SAID[ending]
+    assert (motion.name, motion.header["STREAM"], motion.header.get("STATION_CODE")) == STATED[ending]
 
 
 @pytest.mark.parametrize("ending", READ)

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import mjrock as mr
-from mjrock.quantities import ratio_said, share_said
+from mjrock.quantities import ratio_text, share_text
 from mjrock.reporting.markup import formula
 from mjrock.reporting.texts import DASH, FOUND, Words, languages, texts
 from mjrock.study.loading.code_check import LimitState, RunMaximum, Verdict, verdict_rows
@@ -271,10 +271,10 @@ def test_what_fails_never_reads_as_if_it_held(share):
     """A capacity of so many demands, and the same demand over the capacity: in every text, cut or rounded up."""
     verdict = Verdict("nonlinear kinematic", "SLV", 1.0, share, "m", "C8.7.1.2.1.8")
     (cells,) = verdict_rows([verdict])[1:]
-    assert cells[5] == ratio_said(share) == Words("en").ratio(share)
+    assert cells[5] == ratio_text(share) == Words("en").ratio(share)
     assert f"ratio {cells[5]} {verdict.said}" in repr(verdict)
     assert (float(cells[5]) >= 1) == verdict.holds
-    assert (float(share_said(1 / share)) <= 1) == (1 / share <= 1)
+    assert (float(share_text(1 / share)) <= 1) == (1 / share <= 1)
 
 
 def test_a_check_and_its_report_write_one_ratio(tmp_path):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...geometry.hull import area_vector
 from ...problem.masonry.case import AnyCase
-from ...quantities import Array, percent_said, warn_of
+from ...quantities import Array, percent_text, warn_of
 from ..setup import Setup
 from ..system import System
 from ..turning import set_rotations
@@ -101,7 +101,7 @@ def what_keeps_apart(share: float, left: float, shorter: float) -> str:
     joints = f"joints {stiffer:.2g} times as stiff"
     if left == 1:
         return f"{joints} keep blocks apart"
-    said = f"this step leaves their contact {percent_said(left)} of its stiffness; timestep = {shorter:.2g} s"
+    said = f"this step leaves their contact {percent_text(left)} of its stiffness; timestep = {shorter:.2g} s"
     return f"{said} and {joints} keep blocks apart" if stiffer > 1 else f"{said} keeps blocks apart"
 
 

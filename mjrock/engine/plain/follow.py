@@ -179,7 +179,7 @@ class Sample(NamedTuple):
         elastic: energy in the springs of each pair and of all others [J], shape (p + 1,).
         work: since the release [J].
         deepest: the deepest contact since the sample before, if any.
-        loads, held: what was pressed on each joint and each fixed block, see `Gathered`.
+        loads, held: what was pressed on each joint and each fixed block, see `KeptForces`.
         pulled: force of each damper [N], shape (dampers,).
     """
 
@@ -195,7 +195,7 @@ class Sample(NamedTuple):
 
 
 def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints: JointForces | None) -> list[Sample]:
-    """The samples of a run of so many steps, every `stride`-th of which and the last are kept.
+    """The samples of a run of a number of steps, every `stride`-th of which and the last are kept.
 
     Args:
         engine: at the release.
@@ -272,7 +272,7 @@ class JointForces:
     fixed: dict[str, int]
 
     def gathered(self, engine: PlainEngine, met: Met) -> tuple[Array, Array]:
-        """Loads of joints and forces of fixed blocks, see `Gathered`."""
+        """Loads of joints and forces of fixed blocks, see `KeptForces`."""
         freedom, model, data = engine.scene.freedom, engine.model, engine.data
         ways, local = list(freedom.axes), np.zeros(6)
         loads = np.zeros((len(self.above), freedom.nv))

@@ -14,13 +14,13 @@ from ...problem.masonry.case import AnyCase
 from ...quantities import Array, require_size, warn_of
 from ...result.bodies import Moving
 from ...result.ending import Outcome, Stopwatch
-from ...result.forces import Forces, Gathered, forces_of
+from ...result.forces import Forces, KeptForces, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
 from ...result.motion import SampledMotion
 from ...result.problem import Problem, require_in_text
 from ...result.reading import BesidePoses
 from ...result.response import End, Response, State
-from ...result.ties import Plastic, motion_of_ties, plastic_of, told_of_ties, warn_of_ties
+from ...result.ties import Plastic, motion_of_ties, plastic_of, ties_message, warn_of_ties
 from ...scene.course import Course
 from ...scene.dampers import damping_rate
 from ...scene.potential import energies
@@ -178,7 +178,7 @@ class PlainRun:
         ties = motion_of_ties(Moving(case, at.t, at.pose), plastic)
         pulled = {name: ties[name].force for name in links.sprung.names}
         pulled |= dict(zip(links.damped.names, at.pulled.T, strict=True))
-        return forces_of(case, case.standing.frames, Gathered(at.t, at.pose, at.loads, at.held, pulled))
+        return forces_of(case, case.standing.frames, KeptForces(at.t, at.pose, at.loads, at.held, pulled))
 
 
 def simulate_plain(problem: Problem, options: Options, state: State | None) -> Response:
@@ -246,10 +246,10 @@ def response_of_plain(run: PlainRun, settings: dict[str, float], options: Option
     beside = BesidePoses(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
     reading = model.problem.read(model.scene, at.t, motion, released=model.course.released, beside=beside)
     plastic, account = run.plastic(), run.ledger()
-    overlap, said = run.overlap
+    overlap, message = run.overlap
     if overlap > DOUBTED:
         warn_of(
-            f"{said}, over the smaller one; a shorter timestep or stiffer joints keep them apart",
+            f"{message}, over the smaller one; a shorter timestep or stiffer joints keep them apart",
         )
     residual = float(np.abs(account.residual).max())
     advice = f"the step is long for this motion, take timestep = {0.5 * settings['timestep']:.2g} s"
@@ -260,7 +260,7 @@ def response_of_plain(run: PlainRun, settings: dict[str, float], options: Option
         t=at.t,
         motion=motion,
         outcome=reading.outcome,
-        message=reading.message + told_of_ties(plastic),
+        message=reading.message + ties_message(plastic),
         rocking=reading.rocking,
         joints=reading.joints,
         plastic=plastic,

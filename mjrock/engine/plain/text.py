@@ -177,11 +177,11 @@ def _defaults(
     classes = _class_of(laws)
     for name in dict.fromkeys(classes.values()):
         i = next(i for i, each in classes.items() if each == name)
-        yield f"<!-- {_said(pairs, i)} -->"
+        yield f"<!-- {_comment(pairs, i)} -->"
         yield f'<default class="{name}">{element("pair", **laws[i])}</default>'
 
 
-def _said(pairs: Pairs, i: int) -> str:
+def _comment(pairs: Pairs, i: int) -> str:
     """Spring and dashpot of a pair in words."""
     return f"at each point k = {pairs.k[i]:.6g} N/m, c = {pairs.c[i]:.6g} N s/m"
 
@@ -194,7 +194,7 @@ def _pairs(pieces: list[Piece], pairs: Pairs, laws: list[dict[str, object]]) -> 
         if i in classes:
             yield tag("pair", **{"class": classes[i]}, **names)
         else:
-            yield f"<!-- {_said(pairs, i)} -->"
+            yield f"<!-- {_comment(pairs, i)} -->"
             yield element("pair", **names, **laws[i])
 
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ...contacts.files import write_text
 from ...geometry.frames import PLANE, SPACE, Freedom
-from ...notebook import Drawn
+from ...notebook import NotebookPicture
 from ...quantities import (
     Array,
     Density,
@@ -92,7 +92,7 @@ from .files.dxf import DensityOfLayer, LengthOfLayer, polygons_of, read_dxf
 from .files.lmgc90 import read_lmgc90
 from .files.meshes import obj_text, read_obj, read_ply, read_stl
 from .laws.bond import Bond
-from .laws.dry import AnyPairs, Dry, Meets, Properties, asked_pair, required_pairs
+from .laws.dry import AnyPairs, Dry, Meets, Properties, requested_pair, required_pairs
 from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
@@ -136,7 +136,7 @@ Unit = tuple[Side, Side]
 
 @keywords_checked
 @dataclass(frozen=True, repr=False, init=False)
-class Masonry(Drawn):
+class Masonry(NotebookPicture):
     """Rigid blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
@@ -430,7 +430,7 @@ class Masonry(Drawn):
 
     def of_pair(self, one: int, other: int) -> Meets | None:
         """What two blocks without a joint have where they meet, by their numbers, or None where nothing is given."""
-        dry = asked_pair(self.pairs, self.names[min(one, other)], self.names[max(one, other)])
+        dry = requested_pair(self.pairs, self.names[min(one, other)], self.names[max(one, other)])
         if dry is None:
             return None
         frequency = dry.frequency or (self._lowest_frequency if dry.xi else 1.0)

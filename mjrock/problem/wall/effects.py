@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from ...notebook import Drawn
+from ...notebook import NotebookPicture
 from ...quantities import Message, Within, keep, keep_declared, named, require_kind, require_sequence, short_repr
 from ..ground.motion import GroundMotion
 from .effect import (
@@ -310,7 +310,7 @@ def constant_forces_of(effects: Sequence[Effect]) -> dict[str, tuple[Effect, Poi
     return {name: (effect, force) for name, effect, force in named if force is not None}
 
 
-class Carrying(Drawn):
+class Carrying(NotebookPicture):
     """What carries effects."""
 
     effects: tuple[Effect, ...]

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...quantities import GRAVITY, Implausible, Message, percent_said, warn_of
+from ...quantities import GRAVITY, Implausible, Message, percent_text, warn_of
 from ..ground.motion import GroundMotion
 from .effect import Anchored, Effect, resistance
 from .effects import AddedMass, Load, Thrust
@@ -132,7 +132,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
         if kept < (1 - CUT_OFF) * total:
             found.append(
                 f"the run of {duration:g} s ends before the record of {motion.duration:g} s, and leaves out "
-                f"{percent_said(1 - kept / total)} of its Arias intensity"
+                f"{percent_text(1 - kept / total)} of its Arias intensity"
             )
     return found
 

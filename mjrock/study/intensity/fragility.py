@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import chdtri, log_ndtr, ndtr, ndtri, stdtrit
 
 from ...contacts.files import csv_text, write_text
-from ...notebook import Drawn
+from ...notebook import NotebookPicture
 from ...quantities import (
     Array,
     Flags,
@@ -56,7 +56,7 @@ OUTCOMES = frozenset(outcome.value for outcome in Outcome)
 
 
 @dataclass(frozen=True)
-class Fragility(Drawn):
+class Fragility(NotebookPicture):
     """P(overturning | intensity) = Phi(ln(intensity / median) / dispersion).
 
     Intervals and band take the runs as independent, unless the fit has their groups.

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contacts.files import aligned
-from ...notebook import Drawn, html_of
+from ...notebook import NotebookPicture, html_of
 from ...quantities import Array, Integers, require_increasing, require_within, shown, takes
 from ..analysis import Analysis
 from ..campaign.campaign import CampaignOptions, completed
@@ -28,7 +28,7 @@ STOOD, FELL_AFTER_IMPACTS, FELL_WITHOUT_IMPACT, FELL = range(len(ENDINGS))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class OverturningMap(Drawn):
+class OverturningMap(NotebookPicture):
     """What a wall or masonry does under pulses of every amplitude and period.
 
     Args:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contacts.files import aligned
-from ...notebook import Drawn, html_of
+from ...notebook import NotebookPicture, html_of
 from ...quantities import Array, require_increasing, require_within
 from ..analysis import Analysis
 from ..campaign.campaign import CampaignOptions, completed
@@ -46,7 +46,7 @@ class Island(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Thresholds(Drawn):
+class Thresholds(NotebookPicture):
     """The ranges of scales in which each record makes a wall or masonry fall.
 
     Args:

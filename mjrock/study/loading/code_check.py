@@ -42,13 +42,13 @@ from ...quantities import (
     is_iterable,
     listed,
     named,
-    percent_said,
-    ratio_said,
+    percent_text,
+    ratio_text,
     require_kind,
     require_one_of,
     require_real,
     require_within,
-    share_said,
+    share_text,
     short_repr,
     shown,
     takes,
@@ -133,7 +133,7 @@ class Verdict(NamedTuple):
     def __repr__(self) -> str:
         return (
             f"<{self.what}, {self.limit_state}: {self.capacity:.4g} for {self.demand:.4g} {self.unit}, "
-            f"ratio {ratio_said(self.ratio)} {self.said}, {self.clause}>"
+            f"ratio {ratio_text(self.ratio)} {self.said}, {self.clause}>"
         )
 
     @property
@@ -156,7 +156,7 @@ def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     """Conditions as rows of a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
     rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
     for one in verdicts:
-        numbers = f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_said(one.ratio)
+        numbers = f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_text(one.ratio)
         rows.append((one.what, one.limit_state, *numbers, one.said, one.clause))
     return rows
 
@@ -395,7 +395,7 @@ class MechanismCheck:
             elif step.key == "ground_ratio" and self.counts("nonlinear"):
                 note = f"{self._nonlinear(step.of).said}, {note}"
             value = (
-                ratio_said(step.value)
+                ratio_text(step.value)
                 if step.key.endswith("ratio")
                 else f"{step.value:.{CHECK_STEPS[step.key].digits}f}"
             )
@@ -404,7 +404,7 @@ class MechanismCheck:
 
     def __repr__(self) -> str:
         ratios = ", ".join(
-            f"{one.limit_state} {ratio_said(one.ratio)} {one.said}" for one in map(self._nonlinear, self.states)
+            f"{one.limit_state} {ratio_text(one.ratio)} {one.said}" for one in map(self._nonlinear, self.states)
         )
         of = f" of {named(self.moving)}" if self.moving else ""
         return f"<MechanismCheck{of}: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
@@ -890,7 +890,7 @@ class DynamicCheck:
             kinematic: a check of the same wall, whose verdicts then stand above.
         """
         require_kind("kinematic", kinematic, MechanismCheck, type(None))
-        lines = [f"{run.solver}, {run.name}: {run.d:.4f} m, {share_said(run.d / self.d_0)} d_0" for run in self.runs]
+        lines = [f"{run.solver}, {run.name}: {run.d:.4f} m, {share_text(run.d / self.d_0)} d_0" for run in self.runs]
         lines.append(f"d_0 of the centroid: {self.d_0:.4f} m; over e* it is that of the curve a(d)")
         if self.restitution:
             low, middle, high = np.percentile(self.restitution, [5, 50, 95])
@@ -902,7 +902,7 @@ class DynamicCheck:
         return "\n".join([*lines, verdicts_of((*before, *self.verdicts))])
 
     def _repr_html_(self) -> str:
-        runs = [(one.name, f"{one.d:.4f}", share_said(one.d / self.d_0)) for one in self.runs]
+        runs = [(one.name, f"{one.d:.4f}", share_text(one.d / self.d_0)) for one in self.runs]
         head = ("run", "displacement [m]", "of d_0")
         return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
 
@@ -1102,7 +1102,7 @@ def _require_whole(curve: Push) -> None:
         raise ValueError("curve is that of an Actuator; push along a direction, which moves all blocks")
     if math.isnan(curve.d_0):
         raise ValueError(
-            f"curve ends at {curve.displacement[-1]:.4g} m, where {percent_said(curve.force[-1] / curve.peak)} of its "
+            f"curve ends at {curve.displacement[-1]:.4g} m, where {percent_text(curve.force[-1] / curve.peak)} of its "
             "peak is borne; push on until nothing is"
         )
 

@@ -9,8 +9,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ...contacts.files import aligned
-from ...notebook import Drawn
-from ...quantities import OneOf, is_iterable, listed, ratio_said, require_one_of, shown
+from ...notebook import NotebookPicture
+from ...quantities import OneOf, is_iterable, listed, ratio_text, require_one_of, shown
 from .code_check import METHODS as KINEMATIC
 from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands
 from .load_check import Borne, LoadCheck, load_check
@@ -81,11 +81,11 @@ class Trial:
     def __repr__(self) -> str:
         if self.governs is None:
             return f"<Trial {self.label}: {self.refused}>"
-        return f"<Trial {self.label}: {ratio_said(self.ratio)} {_word(self)}, {self.governs.said}>"
+        return f"<Trial {self.label}: {ratio_text(self.ratio)} {_word(self)}, {self.governs.said}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Design(Drawn):
+class Design(NotebookPicture):
     """The values that were tried, in their order.
 
     Args:
@@ -139,7 +139,7 @@ class Design(Drawn):
                 rows.append((trial.label, "-", "-", trial.refused, ""))
             else:
                 last = trial.governs.said, trial.governs.verdict.clause
-                rows.append((trial.label, ratio_said(trial.ratio), _word(trial), *last))
+                rows.append((trial.label, ratio_text(trial.ratio), _word(trial), *last))
         return "\n".join(line.rstrip() for line in [*aligned(rows, "<><<<"), self.sentence])
 
     @property
@@ -148,12 +148,12 @@ class Design(Drawn):
         method = self.trials[0].method
         if self._first_holds:
             held = f"{sum(trial.holds for trial in self.trials)} of {len(self.trials)} values hold"
-            return f"{held}; the least ratio is {ratio_said(self.least.ratio)}, of {self.least.label}"
+            return f"{held}; the least ratio is {ratio_text(self.least.ratio)}, of {self.least.label}"
         if self.chosen is not None:
             every = f"every {method} condition" if method else "every condition"
             return f"{self.chosen.label} is the first of {len(self.trials)} values for which {every} holds"
         best, count = self.nearest, len(self.trials)
-        return f"none of {count} values holds; {best.label} comes nearest, {ratio_said(best.ratio)}"
+        return f"none of {count} values holds; {best.label} comes nearest, {ratio_text(best.ratio)}"
 
     def __repr__(self) -> str:
         return f"<Design: {self.sentence}>"

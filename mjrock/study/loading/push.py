@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ...bars import Bar
 from ...distinct.explicit import solve_explicit
-from ...notebook import Drawn
+from ...notebook import NotebookPicture
 from ...problem.masonry.actuator import LARGEST_STROKE, Actuator
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
@@ -71,7 +71,7 @@ OFF = 0.02
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Push(Drawn):
+class Push(NotebookPicture):
     """What masonry bears as it is pushed slowly. A point is a mean over its time.
 
     Args:

@@ -13,7 +13,7 @@ from ...bars import counted
 from ...geometry.frames import frames_of
 from ...geometry.kinematics import gaps, meeting, over_face, snaps, stretch, where_friction_acts
 from ...geometry.vectors import dot, tangent
-from ...notebook import Drawn
+from ...notebook import NotebookPicture
 from ...problem.damping.contacts import Contacts, Uplift
 from ...problem.masonry.case import require_wall
 from ...problem.wall.case import Case
@@ -118,7 +118,7 @@ def _carried(scene: Scene, potential: Potential, pose: Array) -> tuple[Array, Ar
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PushoverCurve(Drawn):
+class PushoverCurve(NotebookPicture):
     """The static curve of a wall that is pushed outwards.
 
     Args:

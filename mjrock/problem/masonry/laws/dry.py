@@ -133,7 +133,7 @@ def required_pairs(pairs: AnyPairs) -> AnyPairs:
     return pairs if callable(pairs) else _rubbing("pairs", pairs)
 
 
-def asked_pair(pairs: AnyPairs, one: str, other: str) -> Dry | None:
+def requested_pair(pairs: AnyPairs, one: str, other: str) -> Dry | None:
     """What is given for two blocks by their names, or None.
 
     Raises:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import hstack
 
-from ....notebook import Drawn
+from ....notebook import NotebookPicture
 from ....quantities import Array, named
 from ...wall.case import Case
 from ...wall.effect import Effect
@@ -69,7 +69,7 @@ class UnbalancedError(ValueError):
 
 
 @dataclass(frozen=True)
-class Collapse(Drawn):
+class Collapse(NotebookPicture):
     """How rigid masonry fails under forces that grow.
 
     Args:

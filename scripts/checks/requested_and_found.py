@@ -1,10 +1,10 @@
 """The restitution that is asked of contacts in any MuJoCo model, and the one that MuJoCo gives.
 
-    python scripts/checks/asked_and_found.py --quick
+    python scripts/checks/requested_and_found.py --quick
 
 Shapes land on a face, an edge and a corner, a leg on its foot in two poses, and bodies that welds, gears and springs
 hold, without gravity; a ball lands under gravity at three speeds. Prints e asked and e found, and the warning where
-there is one. Writes asked_and_found.csv.
+there is one. Writes requested_and_found.csv.
 """
 
 from __future__ import annotations
@@ -193,7 +193,7 @@ FEW = (
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Let everything land, and print the table."""
-    args = cli.parser(__doc__, "asked_and_found").parse_args(argv)
+    args = cli.parser(__doc__, "requested_and_found").parse_args(argv)
     out = cli.folder(args.out)
     asked = QUICK if args.quick else ASKED
     names = FEW if args.quick else tuple(LANDINGS)
@@ -209,7 +209,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         values += [[name, e, found, sentences] for e, (found, sentences) in zip(asked, results, strict=True)]
     text = cli.table(["e asked", *(f"{e:g}" for e in asked), "worst", ""], rows)
     text += "".join(f"\n\n{name}: {sentences}" for name, sentences in notes.items())
-    cli.report(out / "asked_and_found", text, ["landing", "asked", "found", "warning"], values)
+    cli.report(out / "requested_and_found", text, ["landing", "asked", "found", "warning"], values)
 
 
 if __name__ == "__main__":

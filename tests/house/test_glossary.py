@@ -1,0 +1,85 @@
+"""The package and its pages use the words of the field, as the glossary in CONTRIBUTING.md has them."""
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = ROOT / "mjrock"
+REPLACED = {
+    "told": "label, description, message; known, distinguished",
+    "said": "label, description, text, message; stated",
+    "asked": "request, requested, required",
+    "hangs? on": "depends on",
+    "so much": "an amount, this amount",
+    "so many": "a number of, a given number of",
+}
+"""Words that stand in no name, docstring, comment, message or page, and what is written instead."""
+PARTICIPLES = {
+    "Asked", "Changed", "Chosen", "Compared", "Declared", "Drawn", "Followed", "Gathered", "Given", "Held", "Listed",
+    "Looked", "Meets", "Moved", "Named", "Pressed", "Reported", "Shaken", "Stated", "Tilted", "Told", "Wanted",
+    "Watched",
+}  # fmt: skip
+"""Words that are no names of types: a type is a noun."""
+UNREAD = ("app", "assessment", "commands", "distinct", "examples", "plotting", "problem", "reporting", "study")
+"""Folders of the package whose words are still to be looked at."""
+EXCEPTIONS = {
+    "docs/assessment_file.md": ("verdict.said",),
+    "docs/wind_earth_axles.md": ("verdicts[0].said",),
+}
+"""Text that stays, by file: public names."""
+WORDS = re.compile(rf"(?<![A-Za-z])({'|'.join(REPLACED)})(?![A-Za-z])", re.IGNORECASE)
+
+
+@cache
+def modules():
+    """The modules of the package whose words are looked at."""
+    found = [path for path in sorted(PACKAGE.rglob("*.py")) if path.relative_to(PACKAGE).parts[0] not in UNREAD]
+    assert len(found) > 100
+    return found
+
+
+def replaced(path):
+    """Words of a file that the glossary replaces, each with its line and what to write."""
+    name = path.relative_to(ROOT).as_posix()
+    found = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for kept in EXCEPTIONS.get(name, ()):
+            line = line.replace(kept, "")
+        for word in WORDS.findall(line):
+            instead = next(text for one, text in REPLACED.items() if re.fullmatch(one, word, re.IGNORECASE))
+            found.append(f"{name}:{number}: {word}: write {instead}")
+    return found
+
+
+def test_modules_use_the_words_of_the_field():
+    assert [offender for path in modules() for offender in replaced(path)] == []
+
+
+def test_pages_use_the_words_of_the_field():
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    assert len(pages) > 30
+    assert [offender for path in pages for offender in replaced(path)] == []
+
+
+def test_types_are_nouns():
+    offenders = []
+    for path in modules():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef) and node.name.lstrip("_") in PARTICIPLES:
+                offenders.append(f"{path.relative_to(ROOT)}:{node.lineno}: {node.name}")
+    assert offenders == []
+
+
+def test_folders_that_are_left_have_such_words():
+    """One that has none comes off the list."""
+    for name in UNREAD:
+        assert [offender for path in sorted((PACKAGE / name).rglob("*.py")) for offender in replaced(path)], name
+
+
+@pytest.mark.parametrize("text", ["much so", "retold", "masked", "hang"])
+def test_other_words_are_none_of_these(text):
+    assert WORDS.findall(text) == []
