@@ -17,6 +17,7 @@ from .interrupts import interrupts_held_back
 from .notebook import NotebookPicture
 
 if TYPE_CHECKING:
+    from . import blocks as blocks
     from . import plotting as plotting
     from .assessment.assessment import Assessment, from_toml
     from .assessment.schema import toml_schema
@@ -142,6 +143,8 @@ __all__ = [
 
 HOME = homes(__file__)
 """The module of each public name."""
+PUBLIC_MODULES = ("blocks", "plotting")
+"""Public modules: builders of blocks, and pictures."""
 
 
 def _png_of(shown: object) -> bytes | None:
@@ -154,12 +157,12 @@ NotebookPicture._png_of = staticmethod(_png_of)
 
 
 def __getattr__(name: str) -> object:
-    """A public name, or `mjrock.plotting`, imported when it is first used. Ctrl-C is delayed until then."""
-    if name != "plotting" and name not in HOME:
+    """A public name, or a public module, imported when it is first used. Ctrl-C is delayed until then."""
+    if name not in PUBLIC_MODULES and name not in HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     with interrupts_held_back():
         module = importlib.import_module(f".{HOME.get(name, name)}", __name__)
-    if name == "plotting":
+    if name in PUBLIC_MODULES:
         return module
     value = getattr(module, name)
     globals()[name] = value
@@ -168,4 +171,4 @@ def __getattr__(name: str) -> object:
 
 def __dir__() -> list[str]:
     """The public names."""
-    return [*__all__, "plotting"]
+    return [*__all__, *PUBLIC_MODULES]

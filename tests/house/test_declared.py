@@ -12,7 +12,7 @@ import pytest
 import mjrock as mr
 from mjrock.quantities import Within, declared, keep_declared, within_ranges
 
-PUBLIC = [getattr(mr, name) for name in mr.HOME]
+PUBLIC = [getattr(mr, name) for name in mr.HOME] + [getattr(mr.blocks, name) for name in mr.blocks.__all__]
 CLASSES = [kind for kind in PUBLIC if isinstance(kind, type) and is_dataclass(kind)]
 FUNCTIONS = [
     function

@@ -24,6 +24,7 @@ FLOORS = (
     ("problem.wall",),
     ("problem.damping",),
     ("problem.masonry",),
+    ("blocks",),
     ("scene",),
     ("result",),
     ("theory", "reference", "distinct", "engine"),

@@ -82,7 +82,7 @@ def test_every_name_is_there():
     for name in mr.__all__:
         assert getattr(mr, name) is not None
     assert set(mr.HOME) | {"__version__"} == set(mr.__all__)
-    assert dir(mr) == sorted([*mr.__all__, "plotting"])
+    assert dir(mr) == sorted([*mr.__all__, "blocks", "plotting"])
 
 
 def test_what_is_not_there_is_no_attribute():

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from itertools import product
 from typing import NamedTuple
 
@@ -103,18 +104,21 @@ def odd_sizes(sizes: Mapping[str, float]) -> str:
     )
 
 
-def with_sizes(error: ValueError, drawn: Mapping[str, Array], turn: Array) -> ValueError:
-    """What is wrong with a file, and what is odd about the sizes of its bodies.
+@contextmanager
+def sizes_in_errors(drawn: Mapping[str, Array], turn: Array) -> Iterator[None]:
+    """A ValueError that is raised within also has what is odd about the sizes of the bodies of a file.
 
     Args:
-        error: what is wrong.
         drawn: vertices of the bodies by name, in the units and axes of the file, shape (n, 3).
         turn: what takes these to m with z upwards, shape (3, 3).
     """
-    turned = {name: np.abs(turn) @ np.ptp(places, axis=0) for name, places in drawn.items() if len(places)}
-    sizes = {name: float(np.linalg.norm(extents)) for name, extents in turned.items()}
-    odd = odd_sizes({name: size for name, size in sizes.items() if 0 < size < np.inf})
-    return ValueError(f"{error}; {odd}" if odd else str(error))
+    try:
+        yield
+    except ValueError as error:
+        turned = {name: np.abs(turn) @ np.ptp(places, axis=0) for name, places in drawn.items() if len(places)}
+        sizes = {name: float(np.linalg.norm(extents)) for name, extents in turned.items()}
+        odd = odd_sizes({name: size for name, size in sizes.items() if 0 < size < np.inf})
+        raise ValueError(f"{error}; {odd}" if odd else str(error)) from None
 
 
 def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: bool) -> str:

@@ -2,73 +2,43 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, fields
 from functools import cached_property
-from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Self, Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ...contacts.files import write_text
 from ...geometry.frames import PLANE, SPACE, Freedom
 from ...notebook import NotebookPicture
 from ...quantities import (
     Array,
-    Density,
     Implausible,
     Integers,
     Within,
     frozen,
     keep,
     named,
-    require_flag,
-    require_kind,
     require_path,
     require_sequence,
-    require_whole,
     shown,
     warn_of,
 )
 from ..damping.contacts import AnyLaw, required_law
-from ..wall.bending import Bearing, CrackHeight, FloorLoad, HorizontalBending, VerticalBending
 from ..wall.block import Block
 from ..wall.effects import SideStop
-from ..wall.section import Opening
 from .blocks.compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .blocks.joints import Joint, OverlapError, joints_in_plane, names_of
 from .blocks.joints_in_space import SpaceJoint, joints_in_space
-from .blocks.polygon import COORDINATE, Polygon
-from .blocks.polyhedron import Extents, Polyhedron
-from .builders.in_plane import (
-    MOST_BODIES,
-    Taper,
-    arch_of,
-    bending_between_floors,
-    between_beams,
-    bonded_wall,
-    curved,
-    ground_below_all,
-    side_of,
-    stacked,
-)
-from .builders.in_space import (
-    bending_between_sides,
-    box_on_ground,
-    column_of,
-    dome_of,
-    facade_of,
-    ground_below,
-    wall_corner,
-    wallette_of,
-    walls_of,
-)
-from .builders.vaults import Span, barrel_of, bridge_of, groin_of
+from .blocks.polygon import Polygon
+from .blocks.polyhedron import Polyhedron
+from .builders.in_plane import MOST_BODIES, ground_below_all, stack
+from .builders.in_space import ground_below
+from .constructors import Constructors
 from .drawing import (
     FINE_TOLERANCE,
     NEARLY,
@@ -81,25 +51,32 @@ from .drawing import (
     odd_frequency,
     odd_sizes,
     remedy,
+    sizes_in_errors,
     smallest_gap,
     split_faces,
     touches_told,
-    with_sizes,
 )
-from .files.bodies import Given, Mesh, Scale, about, blocks_of, meshes_of, names_of_list
-from .files.compas import compas_text, read_compas
+from .files.bodies import (
+    AnyPath,
+    FileOptions,
+    Mesh,
+    Scale,
+    about,
+    blocks_of,
+    file_options,
+    meshes_of,
+    names_of_list,
+)
+from .files.compas import compas_text
 from .files.dxf import DensityOfLayer, LengthOfLayer, polygons_of, read_dxf
-from .files.lmgc90 import read_lmgc90
-from .files.meshes import obj_text, read_obj, read_ply, read_stl
+from .files.meshes import obj_text
 from .laws.bond import Bond
-from .laws.dry import AnyPairs, Dry, Meets, Properties, requested_pair, required_pairs
+from .laws.dry import AnyPairs, Meets, requested_pair, required_pairs
 from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
     ByKind,
     ByName,
-    ByWord,
-    Halved,
     JointOptions,
     JointTable,
     OfBond,
@@ -122,21 +99,10 @@ from .laws.own_law import Own
 from .laws.stack_law import damping_by_law
 from .lines import Lines, lines_of, lowest_frequency
 
-AnyPath = str | PathLike[str]
-Radius = Annotated[float, Within(0.01, 1000, "m")]
-Thick = Annotated[Taper, Within(1e-5, 1000, "m")]
-SpanAngle = Annotated[float, Within(0.1, math.pi, "rad")]
-Voussoirs = Annotated[int, Within(1, 1000, whole=True)]
-Length = Annotated[float, Within(1e-3, 1000, "m")]
-Size = Annotated[float, Within(0.01, 1000, "m")]
-Side = Annotated[float, Within(0.01, 100, "m")]
-Unit = tuple[Side, Side]
-"""Sizes that builders share."""
-
 
 @keywords_checked
 @dataclass(frozen=True, repr=False, init=False)
-class Masonry(NotebookPicture):
+class Masonry(Constructors, NotebookPicture):
     """Rigid blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
@@ -495,14 +461,8 @@ class Masonry(NotebookPicture):
         A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
 
         Args:
-            blocks: the blocks, whose insets are zero.
+            blocks, ground, side_stop: as of `blocks.stack`.
             k_n: stiffness of the joints [N/m3], as of `Masonry`.
-            ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
-            side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
-                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and has a joint
-                with each face that it lies behind, at whose ends they meet. It follows setbacks, as side walls do,
-                clear of the ledge as that rises, and does not reach under a block that stands out farther than those
-                below it.
             k_side: stiffness of the joints with the side stop [N/m3], 1e4 to 1e14; None takes k_n.
             side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
             options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
@@ -511,664 +471,20 @@ class Masonry(NotebookPicture):
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        made = stacked(blocks, ground)
-        side = side_of(made, side_stop)
+        made = stack(blocks, ground, side_stop)
         given = one_by_one({**options, "k_n": k_n})
-        if side is None:
+        if not side_stop:
             if k_side is not None or side_friction:
                 raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
             return cls(made, **given)
         frequency = given["frequency"]
         if given.get("law") is None and (frequency is None or callable(frequency)):
-            bare = cls(made, **given)
+            bare = cls(made[:-1], **given)
             lowest = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
             given["frequency"] = OrElse(frequency, lowest) if callable(frequency) else lowest
         given["k_n"] = ByKind(given["k_n"], k_side or given["k_n"])
         given["friction"] = ByKind(given["friction"], side_friction)
-        return cls((*made, side), **given)
-
-    @classmethod
-    def arch(
-        cls,
-        radius: Radius,
-        thickness: Thick,
-        span_angle: SpanAngle = math.pi,
-        voussoirs: Voussoirs = 17,
-        *,
-        density: Density = 2000.0,
-        length: Length = 1.0,
-        chords: Annotated[int, Within(1, 50, whole=True)] = 1,
-        ground: bool = False,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A circular arch of voussoirs of equal angles, between two fixed abutments.
-
-        Edges are straight: halfway between joints that are delta apart [rad], an arch of one thickness is
-        cos(delta / 2) times as thick as at the joints.
-
-        Args:
-            radius: of the middle of the arch at the joints [m], 0.01 to 1000.
-            thickness: across the arch at the joints [m], 1e-5 to 1000, 0.001 to 1 times the radius; or a pair, at the
-                springing and at the crown, between which it changes linearly with the angle.
-            span_angle: angle between the two springings [rad], 0.1 to pi.
-            voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
-            density: mass density [kg/m3], 100 to 30000.
-            length: length out of the plane [m], 1e-3 to 1000.
-            chords: straight edges of the intrados and of the extrados of a voussoir, 1 to 50. With two or more a
-                voussoir is a `Compound`. Voussoirs times chords are at most 1000.
-            ground: whether fixed ground lies under the lowest point of the abutments, two heights beyond them. Without
-                it voussoirs that leave the arch fall on, and explicit steps name them.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            TypeError, ValueError: for a value outside its range, or as `Masonry` does.
-
-        Examples:
-            >>> arch = mr.Masonry.arch(radius=5.0, thickness=(0.9, 0.6), voussoirs=16)
-            >>> sorted(round(joint.width, 2) for joint in arch.joints)[::8]
-            [0.6, 0.75, 0.9]
-        """
-        voussoirs = require_whole("voussoirs", voussoirs, 1, 1000 // chords)
-        blocks = curved(arch_of(radius, thickness, span_angle, voussoirs * chords, density, length), chords)
-        return cls([*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks, **options)
-
-    @classmethod
-    def bridge(
-        cls,
-        radius: Radius,
-        thickness: Thick,
-        span_angle: SpanAngle = math.pi,
-        voussoirs: Voussoirs = 17,
-        *,
-        spans: Annotated[int, Within(1, 50, whole=True)] = 1,
-        pier_width: Size,
-        pier_height: Annotated[float, Within(0.01, 1000, "m")],
-        abutments: bool = True,
-        density: Density = 2000.0,
-        length: Length = 1.0,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """Equal arches side by side on piers: a bridge of several spans, or an arch on buttresses.
-
-        Args:
-            radius, thickness, span_angle, voussoirs: of each arch, as of `arch`.
-            spans: how many arches, 1 to 50. Voussoirs are `span_0_voussoir_0` and so on, of one span `voussoir_0`.
-            pier_width: between the springings of two arches [m], 0.01 to 1000, at least twice the width of a springing,
-                once of one span. A pier is one block, `pier_1` that between the first two arches.
-            pier_height: from the ground up to the springings [m], 0.01 to 1000.
-            abutments: whether the outer arches end on fixed abutments; otherwise on piers of the same width.
-            density: mass density [kg/m3], 100 to 30000.
-            length: length out of the plane [m], 1e-3 to 1000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        arch = Span(radius, thickness, span_angle, voussoirs)
-        return cls(bridge_of(spans, arch, (pier_width, pier_height), abutments, density, length), **options)
-
-    @classmethod
-    def barrel_vault(
-        cls,
-        radius: Radius,
-        thickness: Thick,
-        length: Annotated[float, Within(0.01, 1000, "m")],
-        unit: Size,
-        span_angle: SpanAngle = math.pi,
-        courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
-        *,
-        density: Density = 2000.0,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A barrel vault in space between two fixed abutments, its courses in running bond along y.
-
-        Args:
-            radius, thickness, span_angle: of its section, as of `arch`.
-            length: along y [m], 0.01 to 1000.
-            unit: length of a voussoir [m], 0.01 to 1000 and at most the length; units are made to fit.
-            courses: voussoirs of the section, 1 to 1000. `voussoir_2_0` is the first of the third course.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(barrel_of(Span(radius, thickness, span_angle, courses), length, unit, density), **options)
-
-    @classmethod
-    def groin_vault(
-        cls,
-        radius: Radius,
-        thickness: Thick,
-        length: Size,
-        unit: Size,
-        span_angle: SpanAngle = math.pi,
-        courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
-        *,
-        cut: bool = False,
-        density: Density = 2000.0,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A groin vault, or cross vault: two equal barrels that cross over a square bay, on four fixed piers.
-
-        The webs are in running bond, and end at the groins, two vertical planes across the corners of the bay. The
-        middle of the bay is x = y = 0. Its sides are front, where x is positive, back, left, where y is negative, and
-        right; a pier is named by its two sides, `pier_front_right`.
-
-        Args:
-            radius, thickness, span_angle: of the section of a web, as of `arch`.
-            length: of the sides of the bay [m], 0.01 to 1000, at least the span of the extrados.
-            unit: length of a voussoir of the webs [m], 0.01 to 1000 and at most the length. `web_left_2_0` is the first
-                of the third course of the left web, from its side inwards, and what is left of a course belongs to the
-                groin.
-            courses: voussoirs of the section of a web, 1 to 1000. An odd number has a keystone, with four arms.
-            cut: whether the stones of a groin are cut along it, each of one web. Otherwise a stone of two arms, a
-                `Compound`, belongs to both webs, `groin_front_right_0` above the pier, and binds them.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(groin_of(Span(radius, thickness, span_angle, courses), length, unit, cut, density), **options)
-
-    @classmethod
-    def running_bond(
-        cls,
-        length: Size,
-        height: Size,
-        unit: Unit,
-        thickness: Length = 1.0,
-        density: Density = 2000.0,
-        *,
-        halves: Bond | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A wall of units in running bond on the ground, which moves in the plane of its face.
-
-        Args:
-            length, height: of the wall [m], 0.01 to 1000. The height is a whole number of units. What is left of a
-                course at its end is a piece of a unit.
-            unit: length and height of a unit [m], 0.01 to 100.
-            thickness: of the wall, out of the plane [m], 1e-3 to 1000.
-            density: mass density [kg/m3], 100 to 30000.
-            halves: the bond of a potential crack in the middle of each whole unit, which divides it in two, or None.
-                The halves of `unit_2_0` are `unit_2_0a` and `unit_2_0b`, by which functions of the joint know them.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
-        return cls(wall, **_halved(halves, options))
-
-    @classmethod
-    def shear_wall(
-        cls,
-        length: Size,
-        height: Size,
-        unit: Unit,
-        thickness: Length = 1.0,
-        density: Density = 2000.0,
-        *,
-        halves: Bond | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A wall in running bond between a fixed base and a loading beam, as laboratories press and shear it.
-
-        Args:
-            length, height, unit, thickness, density, halves: as of `running_bond`.
-            options: further arguments of `Masonry`. The blocks are "base", the units as of `running_bond`, and "beam".
-                Base and beam are fixed and reach a fifth of the length beyond the wall. The case leads the beam by
-                `supports={"beam": (t, dx, dz)}`; it does not turn: dz presses the wall and dx shears it.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-
-        Examples:
-            >>> wall = mr.Masonry.shear_wall(0.8, 0.4, (0.2, 0.1), thickness=0.1)
-            >>> wall.names[0], wall.names[-1], len(wall.free)
-            ('base', 'beam', 18)
-        """
-        wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
-        return cls(between_beams(wall[1:]), **_halved(halves, options))
-
-    @classmethod
-    def between_floors(
-        cls,
-        wall: Block,
-        load: FloorLoad,
-        *,
-        bearing: Bearing = None,
-        crack: CrackHeight = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A wall that cracks between two floors, which hold it sideways, seen along its length.
-
-        The inner face at the base is x = 0. The upper floor is a block with the mass of the load between two smooth
-        guides, so that it may rise and not turn. It is anchored to the wall: its joint has a friction of 10, the
-        largest there is.
-
-        Args:
-            wall, load, bearing, crack: as of `VerticalBending`.
-            options: further arguments of `Masonry`; `friction` is that of the base and the crack. The blocks are
-                "base", "lower", "upper", "floor", "inner_guide" and "outer_guide". All but the two of the wall and the
-                floor are fixed.
-
-        Raises:
-            TypeError, ValueError: as `VerticalBending` or `Masonry` does.
-
-        Examples:
-            >>> strip = mr.Masonry.between_floors(mr.Block.from_size(0.3, 4.0), load=20e3)
-            >>> round(float(mr.collapse_multiplier(strip).multiplier), 2)
-            0.78
-        """
-        blocks = bending_between_floors(VerticalBending(wall, load, bearing, crack))
-        return cls(blocks, **_by_word((("guide", 0.0), ("floor", 10.0)), options))
-
-    @classmethod
-    def between_sides(cls, bending: HorizontalBending, **options: Unpack[JointOptions]) -> Self:
-        """A wall that cracks upright between two side walls, on a smooth bed.
-
-        The inner face is x = 0, and the middle of the wall y = 0. A block at either end stands for a side wall: smooth
-        guides hold it across the wall, and `effects=bending.tie` along it, up to the thrust.
-
-        Args:
-            bending: the wall, its crack and its thrust.
-            options: further arguments of `Masonry`; `friction` is that of the ends and of the crack, see
-                `HorizontalBending.friction`. The blocks are "ground", "left", "right", "side_0", "side_1" and four
-                fixed guides.
-
-        Raises:
-            TypeError, ValueError: as `Masonry` does.
-
-        Examples:
-            >>> strip = mr.HorizontalBending(mr.Block.from_size(0.5, 2.0, 6.0), thrust=12e3)
-            >>> blocks = mr.Masonry.between_sides(strip)
-            >>> round(float(mr.collapse_multiplier(blocks, effects=strip.tie).multiplier), 4)
-            0.068
-        """
-        require_kind("bending", bending, HorizontalBending)
-        return cls(bending_between_sides(bending), **_by_word((("guide", 0.0), ("ground", 0.0)), options))
-
-    @classmethod
-    def wallette(
-        cls,
-        length: Size,
-        height: Size,
-        unit: Unit,
-        thickness: Length,
-        density: Density = 2000.0,
-        *,
-        leaves: Annotated[int, Within(1, 10, whole=True)] = 1,
-        headers: Annotated[int, Within(0, 1000, whole=True)] = 0,
-        beam: bool = True,
-        halves: Bond | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A wall in running bond in space on a fixed base, as laboratories load it out of its plane.
-
-        Its length runs along y, and its outer face is x = 0, as that of a facade.
-
-        Args:
-            length, height, unit, thickness, density, halves: as of `running_bond`; units of several leaves are whole.
-            leaves: wythes beside each other through the thickness, 1 to 10. The joints between them have the normal x,
-                so that a function of the joint gives them a bond of their own.
-            headers: every so many courses, 0 to 1000, one of headers, half a unit long, that go through all leaves;
-                0 for none.
-            beam: whether a fixed beam lies on it, which the case leads by `supports={"beam": (t, dx, dy, dz)}`.
-            options: further arguments of `Masonry`. The blocks are "base", the units as of `running_bond` with the
-                number of the leaf or a letter of the header, and "beam".
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-
-        Examples:
-            >>> wall = mr.Masonry.wallette(0.8, 0.4, (0.2, 0.1), 0.2, leaves=2, headers=4)
-            >>> wall.names[1], wall.names[-2], len(wall.free)
-            ('unit_0_0_0', 'unit_3_4', 34)
-        """
-        if halves is not None and (leaves, headers) != (1, 0):
-            raise ValueError(
-                f"halves with leaves = {leaves} and headers = {headers}: units of several leaves are whole"
-            )
-        wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
-        flat = between_beams(wall[1:])
-        blocks = wallette_of(flat if require_flag("beam", beam) else flat[:-1], unit[0], leaves, headers)
-        return cls(blocks, **_halved(halves, options))
-
-    @classmethod
-    def box(cls, size: Extents, *, density: Density = 2000.0, **options: Unpack[JointOptions]) -> Self:
-        """One box, `block`, on the ground, in the middle of it.
-
-        Args:
-            size: its extents along x, y and z [m], 1e-3 to 10000 each.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(box_on_ground(size, density), **options)
-
-    @classmethod
-    def column(
-        cls,
-        width: Annotated[Taper, Within(0.01, 100, "m")],
-        height: Annotated[float, Within(0.01, 1000, "m")],
-        drums: Annotated[int, Within(1, 1000, whole=True)],
-        *,
-        sides: Annotated[int, Within(3, 100, whole=True)] = 4,
-        density: Density = 2000.0,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A column of drums of equal height on the ground.
-
-        Args:
-            width: diameter of the circle within the section [m], 0.01 to 100: the side of a square. A pair is that of
-                the bottom and of the top of a column that tapers.
-            height: of the column [m], 0.01 to 1000.
-            drums: how many, 1 to 1000, each of a height of 0.01 to 100 widths. They are named `drum_0` and so on, from
-                the lowest upwards.
-            sides: of the section, a regular polygon, 3 to 100. A square one has its sides along x and y.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(column_of(width, height, drums, sides, density), **options)
-
-    @classmethod
-    def dome(
-        cls,
-        radius: Annotated[float, Within(0.1, 1000, "m")],
-        thickness: Thick,
-        lunes: Annotated[int, Within(4, 360, whole=True)],
-        hoops: Annotated[int, Within(1, 360, whole=True)],
-        *,
-        oculus: Annotated[float, Within(0.01, 1.5, "rad")] = 0.05,
-        density: Density = 2000.0,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A hemispherical dome of voussoirs with plane faces, which springs from the ground.
-
-        Args:
-            radius: of the middle of the thickness at the corners of the voussoirs [m], 0.1 to 1000.
-            thickness: [m], 1e-5 to 1000, 0.001 to 1 times the radius; or a pair, at the springing and at the oculus,
-                between which it changes linearly with the angle.
-            lunes: how many voussoirs a hoop has, 4 to 360.
-            hoops: how many hoops of equal angles, 1 to 360. `voussoir_0_3` is the fourth of the lowest hoop.
-            oculus: angle at the centre between the axis and the edge of the opening at the crown [rad], 0.01 to 1.5.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(dome_of(radius, thickness, lunes, hoops, oculus, density), **options)
-
-    @classmethod
-    def facade(
-        cls,
-        length: Size,
-        height: Size,
-        depth: Annotated[float, Within(0, 1000, "m")],
-        unit: Unit,
-        *,
-        thickness: Annotated[float | None, Within(0.01, 10, "m")] = None,
-        returns: str = "both",
-        openings: Sequence[tuple[Annotated[float, COORDINATE], Opening]] = (),
-        gable: int = 0,
-        ground: Polyhedron | None = None,
-        density: Density = 2000.0,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A facade and return walls behind it, on the ground.
-
-        All walls are one unit thick and in running bond, by half a unit. In every second course the return walls come
-        through to the face of the facade as headers. Units are made to fit: their length and height are the nearest to
-        those asked for that divide the walls. The face of the facade is x = 0, and the middle of its length is y = 0.
-        Blocks are named `facade_`, `left_` and `right_` with the course and a number in it.
-
-        Args:
-            length: of the facade with its corners [m], 0.01 to 1000.
-            height: of the walls [m], 0.01 to 1000.
-            depth: of the return walls with the thickness of the facade [m], 0 to 1000; without any it
-                plays no part.
-            unit: length and height of a unit [m], 0.01 to 100.
-            thickness: of all walls [m], 0.01 to 10; None is half the length of a unit.
-            returns: where return walls are: "both" ends, "left" where y is negative, "right" or "none".
-            openings: pairs of the y of the middle of an opening [m], -10000 to 10000, and the `Opening`. They cut
-                units. A lintel of half a course or more lies over each, up to a bed joint, and bears on half a unit on
-                either side.
-            gable: courses above the walls, each of which is a unit shorter than the one below, 0 to as many as there
-                are. The first is as long as the facade, or shorter by the corners over an odd number of courses.
-            ground: a fixed block with its upper face at z = 0; None is ground that reaches two heights beyond.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, an opening that does not fit, or as `Masonry` does.
-        """
-        require_kind("ground", ground, Polyhedron, type(None))
-        walls = walls_of(length, height, depth, unit, thickness=thickness, returns=returns, gable=gable)
-        return cls(facade_of(walls, openings, density, ground), **options)
-
-    @classmethod
-    def corner(
-        cls,
-        thickness: Annotated[float, Within(0.01, 10, "m")],
-        height: Annotated[float, Within(0.1, 100, "m")],
-        angle: Annotated[float, Within(0, 1.4, "rad")] = 0.0,
-        *,
-        density: Annotated[float, Within(100, 30000, "kg/m3")] = 2000.0,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """A corner of two walls that overturns with a wedge of either, from smooth cracks.
-
-        The outer faces are x = 0 and y = 0, and the walls go towards -x and y. Along its diagonal, which is
-        `angle=-math.pi / 4` of `push` and `collapse_multiplier`, the corner turns about its outer edge at the origin.
-        Across one wall it turns about the outer face of that, at 1 / sqrt(2) of the multiplier below. With t the
-        thickness, h the height and p = h tan(angle) the length of a wedge at the top,
-
-            alpha_0 = [t^2 + p (3 t / 2 + p / 3)] / (sqrt(2) h (t / 2 + 2 p / 3)).
-
-        Args:
-            thickness: of both walls [m], 0.01 to 10.
-            height: of the storey that turns [m], 0.1 to 100.
-            angle: of the cracks from the vertical [rad], 0 to 1.4. Without wedges the post in the corner turns alone.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`; `friction` is that of the base. The blocks are "ground", "corner",
-                and "rest_0" and "rest_1", what stays of the walls. All but the corner are fixed.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-
-        Examples:
-            >>> corner = mr.Masonry.corner(0.5, 4.0, angle=math.radians(30))
-            >>> round(float(mr.collapse_multiplier(corner, angle=-math.pi / 4).multiplier), 4)
-            0.3714
-        """
-        return cls(wall_corner(thickness, height, angle, density), **_by_word((("rest", 0.0),), options))
-
-    @classmethod
-    def from_obj(
-        cls,
-        path: AnyPath,
-        fixed: Sequence[str] = (),
-        *,
-        ground: bool = False,
-        density: Density = 2000.0,
-        scale: Scale = None,
-        unit: str | None = None,
-        up: str | None = None,
-        convex: str | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """Blocks of a Wavefront OBJ file: its objects, or the groups of them.
-
-        Every body has to be closed, and to touch another within the `tolerance`. A support may be an open plate: it
-        becomes a fixed block behind its face, a tenth of its extent thick.
-
-        Args:
-            path: of the file. Several bodies of one object are numbered.
-            fixed: names of the bodies that are fixed.
-            ground: whether fixed ground is put under the lowest point.
-            density: mass density of blocks whose file says none [kg/m3], 100 to 30000.
-            scale: length of a unit of the file [m], 1e-6 to 1e3: 0.001 for millimetres. None takes the `unit`.
-            unit: of the file, "m", "cm", "mm", "in" or "ft", in the place of `scale`. None is m.
-            up: axis of the file that points upwards, "x", "y" or "z": the file is turned until that is z. Blender and
-                glTF have "y". None is "z", and odd masonry is doubted.
-            convex: what becomes of a body that is not convex. "hull" takes its convex hull and warns of the volume that
-                is added. "parts" cuts it along the planes of its faces into a `Compound`, which fills the same volume.
-                None refuses it.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: if the file is not valid, or a body is open, not convex or touches no other; the message names
-                both. Or as `Masonry` does.
-
-        Warns:
-            Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances. A UserWarning says what volume hulls add.
-        """
-        return cls._read(read_obj, path, density, Given(fixed, ground, scale, unit, up, convex), options)
-
-    @classmethod
-    def from_stl(
-        cls,
-        path: AnyPath,
-        fixed: Sequence[str] = (),
-        *,
-        ground: bool = False,
-        density: Density = 2000.0,
-        scale: Scale = None,
-        unit: str | None = None,
-        up: str | None = None,
-        convex: str | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """Blocks of an STL file, binary or text: its solids, or the closed bodies that it lists one after the other.
-
-        Args:
-            path: of the file. Bodies without a name are `body_0` and so on.
-            fixed, ground, density, scale, unit, up, convex, options: as of `from_obj`.
-
-        Raises:
-            ValueError: as `from_obj` does.
-        """
-        return cls._read(read_stl, path, density, Given(fixed, ground, scale, unit, up, convex), options)
-
-    @classmethod
-    def from_ply(
-        cls,
-        path: AnyPath,
-        fixed: Sequence[str] = (),
-        *,
-        ground: bool = False,
-        density: Density = 2000.0,
-        scale: Scale = None,
-        unit: str | None = None,
-        up: str | None = None,
-        convex: str | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """Blocks of a PLY file, binary or text: the closed bodies that it lists one after the other.
-
-        Args:
-            path: of the file. Bodies are `body_0` and so on, or `body` where there is one.
-            fixed, ground, density, scale, unit, up, convex, options: as of `from_obj`.
-
-        Raises:
-            ValueError: as `from_obj` does.
-        """
-        return cls._read(read_ply, path, density, Given(fixed, ground, scale, unit, up, convex), options)
-
-    @classmethod
-    def from_compas(
-        cls,
-        path: AnyPath,
-        fixed: Sequence[str] = (),
-        *,
-        ground: bool = False,
-        density: Density = 2000.0,
-        scale: Scale = None,
-        unit: str | None = None,
-        up: str | None = None,
-        convex: str | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, an `Assembly` of
-        compas_assembly, also of COMPAS 0 and 1, or a list of meshes. Its supports are fixed.
-
-        Args:
-            path: of the file.
-            fixed: names of further bodies that are fixed.
-            ground, density, scale, unit, up, convex, options: as of `from_obj`. A density of the material of a block
-                comes first.
-
-        Raises:
-            ValueError: as `from_obj` does.
-        """
-        return cls._read(read_compas, path, density, Given(fixed, ground, scale, unit, up, convex), options)
-
-    @classmethod
-    def from_lmgc90(
-        cls,
-        path: AnyPath,
-        fixed: Sequence[str] = (),
-        *,
-        ground: bool = False,
-        density: Density = 2000.0,
-        scale: Scale = None,
-        unit: str | None = None,
-        up: str | None = None,
-        convex: str | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """Blocks of the input of LMGC90: bodies RBDY3 with one polyhedron POLYR each. Bodies that are held are fixed.
-
-        Joints are those of mjrock: laws of contact, loads and gravity of the folder are not read.
-
-        Args:
-            path: of a folder DATBOX with BODIES.DAT, BULK_BEHAV.DAT, DRV_DOF.DAT and DOF.INI, or of its BODIES.DAT.
-            fixed: names of further bodies that are fixed, such as "body_1".
-            ground, density, scale, unit, up, convex, options: as of `from_obj`. A density of the material of a body
-                comes first.
-
-        Raises:
-            ValueError: as `from_obj` does; for bodies of other kinds or of several polyhedra, or driven ones.
-
-        Warns:
-            UserWarning: of planes, spheres and other shapes, which are left out, and where one of the files is missing.
-        """
-        return cls._read(read_lmgc90, path, density, Given(fixed, ground, scale, unit, up, convex), options)
-
-    @classmethod
-    def from_meshes(
-        cls,
-        meshes: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]],
-        fixed: Sequence[str] = (),
-        *,
-        ground: bool = False,
-        density: Density = 2000.0,
-        scale: Scale = None,
-        unit: str | None = None,
-        up: str | None = None,
-        convex: str | None = None,
-        **options: Unpack[JointOptions],
-    ) -> Self:
-        """Blocks of meshes that another library has read, such as those of IFC, glTF or Blender.
-
-        Args:
-            meshes: by the names of bodies, vertices, shape (n, 3), and faces, numbers of the vertices around each.
-            fixed, ground, density, scale, unit, up, convex, options: as of `from_obj`.
-
-        Raises:
-            TypeError, ValueError: for what is no mesh, or as `from_obj` does.
-        """
-        return cls._of_meshes(meshes_of(meshes), density, Given(fixed, ground, scale, unit, up, convex), options)
+        return cls(made, **given)
 
     @classmethod
     def from_dxf(
@@ -1213,18 +529,14 @@ class Masonry(NotebookPicture):
             UserWarning: if the drawing is damaged and was repaired while it was read, or holds splines, hatches or
                 other areas, which are left out.
         """
-        given, path = Given(fixed, ground, scale, unit, up, convex).checked(), require_path("path", path)
-        asked = None if layers is None else names_of_list("layers", layers)
+        given = file_options(fixed, ground=ground, scale=scale, unit=unit, up=up, convex=convex)
+        path, known = require_path("path", path), None if layers is None else names_of_list("layers", layers)
         with about(f"path = {path}"):
-            drawing = read_dxf(path, asked)
-            try:
+            drawing = read_dxf(path, known)
+            drawn = {outline.name: outline.corners for outline in drawing.outlines}
+            with sizes_in_errors(drawn, given.matrix(drawing.unit or 1.0)):
                 blocks = polygons_of(drawing, given, density, length)
-                if given.ground:
-                    blocks.insert(0, ground_below_all(blocks))
-                masonry = cls(blocks, **options)._touching()
-            except ValueError as error:
-                drawn = {outline.name: outline.corners for outline in drawing.outlines}
-                raise with_sizes(error, drawn, given.matrix(drawing.unit or 1.0)) from None
+                masonry = cls([ground_below_all(blocks), *blocks] if ground else blocks, **options)._touching()
         if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
             stated = f"its header says that its unit is {drawing.unit:g} m, which a template may have left there"
             warn_of(f"path = {path}: {stated}; unit= takes another")
@@ -1247,31 +559,20 @@ class Masonry(NotebookPicture):
         return write_text(require_path("path", path), compas_text(self.convex_in_space("a COMPAS model"), self.names))
 
     @classmethod
-    def _read(
-        cls,
-        read: Callable[[Path], list[Mesh]],
-        path: AnyPath,
-        density: float,
-        given: Given,
-        options: JointOptions,
+    def _of_meshes(
+        cls, read: Callable[[Any], list[Mesh]], source: object, given: FileOptions, options: JointOptions
     ) -> Self:
-        """Masonry of the meshes that a reader finds in a file."""
-        given, path = given.checked(), require_path("path", path)
-        with about(f"path = {path}"):
-            return cls._of_meshes(read(path), density, given, options)
-
-    @classmethod
-    def _of_meshes(cls, meshes: Sequence[Mesh], density: float, given: Given, options: JointOptions) -> Self:
-        """Masonry of meshes."""
-        given = given.checked()
-        try:
-            blocks = blocks_of(meshes, density, given)
-            if given.ground:
-                corners = np.concatenate([block.corners for block in blocks])
-                blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
-            masonry = cls(blocks, **options)._touching()
-        except ValueError as error:
-            raise with_sizes(error, {mesh.name: mesh.vertices for mesh in meshes}, given.matrix()) from None
+        """Masonry of the meshes that a reader finds in a file, or in meshes that a caller has."""
+        if read is not meshes_of:
+            source = require_path("path", source)
+        with about(f"path = {source}") if isinstance(source, Path) else nullcontext():
+            meshes = read(source)
+            with sizes_in_errors({mesh.name: mesh.vertices for mesh in meshes}, given.matrix()):
+                blocks = blocks_of(meshes, given)
+                if given.ground:
+                    corners = np.concatenate([block.corners for block in blocks])
+                    blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
+                masonry = cls(blocks, **options)._touching()
         if given.up is None and (odd := odd_axis(masonry.blocks, masonry.space_joints, given.ground)):
             warn_of(odd, Implausible)
         return masonry
@@ -1333,16 +634,3 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
         if number > 1:
             raise ValueError(f"blocks: {number} of them have the name {name}")
     return tuple(blocks)
-
-
-def _by_word(words: tuple[tuple[str, float], ...], options: JointOptions) -> Properties:
-    """Properties of joints, with the friction of those that have a word in their names."""
-    given = one_by_one(options)
-    return given | {"friction": ByWord(words, Dry.friction if given["friction"] is None else given["friction"])}
-
-
-def _halved(halves: Bond | None, options: JointOptions) -> Properties:
-    """Keywords of masonry whose units are divided by a bond, or not."""
-    require_kind("halves", halves, Bond, type(None))
-    given = one_by_one(options)
-    return given if halves is None else given | {"bond": Halved(given["bond"], halves)}

@@ -1,21 +1,49 @@
-"""Blocks of masonry that is built often, in the plane: a stack, an arch, and a wall in running bond."""
+"""Builders of blocks in the plane: a stack, an arch, walls in running bond, and a wall between floors."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from ....quantities import Array, require_flag, require_kind, require_sequence, require_whole, require_within, shown
-from ...wall.bending import VerticalBending
+from ....quantities import (
+    Array,
+    Density,
+    P,
+    Result,
+    Within,
+    require_flag,
+    require_kind,
+    require_sequence,
+    require_whole,
+    require_within,
+    shown,
+    within_ranges,
+)
+from ...wall.bending import Bearing, CrackHeight, FloorLoad, VerticalBending
 from ...wall.block import Block
 from ...wall.effects import SideStop
 from ..blocks.compound import Compound, FlatBlock
 from ..blocks.polygon import Polygon
+from ..laws.bond import Bond
+
+__all__ = ["arch", "between_floors", "running_bond", "shear_wall", "stack"]
+
+Taper = float | tuple[float, float]
+"""A measure [m], or a pair: what it is at one end and at the other, between which it changes linearly."""
+Radius = Annotated[float, Within(0.01, 1000, "m")]
+Thick = Annotated[Taper, Within(1e-5, 1000, "m")]
+SpanAngle = Annotated[float, Within(0.1, math.pi, "rad")]
+Voussoirs = Annotated[int, Within(1, 1000, whole=True)]
+Length = Annotated[float, Within(1e-3, 1000, "m")]
+Size = Annotated[float, Within(0.01, 1000, "m")]
+Side = Annotated[float, Within(0.01, 100, "m")]
+Unit = tuple[Side, Side]
+"""Sizes that builders share."""
 
 GROUND_DEPTH = 0.25
 """Depth of the ground, over the width of what stands on it [-]."""
@@ -27,8 +55,6 @@ SMALLEST_PIECE = 0.1
 """Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
 DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
 """Depth of a loading beam, and how far it reaches beyond the wall at either end, over the length of the wall [-]."""
-LEAST_RADIUS = 0.01
-"""Least radius of an arch [m]."""
 MOST_BODIES = 5000
 """Most blocks of a wall."""
 
@@ -61,8 +87,34 @@ def ground_below_all(blocks: Sequence[FlatBlock]) -> Polygon:
     return ground_under(left, right, high - low, max(block.length for block in blocks), low)
 
 
-def stacked(blocks: Sequence[Block], ground: bool) -> list[FlatBlock]:
-    """Blocks one on the other, their bases centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
+def friction_of(**words: float) -> Callable[[Callable[P, Result]], Callable[P, Result]]:
+    """Mark a builder: in `Masonry`, joints whose name has one of these words have its coefficient of friction [-]."""
+
+    def marked(builder: Callable[P, Result]) -> Callable[P, Result]:
+        builder.friction = words  # type: ignore[attr-defined]
+        return builder
+
+    return marked
+
+
+def stack(blocks: Sequence[Block], ground: bool = True, side_stop: bool | SideStop = False) -> list[FlatBlock]:
+    """Blocks one on the other, their bases centred on x = 0, from the lowest upwards. One with a profile is a
+    `Compound`.
+
+    A `Block` is at least as high as it is thick. Flatter ones are drawn as polygons.
+
+    Args:
+        blocks: the blocks, whose insets are zero.
+        ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
+        side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
+            reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and has a joint
+            with each face that it lies behind, at whose ends they meet. It follows setbacks, as side walls do,
+            clear of the ledge as that rises, and does not reach under a block that stands out farther than those
+            below it.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
+    """
     require_flag("ground", ground)
     require_sequence("blocks", blocks, "a list of blocks")
     if not blocks:
@@ -87,7 +139,8 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[FlatBlock]:
     if ground:
         b, length = max(block.b for block in blocks), max(block.length for block in blocks)
         polygons.insert(0, ground_under(-b, b, z, length))
-    return polygons
+    side = side_of(polygons, side_stop)
+    return polygons if side is None else [*polygons, side]
 
 
 def _standing(
@@ -146,7 +199,7 @@ def _inner(block: FlatBlock) -> list[Inner]:
 
 
 def _behind(pieces: Sequence[Inner], top: float) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-    """x and z of both ends of each piece of a side stop up to a height [m], see `Masonry.stack`."""
+    """x and z of both ends of each piece of a side stop up to a height [m], see `stack`."""
     inmost, faces = math.inf, list[Inner]()
     for piece in reversed(pieces):
         x_high = min(inmost, piece.x[1])
@@ -177,10 +230,6 @@ def required_unit(unit: object) -> tuple[float, float]:
     return long, require_within("unit height", unit[1], 1e-2, 100.0, "m")
 
 
-Taper = float | tuple[float, float]
-"""A measure [m], or a pair: what it is at one end and at the other, between which it changes linearly."""
-
-
 def required_ends(name: str, measure: Taper, low: float, high: float) -> tuple[float, float]:
     """A measure at both ends [m]; a TypeError or ValueError says what is wrong with it."""
     if not isinstance(measure, tuple | list):
@@ -190,29 +239,25 @@ def required_ends(name: str, measure: Taper, low: float, high: float) -> tuple[f
     return require_within(name, measure[0], low, high, "m"), require_within(name, measure[1], low, high, "m")
 
 
-def rings_of(radius: float, thickness: Taper, least: float, share: Array) -> tuple[Array, Array]:
+def rings_of(radius: float, thickness: Taper, share: Array) -> tuple[Array, Array]:
     """Radii of the inner and the outer face of an arch or a dome at its joints [m], from that of the middle.
 
     Args:
-        radius: of the middle, at least so large [m].
+        radius: of the middle [m].
         thickness: at the springing and at the crown [m].
-        least: the least radius [m].
         share: where the joints are, from 0 at the springing to 1 at the crown [-].
     """
-    radius = require_within("radius", radius, least, 1e3, "m")
     springing, crown = required_ends("thickness", thickness, 1e-3 * radius, radius)
     half = 0.5 * (springing + (crown - springing) * share)
     return radius - half, radius + half
 
 
-def arch_of(
+def voussoirs_of(
     radius: float, thickness: Taper, span_angle: float, voussoirs: int, density: float, length: float
 ) -> list[Polygon]:
-    """Voussoirs of equal angles between two fixed abutments, from left to right, see `Masonry.arch`."""
-    span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
-    count = require_whole("voussoirs", voussoirs, 1, 1000)
-    along = np.arange(count + 1) / count
-    inner, outer = rings_of(radius, thickness, LEAST_RADIUS, 1 - np.abs(1 - 2 * along))
+    """Voussoirs of equal angles between two fixed abutments, from left to right, see `arch`."""
+    along = np.arange(voussoirs + 1) / voussoirs
+    inner, outer = rings_of(radius, thickness, 1 - np.abs(1 - 2 * along))
     angles = 0.5 * math.pi + span_angle * (0.5 - along)
     directions = np.column_stack([np.cos(angles), np.sin(angles)])
     intrados, extrados = inner[:, None] * directions, outer[:, None] * directions
@@ -223,9 +268,9 @@ def arch_of(
             length=length,
             name=f"voussoir_{i}",
         )
-        for i in range(count)
+        for i in range(voussoirs)
     ]
-    for name, i, side in (("left_abutment", 0, -1.0), ("right_abutment", count, 1.0)):
+    for name, i, side in (("left_abutment", 0, -1.0), ("right_abutment", voussoirs, 1.0)):
         at = directions[i]
         down = (outer[i] - inner[i]) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
         corners = [intrados[i], extrados[i], extrados[i] + down, intrados[i] + down]
@@ -234,7 +279,7 @@ def arch_of(
 
 
 def curved(arch: Sequence[Polygon], chords: int) -> list[FlatBlock]:
-    """An arch in which so many voussoirs that follow each other are one, see `Masonry.arch`."""
+    """An arch in which so many voussoirs that follow each other are one, see `arch`."""
     if chords == 1:
         return list(arch)
     left, *pieces, right = arch
@@ -243,14 +288,78 @@ def curved(arch: Sequence[Polygon], chords: int) -> list[FlatBlock]:
     return [left, *joined, right]
 
 
-def bonded_wall(
-    length: float, height: float, unit: tuple[float, float], thickness: float, density: float, halved: bool
+@within_ranges
+def arch(
+    radius: Radius,
+    thickness: Thick,
+    span_angle: SpanAngle = math.pi,
+    voussoirs: Voussoirs = 17,
+    *,
+    density: Density = 2000.0,
+    length: Length = 1.0,
+    chords: Annotated[int, Within(1, 50, whole=True)] = 1,
+    ground: bool = False,
+) -> list[FlatBlock]:
+    """A circular arch of voussoirs of equal angles, between two fixed abutments.
+
+    Edges are straight: halfway between joints that are delta apart [rad], an arch of one thickness is
+    cos(delta / 2) times as thick as at the joints.
+
+    Args:
+        radius: of the middle of the arch at the joints [m], 0.01 to 1000.
+        thickness: across the arch at the joints [m], 1e-5 to 1000, 0.001 to 1 times the radius; or a pair, at the
+            springing and at the crown, between which it changes linearly with the angle.
+        span_angle: angle between the two springings [rad], 0.1 to pi.
+        voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
+        density: mass density [kg/m3], 100 to 30000.
+        length: length out of the plane [m], 1e-3 to 1000.
+        chords: straight edges of the intrados and of the extrados of a voussoir, 1 to 50. With two or more a
+            voussoir is a `Compound`. Voussoirs times chords are at most 1000.
+        ground: whether fixed ground lies under the lowest point of the abutments, two heights beyond them. Without
+            it voussoirs that leave the arch fall on, and explicit steps name them.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
+
+    Examples:
+        >>> arch = mr.Masonry.arch(radius=5.0, thickness=(0.9, 0.6), voussoirs=16)
+        >>> sorted(round(joint.width, 2) for joint in arch.joints)[::8]
+        [0.6, 0.75, 0.9]
+    """
+    count = require_whole("voussoirs", voussoirs, 1, 1000 // chords)
+    blocks = curved(voussoirs_of(radius, thickness, span_angle, count * chords, density, length), chords)
+    return [*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks
+
+
+@within_ranges
+def running_bond(
+    length: Size,
+    height: Size,
+    unit: Unit,
+    thickness: Length = 1.0,
+    density: Density = 2000.0,
+    *,
+    halves: Bond | None = None,
 ) -> list[Polygon]:
-    """The ground and units in running bond on it, whole ones in two halves or not, see `Masonry.running_bond`."""
+    """A wall of units in running bond on the ground, which moves in the plane of its face.
+
+    Args:
+        length, height: of the wall [m], 0.01 to 1000. The height is a whole number of units. What is left of a
+            course at its end is a piece of a unit.
+        unit: length and height of a unit [m], 0.01 to 100.
+        thickness: of the wall, out of the plane [m], 1e-3 to 1000.
+        density: mass density [kg/m3], 100 to 30000.
+        halves: the bond of a potential crack in the middle of each whole unit, which divides it in two, or None.
+            The halves of `unit_2_0` are `unit_2_0a` and `unit_2_0b`, by which functions of the joint know them.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+    require_kind("halves", halves, Bond, type(None))
     long, high = required_unit(unit)
     length = require_within("wall length", length, long, 1e3, "m")
     height = require_within("wall height", height, high, 1e3, "m")
-    thickness = require_within("wall thickness", thickness, 1e-3, 1e3, "m")
+    halved = halves is not None
     courses = round(height / high)
     if not math.isclose(courses * high, height, rel_tol=1e-6):
         raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
@@ -276,7 +385,7 @@ def bonded_wall(
 
 
 def between_beams(units: Sequence[Polygon]) -> list[Polygon]:
-    """Units of a wall between a base and a beam, both fixed, see `Masonry.shear_wall`."""
+    """Units of a wall between a base and a beam, both fixed, see `shear_wall`."""
     corners = np.concatenate([unit.corners for unit in units])
     (left, low), (right, high) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     deep, beyond, thickness = DEEP_BEAM * (right - left), BEYOND_BEAM * (right - left), units[0].length
@@ -285,10 +394,67 @@ def between_beams(units: Sequence[Polygon]) -> list[Polygon]:
     return [base, *units, beam]
 
 
-def bending_between_floors(bending: VerticalBending) -> list[FlatBlock]:
-    """The two bodies of a wall between a fixed floor and one that two guides hold sideways, see
-    `Masonry.between_floors`."""
-    wall, crack = bending.wall, bending.crack_height
+@within_ranges
+def shear_wall(
+    length: Size,
+    height: Size,
+    unit: Unit,
+    thickness: Length = 1.0,
+    density: Density = 2000.0,
+    *,
+    halves: Bond | None = None,
+) -> list[Polygon]:
+    """A wall in running bond between a fixed base and a loading beam, as laboratories press and shear it.
+
+    The blocks are "base", the units as of `running_bond`, and "beam". Base and beam are fixed and reach a fifth of
+    the length beyond the wall. The case leads the beam by `supports={"beam": (t, dx, dz)}`; it does not turn: dz
+    presses the wall and dx shears it.
+
+    Args:
+        length, height, unit, thickness, density, halves: as of `running_bond`.
+
+    Raises:
+        ValueError: for a value outside its range.
+
+    Examples:
+        >>> wall = mr.Masonry.shear_wall(0.8, 0.4, (0.2, 0.1), thickness=0.1)
+        >>> wall.names[0], wall.names[-1], len(wall.free)
+        ('base', 'beam', 18)
+    """
+    return between_beams(running_bond(length, height, unit, thickness, density, halves=halves)[1:])
+
+
+@friction_of(guide=0.0, floor=10.0)
+@within_ranges
+def between_floors(
+    wall: Block,
+    load: FloorLoad,
+    *,
+    bearing: Bearing = None,
+    crack: CrackHeight = None,
+) -> list[FlatBlock]:
+    """A wall that cracks between two floors, which hold it sideways, seen along its length.
+
+    The inner face at the base is x = 0. The upper floor is a block with the mass of the load between two smooth
+    guides, so that it may rise and not turn. It is anchored to the wall: its joint has a friction of 10, the
+    largest there is.
+
+    `friction` of `Masonry` is that of the base and the crack. The blocks are "base", "lower", "upper", "floor",
+    "inner_guide" and "outer_guide". All but the two of the wall and the floor are fixed.
+
+    Args:
+        wall, load, bearing, crack: as of `VerticalBending`.
+
+    Raises:
+        TypeError, ValueError: as `VerticalBending` does.
+
+    Examples:
+        >>> strip = mr.Masonry.between_floors(mr.Block.from_size(0.3, 4.0), load=20e3)
+        >>> round(float(mr.collapse_multiplier(strip).multiplier), 2)
+        0.78
+    """
+    bending = VerticalBending(wall, load, bearing, crack)
+    middle = bending.crack_height
     thickness, height, deep = 2 * wall.b, 2 * wall.h, bending.floor_depth
     left, right = bending.floor_ends
     low, top = height + 0.5 * deep, height + 1.5 * deep
@@ -299,8 +465,8 @@ def bending_between_floors(bending: VerticalBending) -> list[FlatBlock]:
 
     return [
         part("base", (-2 * thickness, 3 * thickness), (-thickness, 0.0)),
-        _standing(wall, (wall.b, 0.0), False, "lower", (0.0, crack)),
-        _standing(wall, (wall.b, 0.0), False, "upper", (crack, height)),
+        _standing(wall, (wall.b, 0.0), False, "lower", (0.0, middle)),
+        _standing(wall, (wall.b, 0.0), False, "upper", (middle, height)),
         part("floor", (left, right), (height, height + deep), bending.floor_density),
         part("inner_guide", (left - thickness, left), (low, top)),
         part("outer_guide", (right, right + thickness), (low, top)),

@@ -1,5 +1,4 @@
-"""Blocks of masonry that is built often, in space: a box, a column, a dome, a corner, and a facade with
-return walls."""
+"""Builders of blocks in space: a box, a column, a dome, a corner, a wallette, and a facade with return walls."""
 
 from __future__ import annotations
 
@@ -7,13 +6,16 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ....quantities import (
+    Density,
+    Within,
     require_array,
+    require_flag,
     require_kind,
     require_real,
     require_sequence,
@@ -21,13 +23,31 @@ from ....quantities import (
     require_within,
     shown,
     spelt,
+    within_ranges,
 )
 from ...wall.bending import HorizontalBending
 from ...wall.section import Opening
 from ..blocks.compound import Compound, SolidBlock
-from ..blocks.polygon import Polygon
-from ..blocks.polyhedron import Polyhedron
-from .in_plane import MOST_BODIES, SMALLEST_PIECE, Taper, extent_of_ground, required_ends, required_unit, rings_of
+from ..blocks.polygon import COORDINATE, Polygon
+from ..blocks.polyhedron import Extents, Polyhedron
+from ..laws.bond import Bond
+from .in_plane import (
+    MOST_BODIES,
+    SMALLEST_PIECE,
+    Length,
+    Size,
+    Taper,
+    Thick,
+    Unit,
+    extent_of_ground,
+    friction_of,
+    required_ends,
+    required_unit,
+    rings_of,
+    shear_wall,
+)
+
+__all__ = ["between_sides", "box", "column", "corner", "dome", "facade", "wallette"]
 
 WHOLE = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
@@ -45,15 +65,45 @@ def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
     return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
 
 
-def box_on_ground(size: ArrayLike, density: float) -> list[Polyhedron]:
-    """The ground and a box on it, see `Masonry.box`."""
+@within_ranges
+def box(size: Extents, *, density: Density = 2000.0) -> list[Polyhedron]:
+    """One box, `block`, on the ground, in the middle of it.
+
+    Args:
+        size: its extents along x, y and z [m], 1e-3 to 10000 each.
+        density: mass density [kg/m3], 100 to 30000.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
     extents = require_array("size", size, (3,))
     block = Polyhedron.box(extents, (0.0, 0.0, 0.5 * float(extents[2])), density, name="block")
     return [ground_below(block.corners.min(axis=0), block.corners.max(axis=0)), block]
 
 
-def column_of(width: Taper, height: float, drums: int, sides: int, density: float) -> list[Polyhedron]:
-    """The ground and prismatic drums on it, see `Masonry.column`."""
+@within_ranges
+def column(
+    width: Annotated[Taper, Within(0.01, 100, "m")],
+    height: Annotated[float, Within(0.01, 1000, "m")],
+    drums: Annotated[int, Within(1, 1000, whole=True)],
+    *,
+    sides: Annotated[int, Within(3, 100, whole=True)] = 4,
+    density: Density = 2000.0,
+) -> list[Polyhedron]:
+    """A column of drums of equal height on the ground.
+
+    Args:
+        width: diameter of the circle within the section [m], 0.01 to 100: the side of a square. A pair is that of
+            the bottom and of the top of a column that tapers.
+        height: of the column [m], 0.01 to 1000.
+        drums: how many, 1 to 1000, each of a height of 0.01 to 100 widths. They are named `drum_0` and so on, from
+            the lowest upwards.
+        sides: of the section, a regular polygon, 3 to 100. A square one has its sides along x and y.
+        density: mass density [kg/m3], 100 to 30000.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
     ends = required_ends("width", width, 1e-2, 100.0)
     angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
     for wide in ends:
@@ -71,11 +121,33 @@ def column_of(width: Taper, height: float, drums: int, sides: int, density: floa
     return blocks
 
 
-def dome_of(radius: float, thickness: Taper, lunes: int, hoops: int, oculus: float, density: float) -> list[Polyhedron]:
-    """The ground and the voussoirs of a hemisphere on it, see `Masonry.dome`."""
+@within_ranges
+def dome(
+    radius: Annotated[float, Within(0.1, 1000, "m")],
+    thickness: Thick,
+    lunes: Annotated[int, Within(4, 360, whole=True)],
+    hoops: Annotated[int, Within(1, 360, whole=True)],
+    *,
+    oculus: Annotated[float, Within(0.01, 1.5, "rad")] = 0.05,
+    density: Density = 2000.0,
+) -> list[Polyhedron]:
+    """A hemispherical dome of voussoirs with plane faces, which springs from the ground.
+
+    Args:
+        radius: of the middle of the thickness at the corners of the voussoirs [m], 0.1 to 1000.
+        thickness: [m], 1e-5 to 1000, 0.001 to 1 times the radius; or a pair, at the springing and at the oculus,
+            between which it changes linearly with the angle.
+        lunes: how many voussoirs a hoop has, 4 to 360.
+        hoops: how many hoops of equal angles, 1 to 360. `voussoir_0_3` is the fourth of the lowest hoop.
+        oculus: angle at the centre between the axis and the edge of the opening at the crown [rad], 0.01 to 1.5.
+        density: mass density [kg/m3], 100 to 30000.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
     if lunes * hoops >= MOST_BODIES:
         raise ValueError(f"lunes = {lunes} times hoops = {hoops} is outside the valid range up to {MOST_BODIES}")
-    inner, outer = rings_of(radius, thickness, 0.1, np.arange(hoops + 1) / hoops)
+    inner, outer = rings_of(radius, thickness, np.arange(hoops + 1) / hoops)
     polar, around = np.linspace(0.5 * math.pi, oculus, hoops + 1), 2 * math.pi * np.arange(lunes + 1) / lunes
     sines, levels = np.sin(polar), np.append(0.0, np.cos(polar[1:]))
     rays = sines[:, None, None] * np.column_stack([np.cos(around), np.sin(around)])
@@ -153,7 +225,7 @@ def walls_of(
     returns: str,
     gable: int,
 ) -> Walls:
-    """Measures of a facade, checked, see `Masonry.facade`."""
+    """Measures of a facade, checked, see `facade`."""
     long, high = required_unit(unit)
     if not isinstance(returns, str) or returns not in RETURNS:
         raise ValueError(f"returns = {spelt(returns)} is not one of {', '.join(RETURNS)}")
@@ -172,10 +244,48 @@ def walls_of(
     return Walls(length, depth, t, fitted, behind, height / courses, courses, gable, sides)
 
 
-def facade_of(
-    walls: Walls, openings: Sequence[tuple[float, Opening]], density: float, ground: Polyhedron | None
+@within_ranges
+def facade(
+    length: Size,
+    height: Size,
+    depth: Annotated[float, Within(0, 1000, "m")],
+    unit: Unit,
+    *,
+    thickness: Annotated[float | None, Within(0.01, 10, "m")] = None,
+    returns: str = "both",
+    openings: Sequence[tuple[Annotated[float, COORDINATE], Opening]] = (),
+    gable: int = 0,
+    ground: Polyhedron | None = None,
+    density: Density = 2000.0,
 ) -> list[Polyhedron]:
-    """The ground, and a facade and its return walls on it, see `Masonry.facade`."""
+    """A facade and return walls behind it, on the ground.
+
+    All walls are one unit thick and in running bond, by half a unit. In every second course the return walls come
+    through to the face of the facade as headers. Units are made to fit: their length and height are the nearest to
+    those asked for that divide the walls. The face of the facade is x = 0, and the middle of its length is y = 0.
+    Blocks are named `facade_`, `left_` and `right_` with the course and a number in it.
+
+    Args:
+        length: of the facade with its corners [m], 0.01 to 1000.
+        height: of the walls [m], 0.01 to 1000.
+        depth: of the return walls with the thickness of the facade [m], 0 to 1000; without any it
+            plays no part.
+        unit: length and height of a unit [m], 0.01 to 100.
+        thickness: of all walls [m], 0.01 to 10; None is half the length of a unit.
+        returns: where return walls are: "both" ends, "left" where y is negative, "right" or "none".
+        openings: pairs of the y of the middle of an opening [m], -10000 to 10000, and the `Opening`. They cut
+            units. A lintel of half a course or more lies over each, up to a bed joint, and bears on half a unit on
+            either side.
+        gable: courses above the walls, each of which is a unit shorter than the one below, 0 to as many as there
+            are. The first is as long as the facade, or shorter by the corners over an odd number of courses.
+        ground: a fixed block with its upper face at z = 0; None is ground that reaches two heights beyond.
+        density: mass density [kg/m3], 100 to 30000.
+
+    Raises:
+        ValueError: for a value outside its range, or an opening that does not fit.
+    """
+    require_kind("ground", ground, Polyhedron, type(None))
+    walls = walls_of(length, height, depth, unit, thickness=thickness, returns=returns, gable=gable)
     holes, lintels = _holes(openings, walls)
     half, top = 0.5 * walls.length, (walls.courses + walls.gable) * walls.high
     if ground is None:
@@ -275,8 +385,41 @@ def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Recta
     return pieces
 
 
-def wall_corner(thickness: float, height: float, angle: float, density: float) -> list[SolidBlock]:
-    """The ground, a corner with wedges of two walls, and what stays of them, see `Masonry.corner`."""
+@friction_of(rest=0.0)
+@within_ranges
+def corner(
+    thickness: Annotated[float, Within(0.01, 10, "m")],
+    height: Annotated[float, Within(0.1, 100, "m")],
+    angle: Annotated[float, Within(0, 1.4, "rad")] = 0.0,
+    *,
+    density: Annotated[float, Within(100, 30000, "kg/m3")] = 2000.0,
+) -> list[SolidBlock]:
+    """A corner of two walls that overturns with a wedge of either, from smooth cracks.
+
+    The outer faces are x = 0 and y = 0, and the walls go towards -x and y. Along its diagonal, which is
+    `angle=-math.pi / 4` of `push` and `collapse_multiplier`, the corner turns about its outer edge at the origin.
+    Across one wall it turns about the outer face of that, at 1 / sqrt(2) of the multiplier below. With t the
+    thickness, h the height and p = h tan(angle) the length of a wedge at the top,
+
+        alpha_0 = [t^2 + p (3 t / 2 + p / 3)] / (sqrt(2) h (t / 2 + 2 p / 3)).
+
+    `friction` of `Masonry` is that of the base. The blocks are "ground", "corner", and "rest_0" and "rest_1", what
+    stays of the walls. All but the corner are fixed.
+
+    Args:
+        thickness: of both walls [m], 0.01 to 10.
+        height: of the storey that turns [m], 0.1 to 100.
+        angle: of the cracks from the vertical [rad], 0 to 1.4. Without wedges the post in the corner turns alone.
+        density: mass density [kg/m3], 100 to 30000.
+
+    Raises:
+        ValueError: for a value outside its range.
+
+    Examples:
+        >>> corner = mr.Masonry.corner(0.5, 4.0, angle=math.radians(30))
+        >>> round(float(mr.collapse_multiplier(corner, angle=-math.pi / 4).multiplier), 4)
+        0.3714
+    """
     t, long = thickness, height * math.tan(angle)
     end = long + max(t, 0.5 * height)
 
@@ -297,9 +440,30 @@ def wall_corner(thickness: float, height: float, angle: float, density: float) -
     return [ground, Compound(turning, name="corner") if long > 0 else post, *rest]
 
 
-def bending_between_sides(bending: HorizontalBending) -> list[Polyhedron]:
-    """The two bodies of a wall on the ground between two blocks that guides hold across it, see
-    `Masonry.between_sides`."""
+@friction_of(guide=0.0, ground=0.0)
+@within_ranges
+def between_sides(bending: HorizontalBending) -> list[Polyhedron]:
+    """A wall that cracks upright between two side walls, on a smooth bed.
+
+    The inner face is x = 0, and the middle of the wall y = 0. A block at either end stands for a side wall: smooth
+    guides hold it across the wall, and `effects=bending.tie` along it, up to the thrust.
+
+    `friction` of `Masonry` is that of the ends and of the crack, see `HorizontalBending.friction`. The blocks are
+    "ground", "left", "right", "side_0", "side_1" and four fixed guides.
+
+    Args:
+        bending: the wall, its crack and its thrust.
+
+    Raises:
+        TypeError, ValueError: as `Masonry` does.
+
+    Examples:
+        >>> strip = mr.HorizontalBending(mr.Block.from_size(0.5, 2.0, 6.0), thrust=12e3)
+        >>> blocks = mr.Masonry.between_sides(strip)
+        >>> round(float(mr.collapse_multiplier(blocks, effects=strip.tie).multiplier), 4)
+        0.068
+    """
+    require_kind("bending", bending, HorizontalBending)
     t, high, half = 2 * bending.wall.b, 2 * bending.wall.h, 0.5 * bending.wall.length
     crack = bending.parts[0] - half
 
@@ -319,7 +483,7 @@ def bending_between_sides(bending: HorizontalBending) -> list[Polyhedron]:
 
 
 def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: int) -> list[Polyhedron]:
-    """Rectangles of a wall of the plane, its base and beam, as boxes in space, see `Masonry.wallette`."""
+    """Rectangles of a wall of the plane, its base and beam, as boxes in space, see `wallette`."""
     middle = 0.5 * float(blocks[0].corners[:, 0].min() + blocks[0].corners[:, 0].max())
     made: list[tuple[Polygon, str, tuple[float, float, float], tuple[float, float, float]]] = []
     for block in blocks:
@@ -344,3 +508,45 @@ def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: in
         many = f"leaves = {leaves} and headers = {headers} make a wall of {len(made)} blocks"
         raise ValueError(f"{many}; the valid range ends at {MOST_BODIES}")
     return [Polyhedron.box(size, centre, block.density, block.fixed, part) for block, part, size, centre in made]
+
+
+@within_ranges
+def wallette(
+    length: Size,
+    height: Size,
+    unit: Unit,
+    thickness: Length,
+    density: Density = 2000.0,
+    *,
+    leaves: Annotated[int, Within(1, 10, whole=True)] = 1,
+    headers: Annotated[int, Within(0, 1000, whole=True)] = 0,
+    beam: bool = True,
+    halves: Bond | None = None,
+) -> list[Polyhedron]:
+    """A wall in running bond in space on a fixed base, as laboratories load it out of its plane.
+
+    Its length runs along y, and its outer face is x = 0, as that of a facade.
+
+    The blocks are "base", the units as of `running_bond` with the number of the leaf or a letter of the header,
+    and "beam".
+
+    Args:
+        length, height, unit, thickness, density, halves: as of `running_bond`; units of several leaves are whole.
+        leaves: wythes beside each other through the thickness, 1 to 10. The joints between them have the normal x,
+            so that a function of the joint gives them a bond of their own.
+        headers: every so many courses, 0 to 1000, one of headers, half a unit long, that go through all leaves;
+            0 for none.
+        beam: whether a fixed beam lies on it, which the case leads by `supports={"beam": (t, dx, dy, dz)}`.
+
+    Raises:
+        ValueError: for a value outside its range.
+
+    Examples:
+        >>> wall = mr.Masonry.wallette(0.8, 0.4, (0.2, 0.1), 0.2, leaves=2, headers=4)
+        >>> wall.names[1], wall.names[-2], len(wall.free)
+        ('unit_0_0_0', 'unit_3_4', 34)
+    """
+    if halves is not None and (leaves, headers) != (1, 0):
+        raise ValueError(f"halves with leaves = {leaves} and headers = {headers}: units of several leaves are whole")
+    flat = shear_wall(length, height, unit, thickness, density, halves=halves)
+    return wallette_of(flat if require_flag("beam", beam) else flat[:-1], unit[0], leaves, headers)

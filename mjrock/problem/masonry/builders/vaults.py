@@ -1,4 +1,4 @@
-"""Blocks of masonry that spans: arches on piers or abutments, one or several, and barrels, alone or crossing."""
+"""Builders of blocks that span: arches on piers or abutments, and barrel and groin vaults."""
 
 from __future__ import annotations
 
@@ -6,46 +6,75 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Annotated
 
 import numpy as np
 
-from ....quantities import Array, require_flag, require_within
+from ....quantities import Array, Density, Within, require_flag, require_within, within_ranges
 from ..blocks.compound import Compound, SolidBlock
 from ..blocks.polygon import Polygon
 from ..blocks.polyhedron import Polyhedron
-from .in_plane import LEAST_RADIUS, MOST_BODIES, Taper, arch_of, ground_under, rings_of
+from .in_plane import (
+    MOST_BODIES,
+    Length,
+    Radius,
+    Size,
+    SpanAngle,
+    Taper,
+    Thick,
+    Voussoirs,
+    ground_under,
+    rings_of,
+    voussoirs_of,
+)
 from .in_space import JUST_LESS
 
-
-class Span(NamedTuple):
-    """An arch: radius of its middle and thickness [m], angle between its springings [rad], and how many voussoirs."""
-
-    radius: float
-    thickness: Taper
-    angle: float
-    voussoirs: int
-
-    @property
-    def springing(self) -> Array:
-        """Inner and outer corner of the right springing, from the centre [m], shape (2, 2)."""
-        half, faces = 0.5 * self.angle, rings_of(self.radius, self.thickness, LEAST_RADIUS, np.zeros(1))
-        return np.outer(np.concatenate(faces), [math.sin(half), math.cos(half)])
+__all__ = ["barrel_vault", "bridge", "groin_vault"]
 
 
-def bridge_of(
-    spans: int, arch: Span, pier: tuple[float, float], abutments: bool, density: float, length: float
+def springing_of(radius: float, thickness: Taper, span_angle: float) -> Array:
+    """Inner and outer corner of the right springing of an arch, from the centre [m], shape (2, 2)."""
+    half, faces = 0.5 * span_angle, rings_of(radius, thickness, np.zeros(1))
+    return np.outer(np.concatenate(faces), [math.sin(half), math.cos(half)])
+
+
+@within_ranges
+def bridge(
+    radius: Radius,
+    thickness: Thick,
+    span_angle: SpanAngle = math.pi,
+    voussoirs: Voussoirs = 17,
+    *,
+    spans: Annotated[int, Within(1, 50, whole=True)] = 1,
+    pier_width: Size,
+    pier_height: Annotated[float, Within(0.01, 1000, "m")],
+    abutments: bool = True,
+    density: Density = 2000.0,
+    length: Length = 1.0,
 ) -> list[Polygon]:
-    """The ground, and arches on piers of a width and a height up to the springings [m], see `Masonry.bridge`."""
+    """Equal arches side by side on piers: a bridge of several spans, or an arch on buttresses.
+
+    Args:
+        radius, thickness, span_angle, voussoirs: of each arch, as of `arch`.
+        spans: how many arches, 1 to 50. Voussoirs are `span_0_voussoir_0` and so on, of one span `voussoir_0`.
+        pier_width: between the springings of two arches [m], 0.01 to 1000, at least twice the width of a springing,
+            once of one span. A pier is one block, `pier_1` that between the first two arches.
+        pier_height: from the ground up to the springings [m], 0.01 to 1000.
+        abutments: whether the outer arches end on fixed abutments; otherwise on piers of the same width.
+        density: mass density [kg/m3], 100 to 30000.
+        length: length out of the plane [m], 1e-3 to 1000.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
     ends = require_flag("abutments", abutments)
-    blocks = arch_of(*arch, density, length)
+    blocks = voussoirs_of(radius, thickness, span_angle, voussoirs, density, length)
     if spans * len(blocks) >= MOST_BODIES:
-        raise ValueError(f"spans = {spans} of {arch.voussoirs} voussoirs are more blocks than {MOST_BODIES}")
-    springing, outer = arch.springing
+        raise ValueError(f"spans = {spans} of {voussoirs} voussoirs are more blocks than {MOST_BODIES}")
+    springing, outer = springing_of(radius, thickness, span_angle)
     skew = outer - springing
-    wide = require_within("pier_width", pier[0], skew[0] * (1 if spans == 1 else 2), 1e3, "m")
-    high = pier[1]
-    apart, level, top = 2 * springing[0] + wide, high - springing[1], high + skew[1]
+    wide = require_within("pier_width", pier_width, skew[0] * (1 if spans == 1 else 2), 1e3, "m")
+    apart, level, top = 2 * springing[0] + wide, pier_height - springing[1], pier_height + skew[1]
     polygons = []
     for i in range(spans):
         begin, end = 0 if ends and i == 0 else 1, None if ends and i == spans - 1 else -1
@@ -56,10 +85,10 @@ def bridge_of(
     for i in range(ends, spans + 1 - ends):
         right = i * apart - springing[0]
         left = right - wide
-        beside = [(right, high), (right - skew[0], top)] if i < spans else [(right, top)]
-        before = [(left + skew[0], top), (left, high)] if i > 0 else [(left, top)]
+        beside = [(right, pier_height), (right - skew[0], top)] if i < spans else [(right, top)]
+        before = [(left + skew[0], top), (left, pier_height)] if i > 0 else [(left, top)]
         corners = [(left, 0.0), (right, 0.0), *beside, *before]
-        corners = [at for k, at in enumerate(corners) if not np.allclose(at, corners[k - 1], atol=1e-12 * high)]
+        corners = [at for k, at in enumerate(corners) if not np.allclose(at, corners[k - 1], atol=1e-12 * pier_height)]
         polygons.append(Polygon(corners, density, length, name=f"pier_{i}"))
     if ends and spans == 1:
         return polygons
@@ -68,16 +97,37 @@ def bridge_of(
     return [ground_under(left, right, height, length), *polygons]
 
 
-def barrel_of(arch: Span, length: float, unit: float, density: float) -> list[Polyhedron]:
-    """Courses of voussoirs in running bond between two abutments, see `Masonry.barrel_vault`."""
+@within_ranges
+def barrel_vault(
+    radius: Radius,
+    thickness: Thick,
+    length: Annotated[float, Within(0.01, 1000, "m")],
+    unit: Size,
+    span_angle: SpanAngle = math.pi,
+    courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
+    *,
+    density: Density = 2000.0,
+) -> list[Polyhedron]:
+    """A barrel vault in space between two fixed abutments, its courses in running bond along y.
+
+    Args:
+        radius, thickness, span_angle: of its section, as of `arch`.
+        length: along y [m], 0.01 to 1000.
+        unit: length of a voussoir [m], 0.01 to 1000 and at most the length; units are made to fit.
+        courses: voussoirs of the section, 1 to 1000. `voussoir_2_0` is the first of the third course.
+        density: mass density [kg/m3], 100 to 30000.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
     unit = require_within("unit", unit, 1e-2, length, "m")
-    left, *courses, right = arch_of(*arch, density, 1.0)
+    left, *strips, right = voussoirs_of(radius, thickness, span_angle, courses, density, 1.0)
     whole = round(length / unit)
-    if len(courses) * (whole + 1) >= MOST_BODIES:
+    if len(strips) * (whole + 1) >= MOST_BODIES:
         raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BODIES}")
     fitted = length / whole
     blocks = [_laid(left, (0.0, length), left.name)]
-    for i, course in enumerate(courses):
+    for i, course in enumerate(strips):
         heads = fitted * (np.arange(1, whole) if i % 2 == 0 else np.arange(whole) + 0.5)
         for j, ends in enumerate(pairwise([0.0, *heads.tolist(), length])):
             blocks.append(_laid(course, ends, f"{course.name}_{j}"))
@@ -92,15 +142,42 @@ SHORTEST_ARM = 0.25
 """How far a stone of the groin reaches along the web at least, over the length of a unit [-]."""
 
 
-def groin_of(arch: Span, length: float, unit: float, cut: bool, density: float) -> list[SolidBlock]:
-    """Two barrels that cross over a square bay, on four fixed piers, see `Masonry.groin_vault`.
+@within_ranges
+def groin_vault(
+    radius: Radius,
+    thickness: Thick,
+    length: Size,
+    unit: Size,
+    span_angle: SpanAngle = math.pi,
+    courses: Annotated[int, Within(1, 1000, whole=True)] = 17,
+    *,
+    cut: bool = False,
+    density: Density = 2000.0,
+) -> list[SolidBlock]:
+    """A groin vault, or cross vault: two equal barrels that cross over a square bay, on four fixed piers.
 
-    The four webs are one web, turned. It has its axis along y, lies where y >= |x|, and ends at the side of the bay.
+    The webs are in running bond, and end at the groins, two vertical planes across the corners of the bay. The
+    middle of the bay is x = y = 0. Its sides are front, where x is positive, back, left, where y is negative, and
+    right; a pier is named by its two sides, `pier_front_right`.
+
+    Args:
+        radius, thickness, span_angle: of the section of a web, as of `arch`.
+        length: of the sides of the bay [m], 0.01 to 1000, at least the span of the extrados.
+        unit: length of a voussoir of the webs [m], 0.01 to 1000 and at most the length. `web_left_2_0` is the first
+            of the third course of the left web, from its side inwards, and what is left of a course belongs to the
+            groin.
+        courses: voussoirs of the section of a web, 1 to 1000. An odd number has a keystone, with four arms.
+        cut: whether the stones of a groin are cut along it, each of one web. Otherwise a stone of two arms, a
+            `Compound`, belongs to both webs, `groin_front_right_0` above the pier, and binds them.
+        density: mass density [kg/m3], 100 to 30000.
+
+    Raises:
+        ValueError: for a value outside its range.
     """
-    _, *courses, _ = arch_of(*arch, density, 1.0)
-    (x, z), (reach, top) = arch.springing.tolist()
+    _, *voussoirs, _ = voussoirs_of(radius, thickness, span_angle, courses, density, 1.0)
+    (x, z), (reach, top) = springing_of(radius, thickness, span_angle).tolist()
     pier = np.array([(x, z), (reach, top), (reach, z - (reach - x)), (x, z - (reach - x))])
-    strips = [Polygon(pier * (-1, 1), density), *courses, Polygon(pier, density)]
+    strips = [Polygon(pier * (-1, 1), density), *voussoirs, Polygon(pier, density)]
     length = require_within("length", length, 2 * reach * JUST_LESS, 1e3, "m")
     unit, cut = require_within("unit", unit, 1e-2, length, "m"), require_flag("cut", cut)
     if 4 * len(strips) * (0.5 * length / unit + 1) >= MOST_BODIES:

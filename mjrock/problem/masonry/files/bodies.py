@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from operator import index
+from os import PathLike
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from ....geometry.hull import THINNEST, Hull, bulk_of, face_edges, hull_of, tria
 from ....geometry.parts import convex_parts
 from ....quantities import (
     Array,
+    Density,
     Within,
     named,
     require_flag,
@@ -51,6 +53,7 @@ UPWARDS = {
 CONVEX = ("hull", "parts")
 """What a body that is not convex can become."""
 
+AnyPath = str | PathLike[str]
 MeshFaces = list[tuple[int, ...]]
 Scale = Annotated[float | None, Within(1e-6, 1e3, "m")]
 """Length of a unit of a file."""
@@ -83,22 +86,16 @@ def about(what: str, errors: tuple[type[Exception], ...] = (ValueError,)) -> Ite
         raise ValueError(f"{what}: {error}") from None
 
 
-class Given(NamedTuple):
-    """The arguments that describe a file, see `Masonry.from_obj`."""
+class FileOptions(NamedTuple):
+    """The arguments that describe a file, see `file_options`."""
 
     fixed: Sequence[str] = ()
     ground: bool = False
+    density: float = 2000.0
     scale: float | None = None
     unit: str | None = None
     up: str | None = None
     convex: str | None = None
-
-    def checked(self) -> Given:
-        """Itself; a TypeError or ValueError names what is wrong."""
-        if self.convex is not None:
-            require_one_of("convex", self.convex, CONVEX)
-        _ = self.matrix()
-        return self._replace(fixed=names_of_list("fixed", self.fixed), ground=require_flag("ground", self.ground))
 
     def matrix(self, own: float = 1.0, usual: str = "z") -> Array:
         """What takes places of the file to m with z upwards, shape (3, 3).
@@ -118,6 +115,47 @@ class Given(NamedTuple):
         return scale * np.array(UPWARDS[require_one_of("up", usual if self.up is None else self.up, UPWARDS)])
 
 
+def file_options(
+    fixed: Sequence[str] = (),
+    *,
+    ground: bool = False,
+    density: Density = 2000.0,
+    scale: Scale = None,
+    unit: str | None = None,
+    up: str | None = None,
+    convex: str | None = None,
+) -> FileOptions:
+    """The arguments that describe a file, checked.
+
+    Args:
+        fixed: names of bodies that are fixed, beside those that the file marks as supports.
+        ground: whether fixed ground is put under the lowest point.
+        density: mass density of blocks whose file has none [kg/m3], 100 to 30000.
+        scale: length of a unit of the file [m], 1e-6 to 1e3: 0.001 for millimetres. None takes the `unit`.
+        unit: of the file, "m", "cm", "mm", "in" or "ft", in the place of `scale`. None is m.
+        up: axis of the file that points upwards, "x", "y" or "z": the file is turned until that is z. Blender and
+            glTF have "y". None is "z", and there is a warning if the masonry seems to stand along another axis.
+        convex: what becomes of a body that is not convex. "hull" takes its convex hull and warns of the volume that
+            is added. "parts" cuts it along the planes of its faces into a `Compound`, which fills the same volume.
+            None refuses it.
+
+    Raises:
+        TypeError: for names that are no list, and for `ground` that is neither True nor False.
+        ValueError: if the file is not valid, or a body is open, not convex or touches no other; the message names
+            both.
+
+    Warns:
+        Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
+            as little apart as twenty tolerances.
+        UserWarning: of the volume that hulls add.
+    """
+    if convex is not None:
+        require_one_of("convex", convex, CONVEX)
+    given = FileOptions(names_of_list("fixed", fixed), require_flag("ground", ground), density, scale, unit, up, convex)
+    given.matrix()  # which refuses a unit, a scale or an axis
+    return given
+
+
 def names_of_list(what: str, given: Sequence[str]) -> Sequence[str]:
     """Names that a caller gives in a list, checked."""
     if not isinstance(given, list | tuple):
@@ -127,17 +165,24 @@ def names_of_list(what: str, given: Sequence[str]) -> Sequence[str]:
     return given
 
 
-def meshes_of(given: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) -> list[Mesh]:
-    """Meshes by their names, as meshes; a TypeError or ValueError names what is wrong."""
-    if not isinstance(given, Mapping):
-        raise TypeError(f"meshes = {shown(given)} is not a dict of vertices and faces by name")
-    if not given:
+def meshes_of(meshes: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) -> list[Mesh]:
+    """Blocks of meshes that another library has read, such as those of IFC, glTF or Blender.
+
+    Args:
+        meshes: by the names of bodies, vertices, shape (n, 3), and faces, numbers of the vertices around each.
+
+    Raises:
+        TypeError, ValueError: for what is no mesh.
+    """
+    if not isinstance(meshes, Mapping):
+        raise TypeError(f"meshes = {shown(meshes)} is not a dict of vertices and faces by name")
+    if not meshes:
         raise ValueError(
             "meshes is empty: the model has no element of the kind that was taken from it. Most models of IFC have "
             "whole walls, IfcWall, and no IfcBuildingElementPart"
         )
-    meshes = []
-    for name, mesh in given.items():
+    found = []
+    for name, mesh in meshes.items():
         what = f"meshes[{shown(name)}]"
         if not isinstance(mesh, tuple | list) or len(mesh) != 2:
             raise TypeError(f"{what} = {shown(mesh)} is not a pair of vertices and faces")
@@ -151,8 +196,8 @@ def meshes_of(given: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) ->
         for face in faces:
             if len(face) < 3 or min(face) < 0 or max(face) >= len(vertices):
                 raise ValueError(f"{what}: the face {face} is not three or more of {len(vertices)} vertices")
-        meshes.append(Mesh(block_name(require_text("meshes", name), "body"), vertices, faces))
-    return meshes
+        found.append(Mesh(block_name(require_text("meshes", name), "body"), vertices, faces))
+    return found
 
 
 def block_name(name: str, otherwise: str) -> str:
@@ -311,7 +356,7 @@ class Bound(NamedTuple):
         return bool(max(off) <= SAME_PLANE * extent)
 
 
-def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[SolidBlock]:
+def blocks_of(meshes: Sequence[Mesh], given: FileOptions) -> list[SolidBlock]:
     """The blocks of meshes of a file; names that several have are numbered.
 
     The density is that of meshes whose file has none [kg/m3]. Bodies are fixed that are named, or are marked as a
@@ -323,7 +368,7 @@ def blocks_of(meshes: Sequence[Mesh], density: float, given: Given) -> list[Soli
     Warns:
         UserWarning: of the volume that hulls add.
     """
-    turn, fixed, convex = given.matrix(), given.fixed, given.convex
+    turn, fixed, convex, density = given.matrix(), given.fixed, given.convex, given.density
     with np.errstate(invalid="ignore"):  # an infinite coordinate is named below
         meshes = [mesh._replace(vertices=mesh.vertices @ turn.T) for mesh in meshes]
     bodies = _all_bodies(meshes)

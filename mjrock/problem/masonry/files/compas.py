@@ -9,13 +9,12 @@ from __future__ import annotations
 import json
 import uuid
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..blocks.polyhedron import Polyhedron
-from .bodies import Mesh, block_name
+from .bodies import AnyPath, Mesh, block_name
 from .meshes import file_text
 
 Part = dict[str, Any]
@@ -32,8 +31,13 @@ def held(kind: str, data: object, guid: str) -> dict[str, object]:
     return {"dtype": kind, "data": data, "guid": guid}
 
 
-def read_compas(path: Path) -> list[Mesh]:
-    """The blocks of a file, each of which is a mesh, with their supports and the densities of their materials."""
+def read_compas(path: AnyPath) -> list[Mesh]:
+    """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, an `Assembly` of
+    compas_assembly, also of COMPAS 0 and 1, or a list of meshes. Its supports are fixed.
+
+    Args:
+        path: of the file. The density of the material of a block replaces `density`.
+    """
     try:
         content = _inside(json.loads(file_text(path)))
         content = _inside(content["model"]) if "model" in content else content  # a problem up to compas_dem 0.5 has it

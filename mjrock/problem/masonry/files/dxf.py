@@ -15,7 +15,7 @@ from ....quantities import Array, Density, P, Result, named, shown, warn_of
 from ..blocks.compound import Compound, FlatBlock, SolidBlock
 from ..blocks.polygon import LENGTHS, InwardsError, Polygon
 from ..builders.in_plane import MOST_BODIES
-from .bodies import Given, Mesh, about, block_name, blocks_of
+from .bodies import FileOptions, Mesh, about, block_name, blocks_of
 from .meshes import bytes_of
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ def _corners(polyline: LWPolyline | Polyline) -> Array:
     return places
 
 
-def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
+def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
     """The blocks of a drawing, in m with z upwards.
 
     Args:
@@ -279,7 +279,7 @@ def polygons_of(drawing: DxfDrawing, given: Given, density: OfLayer, length: OfL
                 places, faces = prism(ring, 1.0)
                 dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
     meshes = [mesh for mesh, _ in dented.values()]
-    for block in blocks_of(meshes, 2000.0, Given(convex=given.convex)) if meshes else ():
+    for block in blocks_of(meshes, FileOptions(convex=given.convex)) if meshes else ():
         polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])
     return [polygons[outline.name] for outline in drawing.outlines]
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ....quantities import Array, named, warn_of
-from .bodies import Mesh, MeshFaces
+from .bodies import AnyPath, Mesh, MeshFaces
 from .meshes import file_text
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EDed][-+]?\d+)?"
@@ -27,18 +27,22 @@ DRIVEN = re.compile(rf"^ *vlocy +(\d) +({NUMBER}) +({NUMBER})", re.MULTILINE)
 """A velocity that is driven: its number, its constant, and the amplitude of its wave."""
 
 
-def read_lmgc90(path: Path) -> list[Mesh]:
-    """The polyhedra of a folder DATBOX, or of its file BODIES.DAT with those beside it. Bodies are fixed whose three
-    velocities are given.
+def read_lmgc90(path: AnyPath) -> list[Mesh]:
+    """Blocks of the input of LMGC90: bodies RBDY3 with one polyhedron POLYR each. Driven bodies are fixed.
+
+    Joints are those of mjrock: laws of contact, loads and gravity of the folder are not read.
+
+    Args:
+        path: of a folder DATBOX with BODIES.DAT, BULK_BEHAV.DAT, DRV_DOF.DAT and DOF.INI, or of its BODIES.DAT. The
+            density of the material of a body replaces `density`.
 
     Raises:
-        ValueError: for bodies of the plane or of finite elements, for several polyhedra in one body, and for a file
-            that is damaged.
+        ValueError: for bodies of other kinds or of several polyhedra.
 
     Warns:
-        UserWarning: of planes, spheres and other shapes, which are left out, of bodies that are driven, which are
-            fixed, and where a file is not there.
+        UserWarning: of planes, spheres and other shapes, which are left out, and where one of the files is missing.
     """
+    path = Path(path)
     bodies = path / "BODIES.DAT" if path.is_dir() else path
     found = list(BODY_OF_LMGC90.finditer(file_text(bodies)))
     if not found:

@@ -14,14 +14,15 @@ import numpy as np
 
 from ....quantities import Array
 from ..blocks.polyhedron import Polyhedron
-from .bodies import Mesh, block_name, used
+from .bodies import AnyPath, Mesh, block_name, used
 
 MOST_BYTES = 500_000_000
 """Largest file that is read."""
 
 
-def bytes_of(path: Path) -> bytes:
+def bytes_of(path: AnyPath) -> bytes:
     """What a file holds, which is not empty and at most 500 MB."""
+    path = Path(path)
     if not path.is_file():
         raise ValueError("it is not a file")
     size = path.stat().st_size
@@ -30,7 +31,7 @@ def bytes_of(path: Path) -> bytes:
     return path.read_bytes()
 
 
-def file_text(path: Path) -> str:
+def file_text(path: AnyPath) -> str:
     """What a text file holds."""
     try:
         return bytes_of(path).decode("utf-8-sig")
@@ -38,8 +39,15 @@ def file_text(path: Path) -> str:
         raise ValueError("it is not text: it holds bytes that are not UTF-8") from None
 
 
-def read_obj(path: Path) -> list[Mesh]:
-    """The meshes of an OBJ file: one for each object, or group of it, in their order."""
+def read_obj(path: AnyPath) -> list[Mesh]:
+    """Blocks of a Wavefront OBJ file: its objects, or the groups of them, in their order.
+
+    Every body has to be closed, and to touch another within the `tolerance`. A support may be an open plate: it
+    becomes a fixed block behind its face, a tenth of its extent thick.
+
+    Args:
+        path: of the file. Several bodies of one object are numbered.
+    """
     vertices: list[tuple[float, ...]] = []
     faces: dict[tuple[str, str], list[tuple[int, ...]]] = {}
     thing, group = "", ""
@@ -70,8 +78,12 @@ def read_obj(path: Path) -> list[Mesh]:
     return meshes
 
 
-def read_stl(path: Path) -> list[Mesh]:
-    """The meshes of an STL file: one for each solid of a text, one of a binary file."""
+def read_stl(path: AnyPath) -> list[Mesh]:
+    """Blocks of an STL file, binary or text: its solids, or the closed bodies that it lists one after the other.
+
+    Args:
+        path: of the file. Bodies without a name are `body_0` and so on.
+    """
     content = bytes_of(path)
     facets = struct.unpack_from("<I", content, 80)[0] if len(content) >= 84 else -1
     if len(content) == 84 + 50 * facets:
@@ -112,8 +124,12 @@ PLY = {
 PLY_ORDER = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
-def read_ply(path: Path) -> list[Mesh]:
-    """The mesh of a PLY file (Turk, The PLY polygon file format, 1994)."""
+def read_ply(path: AnyPath) -> list[Mesh]:
+    """Blocks of a PLY file, binary or text: the closed bodies that it lists one after the other.
+
+    Args:
+        path: of the file. Bodies are `body_0` and so on, or `body` where there is one.
+    """
     content = bytes_of(path)
     head, end, body = content.partition(b"end_header")
     lines = [line.split() for line in head.decode("latin-1").splitlines()]

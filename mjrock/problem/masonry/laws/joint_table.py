@@ -308,13 +308,15 @@ def keywords_checked(kind: Class) -> Class:
     """A class whose constructors refuse a keyword that they do not take, with the nearest one that they do."""
     for name, member in list(vars(kind).items()):
         if name == "__init__":
-            setattr(kind, name, _checked(member, kind.__name__))
+            setattr(kind, name, with_known_keywords(member, kind.__name__))
         elif isinstance(member, classmethod) and not name.startswith("_"):
-            setattr(kind, name, classmethod(_checked(member.__func__, f"{kind.__name__}.{name}")))
+            setattr(kind, name, classmethod(with_known_keywords(member.__func__, f"{kind.__name__}.{name}")))
     return kind
 
 
-def _checked(function: Callable[..., object], said: str) -> Callable[..., object]:
+def with_known_keywords(function: Callable[..., object], label: str) -> Callable[..., object]:
+    """A function that checks declared ranges, and refuses a keyword that it does not take with the nearest one that it
+    does."""
     parameters = list(inspect.signature(function).parameters.values())[1:]
     known = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD]
     if len(known) < len(parameters):
@@ -327,7 +329,7 @@ def _checked(function: Callable[..., object], said: str) -> Callable[..., object
         for each in sorted(options.keys() - set(known)):
             near = difflib.get_close_matches(each, known, 2)
             remedy = f"did you mean {' or '.join(near)}?" if near else f"the valid keywords are {', '.join(known)}"
-            raise TypeError(f"{said} does not take {each}; {remedy}")
+            raise TypeError(f"{label} does not take {each}; {remedy}")
         return run(*given, **options)
 
     return called
