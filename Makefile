@@ -79,85 +79,15 @@ lint: $(TEST)
 calibrate: $(READY) # the laws that ship, and what they are worth on walls they have not seen; half an hour on two cores
 	$(BIN)/python scripts/paper/calibrate.py --laws mjrock/problem/damping/laws
 	$(BIN)/python scripts/paper/validate_law.py
-	cp out/calibrate/calibrated_fit.png docs/figures/damping_corners.png
-	cp out/calibrate/calibrated_bed_fit.png docs/figures/damping_bed.png
-	cp out/calibrate/calibrated_sensitivity.png docs/figures/damping_sensitivity.png
-	cp out/validate_law/validation.png docs/figures/damping_validation.png
 
 models: $(READY)
 	$(BIN)/python scripts/models/make_models.py
 
-figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does, SAMPLES=folder those of compas_cra
-	$(BIN)/python -m mjrock demo --force --output docs/figures/demo
-	$(BIN)/python scripts/paper/sketch.py --out docs/figures
-	$(BIN)/python scripts/studies/first_pictures.py --out docs/figures
-	$(BIN)/python scripts/paper/figure3.py --out docs/figures
-	$(BIN)/python scripts/studies/animate.py --out docs/figures
-	$(BIN)/python scripts/models/stack_before_and_after.py --out docs/figures
-	$(BIN)/python scripts/models/rocking_by_the_guide.py --out docs/figures
-	$(BIN)/python scripts/models/four_masses.py --out docs/figures
-	$(BIN)/python scripts/paper/table2.py --out docs/figures
-	$(BIN)/python scripts/measure/convergence.py --out docs/figures
-	$(BIN)/python scripts/paper/layouts.py --out docs/figures
-	$(BIN)/python scripts/checks/friction.py --out docs/figures
-	$(BIN)/python scripts/checks/sliding.py --out docs/figures
-	$(BIN)/python scripts/checks/limit_analysis.py --out docs/figures
-	$(BIN)/python scripts/checks/slow_push.py --out docs/figures
-	$(BIN)/python scripts/checks/arching.py --out docs/figures
-	$(BIN)/python scripts/studies/shear_wall.py --out docs/figures
-	$(BIN)/python scripts/paper/law_range.py --out docs/figures
-	$(BIN)/python scripts/checks/hard_cases.py --out docs/figures
-	$(BIN)/python scripts/checks/trouble.py --out docs/figures
-	$(BIN)/python scripts/measure/work_precision.py --out docs/figures
-	$(BIN)/python scripts/measure/records_accuracy.py --out docs/figures
-	$(BIN)/python scripts/peers/peers.py --out docs/figures
-	$(BIN)/python scripts/peers/other_codes.py $(if $(SAMPLES),--samples $(SAMPLES)) --out docs/figures
-	$(BIN)/python scripts/measure/masonry_precision.py --out docs/figures
-	$(BIN)/python scripts/measure/stack_losses.py --out docs/figures
-	$(BIN)/python scripts/studies/thresholds.py --out docs/figures
-	$(BIN)/python scripts/studies/overturning_spectrum.py --out docs/figures
-	$(BIN)/python scripts/studies/ida.py --out docs/figures
-	$(BIN)/python scripts/studies/fragility.py --out docs/figures
-	$(BIN)/python scripts/studies/polarity.py --out docs/figures
-	$(BIN)/python scripts/studies/town.py --out docs/figures
-	$(BIN)/python scripts/studies/sensitivity.py --out docs/figures
-	$(BIN)/python scripts/studies/limestone_blocks.py --out docs/figures
-	$(BIN)/python scripts/studies/maxima.py --out docs/figures
-	$(BIN)/python scripts/studies/restitution_spread.py --out docs/figures
-	$(BIN)/python scripts/studies/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/measure/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/studies/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/studies/cracked_facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/studies/drums.py --out docs/figures
-	$(BIN)/python scripts/studies/panel.py --out docs/figures
-	$(BIN)/python scripts/studies/solvers_of_masonry.py --out docs/figures
-	$(BIN)/python scripts/studies/many_blocks.py --out docs/figures
-	$(BIN)/python scripts/studies/many_records.py --out docs/figures
-	$(BIN)/python scripts/studies/joint_stiffness.py --out docs/figures
-	$(BIN)/python scripts/studies/two_storeys.py --out docs/figures
-	$(BIN)/python scripts/studies/heap.py --out docs/figures
-	$(BIN)/python scripts/studies/plain_masonry.py --out docs/figures
-	$(BIN)/python scripts/studies/plain_models.py --out docs/figures
-	$(BIN)/python scripts/studies/second_opinion.py --out docs/figures
-	$(BIN)/python scripts/studies/in_the_viewer.py --out docs/figures
-	$(BIN)/python scripts/studies/in_the_browser.py --out docs/figures
-	$(BIN)/python scripts/studies/columns_in_space.py --out docs/figures
-	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
-	$(BIN)/python scripts/studies/facade_in_space.py --out docs/figures
-	$(BIN)/python scripts/studies/corner_block.py --out docs/figures
-	$(BIN)/python scripts/studies/law_in_space.py --out docs/figures
-	$(BIN)/python scripts/studies/dome.py --out docs/figures
-	$(BIN)/python scripts/studies/vaults.py --out docs/figures
-	$(BIN)/python scripts/studies/mechanisms.py --out docs/figures
-	$(BIN)/python scripts/studies/your_geometry.py --out docs/figures
-	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
-	$(BIN)/python scripts/studies/opened_in_vtk.py --out docs/figures
-	$(BIN)/python scripts/studies/drawn_in_space.py --out docs/figures
-	$(BIN)/python scripts/measure/throughput.py --out docs/figures
-	$(BIN)/python scripts/measure/plain_throughput.py --out docs/figures
-	$(BIN)/python scripts/measure/rebound_phase.py --out docs/figures
-	$(BIN)/python scripts/measure/step_cost.py --out docs/figures
-	$(BIN)/python scripts/measure/speed.py
+# The figures and tables of the pages that are stale, all with ALL=1. RECORDS=folder has recorded ground motions, MOTIONS=folder
+# those of the shake table, SAMPLES=folder the assemblies of compas_cra; what needs one that is not given is named.
+figures: $(DOCS)
+	$(BIN)/python scripts/figures.py $(if $(ALL),--all) $(if $(RECORDS),--records $(RECORDS)) \
+		$(if $(MOTIONS),--motions $(MOTIONS)) $(if $(SAMPLES),--samples $(SAMPLES)) $(NAMES)
 
 robots: $(READY) # public robots; PACKAGES=folder of packages that carry their models, MJX=a Python that has MuJoCo's MJX
 	$(BIN)/python scripts/peers/robots/public_models.py --packages $(PACKAGES)

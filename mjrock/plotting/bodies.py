@@ -11,7 +11,9 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
+from matplotlib.transforms import ScaledTranslation
 from numpy.typing import ArrayLike
 
 from ..problem.masonry.case import AnyCase, MasonryCase
@@ -31,10 +33,12 @@ from ..result.bodies import Moving
 from ..result.response import Response
 from ..result.ties import LinkEnd, elongation_of, link_ends
 from ..scene.tints import FIXED_COLOUR, TINTS, colours_of, distinct_tints
-from .style import Look
+from .style import Look, figure_of, plain_names
 
 STONE, GROUND_COLOUR, FORCE = TINTS[0], FIXED_COLOUR, "#a8201a"
 """Colours of a wall, of what does not move, and of forces."""
+UNDER = 34.0
+"""Height of the numbers and the label of an x axis [pt]."""
 Update = Callable[[int], None]
 """Moves what is drawn to a frame."""
 BAR = 0.25
@@ -288,6 +292,16 @@ def outlines(ax: Axes, bodies: Bodies) -> Update:
     return update
 
 
+def named_line(ax: Axes, said: str, colour: str, width: float) -> None:
+    """A line of a width [pt], and what it stands for: below the label of the x axis, in space in the upper right."""
+    look: Look = {"loc": "upper right", "frameon": False, "fontsize": 8, "borderpad": 0.0}
+    if ax.name != "3d":
+        below = ScaledTranslation(0.0, -UNDER / 72, figure_of(ax).dpi_scale_trans)
+        look |= {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "bbox_transform": ax.transAxes + below}
+    line = Line2D([], [], color=colour, linewidth=width, solid_capstyle="butt")
+    ax.legend([line], [said], **look)
+
+
 def frame_view(ax: Axes, bodies: Bodies) -> None:
     """Set limits that every frame fits into, with a margin unless they are given."""
     low, high = bodies.extent()
@@ -300,9 +314,10 @@ def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     low, high = bodies.extent()
     edge = float(low[0]) - 0.25 * float(high[1] - low[1])
     updates = [anchored(ax, bodies.moving, tie, markersize=5, edge=edge) for tie in case.links.values()]
+    plain = plain_names(case.links)
     for name, tie in case.links.items():
         place = edge, case.held_by(tie)[1] + tie.rise
-        ax.annotate(name, place, (4, 4), textcoords="offset points", fontsize=8, color=tie.colour)
+        ax.annotate(plain[name], place, (4, 4), textcoords="offset points", fontsize=8, color=tie.colour)
     if updates and bodies.limits is None:
         ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
     return together(updates)

@@ -14,7 +14,7 @@ from ..problem.masonry.blocks.joints import Joint
 from ..quantities import Array, Integers, require_one_of
 from ..result.bodies import Moving
 from ..result.response import Response
-from .bodies import FORCE, Update
+from .bodies import FORCE, Update, named_line
 
 SHOWN = ("thrust", "bars", "cracks")
 """How forces are shown."""
@@ -174,15 +174,13 @@ def forces_on(ax: Axes, response: Response, bodies: Moving, how: str) -> Update:
     colour, capstyle = (CRACKED, "butt") if cracks else (FORCE, "round")
     strokes = Strokes([], colors=colour, zorder=7, animated=True, capstyle=capstyle)
     ax.add_collection(strokes, autolim=False)
-    said = f"line {WIDEST:g} pt wide" if how == "thrust" else f"bar {LONGEST * acting.extent:.2g} m long"
     if cracks:
-        said = f"cracked, line {CRACK:g} pt wide: {1e3 * acting.widths.max():.2g} mm open"
+        named_line(ax, f"cracked, {1e3 * acting.widths.max():.2g} mm open", colour, CRACK)
+    elif how == "thrust":
+        named_line(ax, f"{acting.scale / 1e3:.3g} kN", colour, WIDEST)
     else:
-        said = f"{said}: {acting.scale / 1e3:.3g} kN"
-    if acting.frames.middle.shape[1] == 2:
-        ax.set_xlabel(f"{ax.get_xlabel()}\n{said}")
-    else:
-        ax.annotate(said, (0.99, 0.99), xycoords="axes fraction", fontsize=8, ha="right", va="top")
+        said = f"bar {LONGEST * acting.extent:.2g} m long: {acting.scale / 1e3:.3g} kN"
+        named_line(ax, said, colour, BAR)
     drawn = {"thrust": acting.thrust, "bars": acting.bars, "cracks": acting.cracks}[how]
 
     def update(frame: int) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
@@ -23,6 +24,7 @@ from .style import (
     Picture,
     below_figure,
     figure_of,
+    plain_names,
     several,
     short,
     styles_of,
@@ -35,19 +37,21 @@ MOST = 6
 
 
 @picture()
-def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
+def rotation(
+    ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None, top: float | None = None
+) -> Axes:
     """Rotation in multiples of alpha against time.
 
     A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. A note gives
     the time from which that is so; the end of its run is in the message of the response. Responses have the lines of
     their solvers, or with `labels` colours of their own. A dotted line is the rotation that overturns a wall whose
-    effects move it from alpha, unless it is far beyond the motion.
+    effects move it from alpha, unless it is far beyond the motion. `top` shows rotations up to so many alpha.
     """
     fallen = [overturned_at(response) for response in responses]
     shares = [response.theta / response.of_wall[0].wall.alpha for response in responses]
-    reached, styles = [0.0], styles_of(responses, labels)
+    reached, styles, lines = [0.0], styles_of(responses, labels), []
     for response, share, end, style in zip(responses, shares, fallen, styles, strict=True):
-        ax.plot(response.t, share, **style)
+        lines += ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     far = 4 * max(reached)  # a line there would flatten the motion
@@ -55,20 +59,23 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     drawn = [limit for limit in sorted(limits) if abs(limit - 1) > 0.01 and limit < far]
     for limit in drawn:
         ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
-    if drawn:
-        place: Look = {"transform": ax.get_yaxis_transform(), "ha": "right", "va": "top"}
-        ax.text(0.99, drawn[0], "overturns", fontsize=8, bbox=BEHIND, **place)
+    if drawn and (top is None or drawn[0] < top):
+        place: Look = {"transform": ax.get_yaxis_transform(), "ha": "left", "va": "top"}
+        ax.text(0.01, drawn[0], "overturns", fontsize=8, bbox=BEHIND, **place)
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     ends = [(short(name), t) for name, t in zip(names, fallen, strict=True) if t is not None]
-    if said := [f"{name}: beyond return from t = {t:.3g} s" for name, t in ends]:
-        top = max(1.2, 1.05 * max([*reached, *drawn]))
-        inwards, room = min(float(share.min()) for share in shares), _share_of(ax, len(said))
-        bottom = max(-top, min(-0.08 * top, 1.08 * inwards))
-        ax.set_ylim(bottom, max(top, (max(drawn, default=0.0) - room * bottom) / (1 - room)))
+    said = [f"{name}: beyond return from t = {t:.3g} s" for name, t in ends]
+    if top is not None or said:
+        high = float(top or max(1.2, 1.05 * max([*reached, *drawn])))
+        inwards, room = min(float(share.min()) for share in shares), _share_of(ax, len(said)) if said else 0.0
+        bottom = -0.1 * high if top is not None else max(-high, min(-0.08 * high, 1.08 * inwards))
+        ax.set_ylim(bottom, (high - room * bottom) / (1 - room))
+        for line in lines:  # a wall that falls goes no farther, so that its line leaves the note alone
+            line.set_clip_path(Rectangle((0, bottom), 1, high - bottom, transform=ax.get_yaxis_transform()))
+    if said:
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
-        note = ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
-        note.set_bbox(BEHIND)
+        ax.text(0.02, 0.97, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
     return ax
 
 
@@ -130,12 +137,13 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
     entries = 0
     for response, style in zip(responses, styles_of(responses, labels), strict=True):
         drawn: dict[bytes, list[str]] = {}
+        plain = plain_names(response.ties)
         for name, tie in response.ties.items():
             drawn.setdefault(tie.force.tobytes(), []).append(name)
         for i, names in enumerate(drawn.values()):
             tie = response.ties[names[0]]
             said = f"{short(style['label'])}, " if len(responses) > 1 else ""
-            said += f"{short(', '.join(names))}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
+            said += f"{short(', '.join(plain[name] for name in names))}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
             look = style | {"label": said, "zorder": 2} | ({"linestyle": ("-", "--", "-.", ":")[i % 4]} if i else {})
             (line,) = ax.plot(response.t, tie.force / 1e3, **look)
             if tie.broken < np.inf:
@@ -279,18 +287,19 @@ def comparison(responses: Sequence[Response], title: str = "") -> Figure:
 
 @picture()
 def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top: float | None = None) -> Figure:
-    """Rotation histories of several cases, one panel each, in the manner of the paper's Figure 4.
+    """Rotation histories of several cases in one scale, one panel each, in the manner of the paper's Figure 4.
 
     `top` cuts the panels off at a rotation in multiples of alpha, to show small rebounds large.
     """
     figure, axes = several(len(panels), columns, (3.4, 2.2))
-    for ax, (title, responses) in zip(axes.flat, panels, strict=False):
-        rotation(ax, responses).set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.7, 9), fontsize=9)
-        if top is not None:
-            ax.set_ylim(-0.1 * top, float(top))
-    for ax in axes[:-1].flat:
-        ax.set_xlabel("")
-    for ax in axes[:, 1:].flat:
-        ax.set_ylabel("")
+    drawn = list(axes.flat[: len(panels)])
+    for ax, (title, responses) in zip(drawn, panels, strict=True):
+        rotation(ax, responses, top=top)
+        ax.set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.7, 9), fontsize=9)
+    limits = np.array([ax.get_ylim() for ax in drawn])
+    last = max(float(response.t[-1]) for _, responses in panels for response in responses)
+    for ax in drawn:
+        ax.set(xlim=(0.0, last), ylim=(limits[:, 0].min(), limits[:, 1].max()))
+        ax.label_outer(remove_inner_ticks=False)
     below_figure(figure, axes[0, 0], fontsize=8)
     return figure

@@ -24,7 +24,7 @@ from ..quantities import Array, require_flag, require_kind, require_within
 from ..result.bodies import Moving
 from ..result.motion import sample_at
 from ..result.response import Response
-from .bodies import FORCE, Bodies, outlines, required_limits, still, together
+from .bodies import FORCE, Bodies, named_line, outlines, required_limits, still, together
 from .forces import forces_on, require_shown
 from .picture import anything, picture
 from .solids import Solids, fill, solids
@@ -137,7 +137,7 @@ def _view(ax: Axes, bodies: Bodies) -> None:
     outside = ((corners.max(axis=1) < low) | (corners.min(axis=1) > high)).any(axis=1).sum()
     if outside:
         said = f"{outside} of {len(corners)} blocks lie outside"
-        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=8, va="top")
+        ax.annotate(said, (0.02, 0.03), xycoords="axes fraction", fontsize=8, va="bottom", bbox=BEHIND)
 
 
 @picture(limits=anything)
@@ -230,7 +230,7 @@ def _pressed(ax: Axes, moving: Moving, masonry: Masonry, forces: JointForces) ->
     size = np.linalg.norm(pressing, axis=1)
     middles, axes = (of[0] for of in moving.joints(moving.case.standing.frames))
     widths = [joint.width for joint in masonry.plane_joints]
-    ax.set_xlabel(f"{ax.get_xlabel()}\nline {THICK:g} pt wide: {size.max() / 1e3:.3g} kN")
+    named_line(ax, f"{size.max() / 1e3:.3g} kN", FORCE, THICK)
     for i in np.flatnonzero(normal > 1e-3 * size.max()):
         way = pressing[i] @ axes[i] / size[i]
         ends = middles[i] + along[i] * axes[i, 1] + 0.25 * widths[i] * np.outer([-1, 1], way)

@@ -38,6 +38,7 @@ from .style import (
     Look,
     figure_of,
     folded,
+    plain_names,
     power_of_ten,
     wrapped,
 )
@@ -348,13 +349,14 @@ def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> 
 def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
     """A triangle where ties of a curve yield and a cross where they break, which the legend names from the left."""
     for line, curve in zip(list(ax.get_lines()), curves.values(), strict=False):
+        plain = plain_names(curve.ties[0] | curve.ties[1])
         for (what, marker), reached in zip((("yield", "v"), ("break", "x")), curve.ties, strict=True):
             if not reached:
                 continue
             names = sorted(reached, key=reached.__getitem__)
             near = np.searchsorted(curve.rotation, [reached[name] for name in names])
             heights = [float(curve.multiplier[max(i - 2, 0) : i + 1].max()) for i in near.tolist()]  # before it falls
-            said = folded(f"{named(names)} {what}{'' if len(names) > 1 else 's'}")
+            said = folded(f"{named([plain[name] for name in names])} {what}{'' if len(names) > 1 else 's'}")
             look: Look = {"color": line.get_color(), "markersize": 6, "zorder": 5, "label": said}
             ax.plot([reached[name] for name in names], heights, marker, linestyle="", **look)
     _named(ax)

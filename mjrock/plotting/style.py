@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -93,6 +94,16 @@ def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None
     if len(labels) != len(responses):
         raise ValueError(f"labels has {len(labels)} texts for {len(responses)} responses; one for each is needed")
     return [OWN[i % len(OWN)] | {"label": folded(label)} for i, label in enumerate(labels)]
+
+
+def plain_names(names: Iterable[str]) -> dict[str, str]:
+    """Names of effects as a picture has them: "tie" for `tie_0` where it is the only tie."""
+    every = list(names)
+    kinds = Counter(name.rpartition("_")[0] for name in every)
+    return {
+        name: kind.replace("_", " ") if number == "0" and kind and kinds[kind] == 1 else name
+        for name, (kind, _, number) in zip(every, (name.rpartition("_") for name in every), strict=True)
+    }
 
 
 def folded(label: str) -> str:

@@ -19,7 +19,7 @@ from ..quantities import require_flag, require_text
 from ..result.bodies import Moving
 from .bodies import FORCE, GROUND_COLOUR, STONE, Bodies, Update, anchored, outlines, still, together
 from .picture import anything, picture
-from .style import BEHIND, WIDEST, Look, Picture, figure_of, titled, width_of, wrapped
+from .style import BEHIND, WIDEST, Look, Picture, figure_of, plain_names, titled, width_of, wrapped
 
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
@@ -27,8 +27,8 @@ Note = tuple[tuple[float, float], str]
 """A place in the section, x and z [m], and what is there."""
 DIMENSION: Look = {"arrowstyle": "|-|,widthA=0.2,widthB=0.2", "color": "0.3", "shrinkA": 0, "shrinkB": 0}
 LEADER: Look = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (0.0, 0.5)}
-TALLEST, LARGEST = 3.4, 2.0
-"""Largest height of a drawing, and largest width of the section [inch]."""
+TALLEST, LARGEST, LEAST = 3.4, 2.0, 1.7
+"""Largest height of a drawing, largest width of the section, and least height of both in one scale [inch]."""
 POINTS = 4001
 """Rotations at which ties are looked at, up to the overturning."""
 LEADING, APART, EDGE, LINE = 0.2, 0.4, 0.15, 0.15
@@ -151,8 +151,9 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
     A tie that breaks before the wall overturns says how far the centroid has then moved outwards as the wall turns
-    about its toe. Openings of one sill are drawn at equal distances: where they are along the wall plays no part. The
-    elevation of a long wall has a smaller scale than the section.
+    about its toe. Openings of one sill are drawn at equal distances: where they are along the wall plays no part.
+    Section and elevation have one scale. The elevation of a wall so long that it would leave no room for the section
+    has a smaller one, which its title gives.
 
     Args:
         case: the wall and its effects.
@@ -170,7 +171,6 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     notes = sorted(_effects(case, arguments=arguments), key=lambda note: note[0][1])
     _arrange(figure, title, _sizes(case), notes)
     left.set_title("section; outwards is to the right", fontsize=9, loc="left")
-    right.set_title("elevation", fontsize=9)
     return figure
 
 
@@ -185,13 +185,17 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
     """
     left, right = figure.axes
     wide, tall, long = (float(np.ptp(limits)) for limits in (left.get_xlim(), left.get_ylim(), right.get_xlim()))
+    written = LEADING + max(width_of(figure, text, SMALL) for _, text in notes) if notes else 0.0
     scale = min(TALLEST / tall, LARGEST / wide)  # [inch/m]
+    one = (WIDEST - 3 * EDGE - APART - written) / (wide + long)
+    if one * tall >= LEAST:
+        scale = min(scale, one)
     column = EDGE + scale * wide + EDGE
-    beside = column + APART + EDGE
-    beside += LEADING + max(width_of(figure, text, SMALL) for _, text in notes) if notes else 0.0
+    beside = column + APART + EDGE + written
     said = wrapped("\n".join(openings), max(1.5, WIDEST - beside), SMALL)
     written = width_of(figure, said, SMALL)
     smaller = min(scale, max(1.0, WIDEST - beside) / long)
+    right.set_title("elevation" + f", {scale / smaller:.2g} times smaller" * (smaller < 0.999 * scale), fontsize=9)
     across = max(smaller * long, written)
     width = max(5.0, beside + across)
     lines = len(said.splitlines())
@@ -260,17 +264,18 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
 
 def _effects(case: Case, *, arguments: bool) -> list[Note]:
     """The place of each effect in the section, and a note on it."""
-    said, made = dict[Effect, str](), []
+    named, made, plain = dict[Effect, list[str]](), [], plain_names(case.named)
     _, breaking = case.limits_of_ties(np.linspace(0.0, case.overturning_rotation, POINTS))
     for name, effect in case.named.items():
         if not effect.mass_added:
-            said[effect] = f"{said[effect]}, {name}" if effect in said else name
-    for effect, name in [*said.items(), *((mass, "") for mass in case.wall.masses)]:
+            named.setdefault(effect, []).append(name)
+    for effect, names in [*named.items(), *((mass, []) for mass in case.wall.masses)]:
         if (told := effect.told) is None:
             continue
-        note = f"{type(told).__name__}({told.arguments})" if arguments else f"{name or told.label}: {told.said}"
-        if name in breaking and not arguments:
-            moved = float(case.wall.pose(np.array([breaking[name]]))[0, 0])
+        label = ", ".join(plain[name] for name in names) or told.label
+        note = f"{type(told).__name__}({told.arguments})" if arguments else f"{label}: {told.said}"
+        if breaks := [breaking[name] for name in names if name in breaking and not arguments]:
+            moved = float(case.wall.pose(np.array([min(breaks)]))[0, 0])
             note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"
         place = (case.block.inner_face(effect.height) if effect.on_face else effect.offset, effect.height)
         if len(corners := effect.outline):

@@ -115,7 +115,10 @@ class Words:
         for pattern, key in drawn_patterns():
             if found := pattern.fullmatch(line):
                 values = {
-                    name: re.sub(r"(?<=\d)\.(?=\d)", self.mark, value) for name, value in found.groupdict().items()
+                    name: re.sub(
+                        r"(?<=\d)\.(?=\d)", self.mark, self.or_else(f"effect_{value.replace(' ', '_')}", value)
+                    )
+                    for name, value in found.groupdict().items()
                 }
                 return self(key, **values)
         return self.marked(line) if WITH_UNIT.fullmatch(line) else line

@@ -18,7 +18,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting.style import several
 from scripts.shared import cli
-from scripts.shared.labels import width_bar
+from scripts.shared.labels import without_axes
 
 LENGTH, HEIGHT, FRICTION = 0.4, 0.175, 0.65
 """Of a whole block [m], and of the joints [-]."""
@@ -105,7 +105,7 @@ def drawn(found: dict[int, mr.Collapse]) -> Figure:
             fontsize=9,
         )
         ax.set_ylim(bottom=-GROUND)
-        width_bar(ax)
+        without_axes(ax)
     return figure
 
 

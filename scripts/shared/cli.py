@@ -10,6 +10,8 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from scripts.shared import figure_record
+
 # The package is imported where it is needed: `speed.py` times versions of it that have other modules.
 
 
@@ -100,9 +102,13 @@ def seconds(call: Callable[[], object]) -> float:
 
 
 def run(main: Callable[[Sequence[str] | None], None]) -> int:
-    """Call a script's main; an error that the user can mend is printed, not traced. Returns the exit code."""
+    """Call a script's main, and record what it writes into a folder of figures. Returns the exit code.
+
+    An error that the user can mend is printed, not traced.
+    """
     try:
-        main(None)
+        with figure_record.recorded(Path(main.__code__.co_filename), sys.argv[1:]):
+            main(None)
     except (ValueError, TypeError, OSError, RuntimeError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 from matplotlib.axes import Axes
-
-from mjrock.plotting.bodies import FORCE
 
 SMALL = 8
 """Size of words in a picture [pt]."""
@@ -21,11 +18,8 @@ def beside(
     ax.annotate(text, at, shift, textcoords="offset points", color=color, annotation_clip=False, **look)
 
 
-def width_bar(ax: Axes) -> None:
-    """Take the axes away, and draw a line as wide as that which their label has, with its size, below what is drawn."""
-    found = re.search(r"line ([\d.]+) pt wide: (.+)", ax.get_xlabel())
-    assert found is not None
+def without_axes(ax: Axes) -> None:
+    """Take the axes away, and put the legend in their place."""
     ax.axis("off")
-    look: dict[str, Any] = {"transform": ax.transAxes, "clip_on": False, "solid_capstyle": "butt"}
-    ax.plot([0.3, 0.4], [-0.06, -0.06], color=FORCE, linewidth=float(found[1]), **look)
-    ax.text(0.43, -0.06, found[2], transform=ax.transAxes, fontsize=SMALL, va="center")
+    if (legend := ax.get_legend()) is not None:
+        legend.set_bbox_to_anchor((0.5, 0.0), ax.transAxes)

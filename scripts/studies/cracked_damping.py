@@ -8,7 +8,7 @@ explicit steps with each, on corner lines and on a bed of nine.
 The second table takes the wall US-1 of `shaken_wall.py` in the plane: groups of its courses, which are as stiff as
 their joints together, with its joists, and bonds whose dashpots wait for cracks (`Bond(..., damped=False)`). It is run
 without damping, with 1.5 % of all motion, and with each law. From `SHARED` runs on, each sequence is run from ten
-starts whose motions differ by a millionth: medians and 16 to 84 %. `--records` is the folder of `shaken_wall.py`.
+starts whose motions differ by a millionth: medians and 16 to 84 %. `--motions` is the folder of `shaken_wall.py`.
 Without it the motions are synthetic, and there is no test to compare with. Draws the peaks by the run.
 """
 
@@ -268,7 +268,7 @@ def synthetic(count: int) -> list[mr.GroundMotion]:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the mechanism and the wall in every way, print the tables and draw."""
     parser = cli.parser(__doc__, "cracked_damping")
-    parser.add_argument("--records", type=Path, help="folder with the files of shaken_wall.py; else synthetic motions")
+    parser.add_argument("--motions", type=Path, help="folder with the files of shaken_wall.py; else synthetic motions")
     args = parser.parse_args(argv)
     out, made = cli.folder(args.out), ways()
     if args.quick:
@@ -291,18 +291,18 @@ def main(argv: Sequence[str] | None = None) -> None:
     rows = [[side, *pushed_over(along, PUSHED[: 2 if args.quick else None])] for side, along in sides.items()]
     text += f"\n\n{cli.table(header, rows)}"
     runs = list(RUNS)[: SHARED + 1] if args.quick else list(RUNS)
-    motions = synthetic(len(runs)) if args.records is None else [measured(args.records, run) for run in runs]
+    motions = synthetic(len(runs)) if args.motions is None else [measured(args.motions, run) for run in runs]
     bar = tqdm(made.items(), disable=None, leave=False)
     peaks = {name: runs_of(way, motions, 2 if args.quick else STARTS) for name, way in bar}
     quantiles = {name: np.percentile(own, [16, 50, 84], axis=0) for name, own in peaks.items()}
-    plotting.save(drawn(quantiles, runs, tested=args.records is not None), out / "cracked_damping.png")
-    if args.records is not None:
+    plotting.save(drawn(quantiles, runs, tested=args.motions is not None), out / "cracked_damping.png")
+    if args.motions is not None:
         judgements = [[name, *judged(1e3 * own, runs)] for name, own in peaks.items()]
         text += "\n\n" + cli.table(JUDGED, judgements)
     header = ["run", "record", "test [mm]", *(f"{name} [mm]: 16, 50, 84 %" for name in peaks)]
     rows = []
     for i, run in enumerate(runs):
-        given = [run, RUNS[run].record, RUNS[run].test] if args.records is not None else [i + 1, "synthetic", ""]
+        given = [run, RUNS[run].record, RUNS[run].test] if args.motions is not None else [i + 1, "synthetic", ""]
         rows.append([*given, *(spread(1e3 * own[:, i]) for own in peaks.values())])
     cli.report(out / "cracked_damping", f"{text}\n\n{cli.table(header, rows)}", header, rows)
 

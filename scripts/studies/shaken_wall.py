@@ -8,7 +8,7 @@ before it have left. Nothing is fitted. The wall is run undamped but for cracks 
 with the damping of a law in joints that have cracked. Pairs of courses are one body, on joints as stiff as theirs
 together. After `SHARED` runs each sequence has several starts, whose motions differ by a millionth.
 
-The motions of the table are not part of this repository, as theirs names no licence. `--records` is a folder with files
+The motions of the table are not part of this repository, as theirs names no licence. `--motions` is a folder with files
 of its `record_tables_full`, the velocity of the table in a run. Needed are `vel_expfull_T9_run21.txt` for HU12,
 `run11.txt` for EC40, and those of runs 22 to 24 for FR76. A run without a file of its own takes that of its record, by
 the peak velocities that accelerometers measured in both; run 10 taken so has the response spectrum of its own file
@@ -396,12 +396,12 @@ def by_run(found: dict[str, list[list[Shaken]]], runs: Sequence[int]) -> tuple[l
 def main(argv: Sequence[str] | None = None) -> None:
     """Shake the wall, print the tables and draw."""
     parser = cli.parser(__doc__, "shaken_wall")
-    parser.add_argument("--records", type=Path, default=Path("records"), help="folder with the files")
+    parser.add_argument("--motions", type=Path, default=Path("motions"), help="folder with the files")
     args = parser.parse_args(argv)
     out, runs = cli.folder(args.out), list(RUNS)[:: 21 if args.quick else 1]
     pulse = np.sin(2 * np.pi * np.arange(0.0, 0.1, 0.005) / 0.1)
     motions = [
-        mr.GroundMotion(RUNS[run].scale * pulse, 0.005) if args.quick else motion_of(args.records, run) for run in runs
+        mr.GroundMotion(RUNS[run].scale * pulse, 0.005) if args.quick else motion_of(args.motions, run) for run in runs
     ]
     made = {"undamped": Way()} if args.quick else ways()
     starts, points = (1, 3) if args.quick else (STARTS, POINTS)

@@ -25,7 +25,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
-from scripts.shared.labels import width_bar
+from scripts.shared.labels import without_axes
 
 WIDTH, COURSES, BRICK, THICK = 0.99, 16, (0.22, 1.0 / 16), 0.1
 TOP = 4e-3
@@ -148,7 +148,7 @@ def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
     curve.legend(frameon=False, fontsize=8)
     plotting.blocks(cracks, answer, forces="cracks", limits=[(-0.05, WIDTH + 0.05), (-0.05, 1.05)])
     cracks.set_title("cracks at 4 mm", fontsize=10)
-    width_bar(cracks)
+    without_axes(cracks)
     return figure
 
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.shared.labels import width_bar
+from scripts.shared.labels import without_axes
 
 RADIUS, SPREAD = 5.0, 0.1
 """Radius of the arches and displacement of the support of the second [m]."""
@@ -68,7 +68,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     for ax, (title, at, answer) in zip(figure.subplots(1, 3), times, strict=True):
         plotting.thrust(ax, answer, at=at)
         ax.set_title(title, fontsize=10)
-        width_bar(ax)
+        without_axes(ax)
     plotting.save(figure, out / "thrust_lines.png")
     thrust = spread.reactions["left_abutment"][[0, -1], 0] / 1e3
     cli.report(

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting.style import Picture
+from tests.plotting.words import covered
 
 
 @pytest.fixture(scope="module")
@@ -222,3 +223,18 @@ def test_colours_have_a_contrast_of_three_on_white():
     assert min(1.05 / (one + 0.05) for one in light) > 3
     assert {style["color"] for style in plotting.STYLES.values()} <= set(plotting.PALETTE)
     assert len({style["color"] for style in plotting.STYLES.values()}) == len(plotting.STYLES)
+
+
+def test_panels_that_are_compared_have_one_scale():
+    """A wall that falls ends its run early; its panel has the time and the rotations of the other one."""
+    wall = mr.Block.from_size(0.6, 4.2)
+    e = mr.Restitution.from_geometry(wall)
+    motions = mr.GroundMotion.rectangular(-4.0, 1.0), mr.GroundMotion.rectangular(-2.0, 0.3)
+    runs = [mr.solve_analytical(mr.Case(wall, 0.0, 5.0, motion=motion), e) for motion in motions]
+    assert runs[0].t[-1] < 0.9 * runs[1].t[-1]
+    for top in (None, 0.5):
+        figure = plotting.grid([("falls", runs[:1]), ("stands", runs[1:])], top=top)
+        assert {ax.get_xlim() for ax in figure.axes} == {(0.0, runs[1].t[-1])}
+        assert len({ax.get_ylim() for ax in figure.axes}) == 1
+        figure.draw_without_rendering()
+        assert list(covered(figure)) == []

@@ -1,6 +1,7 @@
 """Pictures as their reader sees them: rendered, and their pixels counted."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -49,6 +50,17 @@ def test_a_sketch_shows_the_wall_filled_in_section_and_elevation(thickness, open
     assert area_of(figure, elevation, STONE) == pytest.approx(5.0 * 4.0 - openings_area, rel=0.08)
 
 
+@pytest.mark.parametrize(("length", "one_scale"), [(1.0, True), (8.0, True), (12.0, True), (60.0, False)])
+def test_section_and_elevation_have_one_scale_or_say_how_they_differ(length, one_scale):
+    wall = mr.Block.from_size(thickness=0.8, height=9.0, length=length)
+    figure = plotting.sketch(mr.Case(wall, 0.0, 1.0, effects=mr.Tie(8.0, 2e6, strength=3e4)))
+    section, elevation = (ax.get_window_extent().width / np.ptp(ax.get_xlim()) for ax in figure.axes)
+    title = figure.axes[1].get_title()
+    ratio = section / elevation
+    assert (ratio == pytest.approx(1.0)) == one_scale
+    assert title == ("elevation" if one_scale else f"elevation, {ratio:.2g} times smaller")
+
+
 def test_a_gable_and_a_rose_window_are_drawn():
     rose = mr.Opening(1.2, 1.2, 2.0, round=True, at=-0.6)
     wall = mr.Block.from_size(0.8, 5.0, 5.0, openings=[rose], gable=mr.Gable(1.5, top=1.0))
@@ -63,6 +75,7 @@ def test_the_sketch_says_where_a_tie_breaks():
     case = mr.Case(mr.Block.from_size(0.6, 4.2), 0.0, 1.0, effects=(tie, mr.Tie(4.0, 1e6, strength=1e3)))
     said = [text.get_text() for text in plotting.sketch(case).axes[0].texts]
     (note,) = (text for text in said if text.startswith("tie_0"))
+    assert "tie: z = 3.9 m" in plotting.sketch(replace(case, effects=(tie,))).axes[0].texts[-1].get_text()
     check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"))
     assert note.endswith(f"breaks where the centroid has moved by {1e3 * check.breaking['tie_0']:.0f} mm")
     assert not any("breaks" in text for text in said if text.startswith("tie_1"))

@@ -89,7 +89,7 @@ def struck(line: Line2D, box: Bbox) -> bool:
     path = line.get_transform().transform_path(line.get_path())
     room = STRIKES * box.height
     middle = Bbox.from_extents(box.x0, box.y0 + room, box.x1, box.y1 - room)
-    seen = Bbox.intersection(middle, ax.bbox) if line.get_clip_on() else middle
+    seen = Bbox.intersection(middle, line.get_clip_box() or ax.bbox) if line.get_clip_on() else middle
     if seen is None or len(path.vertices) < 2 or not np.isfinite(path.vertices).all():
         return False
     return bool(Path(path.vertices).intersects_bbox(seen, filled=False))
