@@ -11,7 +11,9 @@ import sys
 import time
 from collections.abc import Sequence
 
+import numpy as np
 from matplotlib.figure import Figure
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from tqdm import tqdm
 
 import mjrock as mr
@@ -98,7 +100,8 @@ def wall(number: int) -> mr.Masonry:
 def drawn(found: dict[int, mr.Collapse]) -> Figure:
     """How each wall fails without dilatancy."""
     figure, axes = several(len(found), min(3, len(found)), (2.46, 3.0))
-    for ax, (number, collapse) in zip(axes.flat, found.items(), strict=False):
+    used = list(axes.flat[: len(found)])
+    for ax, (number, collapse) in zip(used, found.items(), strict=True):
         plotting.mechanism(ax, collapse)
         ax.set_title(
             rf"wall {number}: $\lambda$ = {collapse.multiplier:.3f}," f"\npublished {PUBLISHED[number][1]:.3f}",
@@ -106,6 +109,12 @@ def drawn(found: dict[int, mr.Collapse]) -> Figure:
         )
         ax.set_ylim(bottom=-GROUND)
         without_axes(ax)
+    spans = [(float(np.mean(ax.get_xlim())), np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())) for ax in used]
+    wide, high = (0.5 * max(span[1] for span in spans), max(span[2] for span in spans))
+    for ax, (middle, *_) in zip(used, spans, strict=True):  # one scale, and one level of the ground
+        ax.set(xlim=(middle - wide, middle + wide), ylim=(-GROUND, high - GROUND))
+    bar = AnchoredSizeBar(used[0].transData, 1.0, "1 m", "upper right", frameon=False, sep=4)
+    used[0].add_artist(bar)
     return figure
 
 

@@ -1,7 +1,7 @@
 """What has made the files of a folder of figures: a script as it was, with which options, when, and by which version.
 
 A folder that holds a `made.toml` has the files that scripts write into it recorded there, see `recorded`. A file is
-stale where the code of its script, or of a module of `scripts` that it imports, has changed since.
+stale where the code of its script, or of what it uses from other modules of `scripts`, has changed since.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ NAME = "made.toml"
 HEAD = "# Written by scripts, see scripts/shared/figure_record.py. `make figures` makes what is stale.\n"
 PLAIN = {"scripts/shared/cli.py", "scripts/shared/figure_record.py"}
 """Modules by which no figure looks different: arguments, tables and this record."""
-UNRECORDED = {".sqlite", ".lock", ".partial"}
+UNRECORDED = re.compile(r"\.(sqlite|lock|partial)")
 """Endings of files that a script keeps for its next run."""
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?(?![\w.])")
 
@@ -47,20 +47,53 @@ class Made(NamedTuple):
         return ROOT / shlex.split(self.command)[0]
 
 
-def modules(script: Path) -> dict[str, str]:
-    """The texts of a script and of all modules of `scripts` that it imports, by their paths."""
-    texts, left = dict[str, str](), [script]
+def parts(script: Path) -> dict[str, str]:
+    """The code of a script, and of each definition in other modules of `scripts` that it uses, by their places."""
+    codes, left = dict[str, str](), [(script, "")]
     while left:
-        path = left.pop()
-        name = path.relative_to(ROOT).as_posix()
-        if name in texts or name in PLAIN or not path.is_file():
+        path, name = left.pop()
+        module = path.relative_to(ROOT).as_posix()
+        place = f"{module}:{name}"
+        if place in codes or module in PLAIN or not path.is_file():
             continue
-        texts[name] = path.read_text(encoding="utf-8")
-        for node in ast.walk(ast.parse(texts[name])):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "scripts":
-                names = [str(node.module), *(f"{node.module}.{one.name}" for one in node.names)]
-                left += [ROOT / f"{one.replace('.', '/')}.py" for one in names]
-    return texts
+        text = path.read_text(encoding="utf-8")
+        tree = ast.parse(text)
+        imported = {
+            alias.asname or alias.name: (str(node.module), alias.name)
+            for node in tree.body
+            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "scripts"
+            for alias in node.names
+        }
+        nodes = [node for node in tree.body if not name or name in names_of(node)]
+        codes[place] = code_of("\n".join(lines_of(text, node) for node in nodes))
+        for node in (inner for outer in nodes for inner in ast.walk(outer)):
+            of = node.value if isinstance(node, ast.Attribute) else node
+            if not isinstance(of, ast.Name):
+                continue
+            if of.id in imported:
+                package, known = imported[of.id]
+                whole = ROOT / f"{package.replace('.', '/')}/{known}.py"
+                if not whole.is_file():
+                    left.append((ROOT / f"{package.replace('.', '/')}.py", known))
+                elif isinstance(node, ast.Attribute):
+                    left.append((whole, node.attr))
+            elif name and of is node:
+                left.append((path, node.id))
+    return {place: code for place, code in codes.items() if code}
+
+
+def lines_of(text: str, node: ast.stmt) -> str:
+    """The lines of a statement of a module, with its decorators."""
+    first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
+    return "\n".join(text.splitlines()[first - 1 : node.end_lineno])
+
+
+def names_of(node: ast.stmt) -> set[str]:
+    """The names that a statement of a module defines."""
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return {node.name}
+    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+    return {one.id for target in targets if target for one in ast.walk(target) if isinstance(one, ast.Name)}
 
 
 def code_of(text: str) -> str:
@@ -77,9 +110,9 @@ def code_of(text: str) -> str:
 
 
 def digest(script: Path) -> str:
-    """The first letters of a digest of the code of a script and of all that it imports from `scripts`."""
-    texts = sorted(modules(script).items())
-    return hashlib.sha256("\n".join(f"{name}\n{code_of(text)}" for name, text in texts).encode()).hexdigest()[:16]
+    """The first letters of a digest of a script and of what it uses from other modules of `scripts`."""
+    text = "\n".join(f"{place}\n{code}" for place, code in sorted(parts(script).items()))
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def read(folder: Path) -> dict[str, Made]:
@@ -125,7 +158,7 @@ def stale(folder: Path) -> dict[str, list[str]]:
 def files_of(folder: Path) -> dict[str, int]:
     """Files that scripts write, by their names, and when each was written [ns]."""
     paths = [path for path in folder.rglob("*.*") if path.is_file() and path.name != NAME]
-    kept = [path for path in paths if not path.name.startswith(".") and not UNRECORDED & set(path.suffixes)]
+    kept = [path for path in paths if not path.name.startswith(".") and not UNRECORDED.search(path.name)]
     return {path.relative_to(folder).as_posix(): path.stat().st_mtime_ns for path in kept}
 
 

@@ -12,11 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.wall.restoring_moment import pulled, yielded
 from scripts.shared import cli, suite
 
 WALL = mr.Block.from_size(
@@ -41,31 +39,11 @@ def contacts_on(k_n: float) -> mr.Contacts:
         return mr.Contacts.from_law(WALL, mr.Restitution.from_geometry(WALL), k_base=k_n, k_side=k_n)
 
 
-def tie_force(response: mr.Response) -> NDArray[np.float64]:
-    """Force of the tie [N], shape (n,), from the rotation of the rigid wall."""
-    (pull,) = response.of_wall[0].pulls
-    theta = np.maximum(response.theta, 0.0)
-    plastic = yielded(response.of_wall[0].pulls, theta)[:, 0]
-    force: NDArray[np.float64] = pull.stiffness * np.maximum(pulled(pull, theta, 1.0)[0] - plastic, 0.0)
-    return force
-
-
-def drawn(responses: Sequence[mr.Response], motion: mr.GroundMotion) -> Figure:
-    """Ground acceleration, rotation and tie force over time."""
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1, 2, 1.2))
-    t = np.arange(len(motion.accel)) * motion.dt
-    above.plot(t, motion.accel / mr.GRAVITY, color="0.3", linewidth=0.7)
-    above.set_ylabel("ground $a_g$ [g]")
-    plotting.rotation(middle, responses[::-1]).set_xlabel("")
-    for response in responses[::-1]:
-        style = {name: value for name, value in plotting.STYLES[response.solver].items() if name != "label"}
-        below.plot(response.t, tie_force(response) / 1e3, **style)
-    below.set_ylabel("tie [kN]")
-    below.set_xlabel("time $t$ [s]")
-    moving = np.flatnonzero(np.abs(responses[-1].theta) > suite.STILL * WALL.alpha)
-    below.set_xlim(0, responses[-1].t[moving[-1]] + 3 if moving.size else None)
-    middle.legend(frameon=False, fontsize=8)
+def drawn(theory: mr.Response, engine: mr.Response) -> Figure:
+    """Ground acceleration, rotation and tie force over time, as long as the wall moves."""
+    figure = plotting.history([theory, engine])
+    moving = np.flatnonzero(np.abs(theory.theta) > suite.STILL * WALL.alpha)
+    figure.axes[0].set_xlim(0, theory.t[moving[-1]] + 3 if moving.size else None)
     return figure
 
 
@@ -96,7 +74,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             engine = mr.simulate(case, contacts_on(k_n))
             rows.append([motion.name.split("*")[0].strip()[:30], f"{k_n:.0e}", *apart(theory, engine)])
             if k_n == STIFFNESSES[0] and number == 0:
-                plotting.save(drawn((engine, theory), motion), out / "facade.png")
+                plotting.save(drawn(theory, engine), out / "facade.png")
     header = ["motion", "k_n [N/m3]", "peak, theory", "MuJoCo", "apart", "plastic, theory [mm]", "MuJoCo", "RMS"]
     cli.report(out / "facade", cli.table(header, rows))
 

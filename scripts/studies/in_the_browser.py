@@ -30,16 +30,19 @@ def falling_arch() -> mr.Response:
     return mr.solve_explicit(mr.MasonryCase(arch, 2.0, supports=away), output_step=0.02, forces=True)
 
 
-def picture(page: Path, path: Path, asked: str) -> None:
-    """Draw a page as a browser shows it, with what its address asks for."""
+def picture(page: Path, path: Path, fragment: str, size: tuple[int, int] = SIZE, fine: int = 1) -> None:
+    """Draw a page of a size as a browser shows it, with a fragment of its address, and more pixels for one of it."""
     if BROWSER is None:
         raise RuntimeError("no Chromium is installed; install chromium, which draws the page")
-    wide, high = SIZE
+    wide, high = size
     switches = ["--headless=new", "--no-sandbox", "--hide-scrollbars", f"--window-size={wide},{high}"]
+    switches += [f"--force-device-scale-factor={fine}"]
     switches += ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     with TemporaryDirectory() as folder:
         switches += [f"--user-data-dir={folder}", "--virtual-time-budget=10000", f"--screenshot={path.resolve()}"]
-        subprocess.run([BROWSER, *switches, f"{page.as_uri()}#{asked}"], check=True, capture_output=True, timeout=120)
+        subprocess.run(
+            [BROWSER, *switches, f"{page.as_uri()}#{fragment}"], check=True, capture_output=True, timeout=120
+        )
 
 
 def main(argv: Sequence[str] | None = None) -> None:

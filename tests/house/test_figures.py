@@ -20,8 +20,8 @@ def repository(tmp_path, monkeypatch):
     pages.mkdir(parents=True)
     studies.mkdir(parents=True)
     (pages / figure_record.NAME).write_text("")
-    (studies / "common.py").write_text("SIZE = 1\n")
-    (studies / "curve.py").write_text('"""A curve."""\nfrom scripts.studies.common import SIZE\n')
+    (studies / "common.py").write_text("SIZE = 1\n\n\ndef wide():\n    return 2 * SIZE\n\n\ndef other():\n    pass\n")
+    (studies / "curve.py").write_text('"""A curve."""\nfrom scripts.studies import common\nprint(common.wide())\n')
     return tmp_path
 
 
@@ -42,20 +42,24 @@ def test_a_script_records_what_it_writes(repository):
     assert figure_record.stale(folder) == {}
 
 
-@pytest.mark.parametrize("changed", ["curve.py", "common.py"])
-def test_a_figure_is_stale_once_its_script_or_what_it_imports_has_changed(repository, changed):
-    folder = made(repository)
-    with open(repository / "scripts" / "studies" / changed, "a") as file:
-        file.write("MORE = 2\n")
+CHANGES = {"print": "curve.py", "return 2": "common.py", "SIZE = 1": "common.py"}
+
+
+@pytest.mark.parametrize("changed", CHANGES)
+def test_a_figure_is_stale_once_its_script_or_what_it_uses_has_changed(repository, changed):
+    folder, path = made(repository), repository / "scripts" / "studies" / CHANGES[changed]
+    path.write_text(path.read_text().replace(changed, f"{changed}3"))
     assert figure_record.stale(folder) == {"scripts/studies/curve.py: the script has changed": ["curve.txt"]}
     figures.main(["curve", "--unchanged", "--folder", str(folder)])
     assert figure_record.stale(folder) == {}
 
 
-def test_a_figure_does_not_depend_on_the_words_about_its_script(repository):
+def test_a_figure_does_not_depend_on_words_and_on_what_its_script_does_not_use(repository):
     folder, script = made(repository), repository / "scripts" / "studies" / "curve.py"
     text = script.read_text().replace("A curve.", "Another description,\n\nof two lines.")
     script.write_text(f"# A note\n\n{text}  # why\n")
+    common = script.with_name("common.py")
+    common.write_text(common.read_text().replace("pass", "return 3"))
     assert figure_record.stale(folder) == {}
 
 

@@ -65,6 +65,7 @@ WRITES = {
     "plain_models": {f"plain_models.{ending}" for ending in ("png", "csv", "txt")},
     "in_the_viewer": {"viewer.png"},
     "in_the_browser": {"view.png"},
+    "in_the_notebook": {"notebook.png"},
     "plain_throughput": {"plain_throughput.txt"},
     "rebound_phase": {"rebound_phase.txt"},
     "warp_throughput": {"warp_throughput.txt"},
@@ -298,6 +299,7 @@ LONG = {
     "second_opinion",
     "in_the_viewer",
     "in_the_browser",
+    "in_the_notebook",
     "plain_throughput",
     "rebound_phase",
     "rest_on_processors",
@@ -323,7 +325,7 @@ def require_pictures_of_mujoco():
 def test_quick(name, tmp_path, capsys):
     if name in ("opened_in_vtk", "drawn_in_space"):
         pytest.importorskip("pyvista", reason="the extra docs is not installed")
-    if name == "in_the_browser" and in_the_browser.BROWSER is None:
+    if name in ("in_the_browser", "in_the_notebook") and in_the_browser.BROWSER is None:
         pytest.skip("no Chromium on this machine")
     if name == "in_the_viewer":
         require_pictures_of_mujoco()
