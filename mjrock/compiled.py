@@ -3,8 +3,8 @@
 `@compiled` marks a loop for compilation at its first call. The result is stored in the folder that the environment
 variable NUMBA_CACHE_DIR names, or in `__pycache__` beside the module, or in the user's cache folder where the package
 lies on a read-only disk. Where none of them can be written, each process compiles anew. Of processes that need a loop
-at once one compiles it, and the others wait. Short runs need not wait at all, see `patience`. `inlined` marks a
-function that compiled loops call, which takes the place of its call; called from Python it runs as Python. With
+at once one compiles it, and the others wait. Short runs need not wait at all, see `background_compilation`. `inlined`
+marks a function that compiled loops call, which takes the place of its call; called from Python it runs as Python. With
 NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
 """
 
@@ -20,40 +20,39 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from .background_compilation import NotStoredError, allowed, as_plain_python, news
 from .contacts.solref import INLINED
 from .interrupts import interrupts_held_back
 from .notice import notice
-from .patience import NotStoredError, allowed, as_plain_python, news
 
 WITHOUT = "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_waiting: list[Callable[..., Any]] = list(INLINED)
+_waiting = list[Callable[..., Any]](INLINED)
 """Functions that compiled loops call, until there is a loop: numba takes half a second to import."""
 
 
-def _numba() -> Any:
-    """numba, or None where there is none; what waits is made known to it. Ctrl-C is heard when all of it is there."""
-    with interrupts_held_back():
-        return _imported_numba()
-
-
 @cache
-def _imported_numba() -> Any:
-    try:
-        import numba
-        import numba.extending
+def _numba() -> Any:
+    """numba, or None where there is none; functions that wait are registered with it. Ctrl-C is delayed meanwhile."""
+    with interrupts_held_back():
+        try:
+            import numba
+            import numba.extending
 
-        from .stored import cache_of, tell_of_compilations
-    except ImportError:
-        notice(WITHOUT)
-        return None
-    tell_of_compilations()
-    globals().update(numba=numba, cache_of=cache_of)
-    while _waiting:
-        _register(numba, _waiting.pop(0))
-    return numba
+            from .loop_cache import report_compilations
+        except ImportError:
+            notice(WITHOUT)
+            return None
+        report_compilations()
+        while _waiting:
+            _register(numba, _waiting.pop(0))
+        return numba
+
+
+def _is_imported() -> bool:
+    return _numba.cache_info().currsize > 0 and _numba() is not None
 
 
 def _register(numba: Any, function: Callable[..., Any]) -> None:
@@ -64,20 +63,13 @@ def _register(numba: Any, function: Callable[..., Any]) -> None:
         numba.extending.overload(function, jit_options=options, strict=False)(lambda first, *more: choose(first))
 
 
-def __getattr__(name: str) -> Any:
-    """numba and what is made of it, where there is numba."""
-    if name in ("numba", "cache_of") and _numba() is not None:
-        return globals()[name]
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
 def inlined(function: Function) -> Function:
     """A function that compiled loops call, which takes the place of its call; called from Python it runs as Python.
 
     All are: numba compiles a function anew for callers of each kind, and calls of small functions take longer than
     their arithmetic.
     """
-    if "numba" in globals():
+    if _is_imported():
         _register(_numba(), function)
     else:
         _waiting.append(function)
@@ -104,7 +96,7 @@ def method(name: str) -> Callable[..., Any]:
 
 
 class Loop:
-    """A function that numba compiles when it is called, or that runs as plain Python while `patience` allows it.
+    """A function that numba compiles when it is called, or that runs as plain Python, see `background_compilation`.
 
     Args:
         function: allocates nothing: it writes into arrays that it is given. numba then need not count references to
@@ -162,7 +154,9 @@ class Loop:
             return self.py_func
         dispatcher = numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)(self.py_func)
         if dispatcher is not self.py_func:  # it is with NUMBA_DISABLE_JIT=1
-            dispatcher._cache = globals()["cache_of"](self.py_func, self._at_once)
+            from .loop_cache import cache_of  # which imports numba
+
+            dispatcher._cache = cache_of(self.py_func, self._at_once)
         return dispatcher
 
 
@@ -190,7 +184,7 @@ def may_be_stored(function: Callable[..., Any]) -> bool:
     module = Path(function.__code__.co_filename)
     beside = module.parent / "__pycache__"
     elsewhere = "NUMBA_CACHE_DIR" in os.environ or not os.access(beside if beside.exists() else module.parent, os.W_OK)
-    return "numba" in globals() or elsewhere or any(beside.glob(f"{module.stem}.{function.__qualname__}-*.nbi"))
+    return _is_imported() or elsewhere or any(beside.glob(f"{module.stem}.{function.__qualname__}-*.nbi"))
 
 
 def compiled(function: Function) -> Function:

@@ -1,4 +1,4 @@
-"""The process that compiles while another one runs as plain Python, see `patience`."""
+"""The process that compiles while another one runs as plain Python, see `background_compilation`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import warnings
 from queue import SimpleQueue
 from typing import Any
 
-from .patience import Run
+from .background_compilation import Run
 
 ALLOWANCE = {"RLIMIT_CPU": 120, "RLIMIT_AS": 4 << 30, "RLIMIT_CORE": 0}
 """What this process may use: time of a core [s], address space [bytes], a file of its memory [bytes]."""
@@ -57,7 +57,7 @@ def lock_of_store() -> Any:
     """
     from filelock import FileLock
 
-    from .stored import folder  # which imports numba
+    from .loop_cache import folder  # which imports numba
 
     with contextlib.suppress(OSError):
         folder().mkdir(parents=True, exist_ok=True)

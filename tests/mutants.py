@@ -151,7 +151,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
 ROUNDS = (
-    ("1", ("kinematics", "solref", "pace", "touches", "accounts", "scene", "ties_and_forces")),
+    ("1", ("kinematics", "solref", "step_control", "touches", "accounts", "scene", "ties_and_forces")),
     ("0", ("response", "ledger", "stepping", "simulation", "inset", "hard_cases", "sliding", "masonry_motion")),
 )
 """What NUMBA_DISABLE_JIT is, and the tests that run, in each round."""
@@ -364,7 +364,7 @@ EQUIVALENT = {
     },
     "validity.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
     "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
-    "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
+    "step_control.py: return 0 if h * control.frequency <= control.method.smooth else 1": "no step is at the limit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""
 

@@ -14,14 +14,7 @@ import mujoco
 import numpy as np
 
 from .checks import Array, Integers, is_iterable, require_array, require_whole, shown
-from .effective_mass import (
-    EffectiveMass,
-    ModelSprings,
-    PoseConstraints,
-    effective_mass,
-    moved_or_sprung,
-    with_tangents,
-)
+from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass, moved_or_sprung, with_tangents
 from .geoms import BOUNDLESS, FARTHEST_GEOM, NO_LOAD, GeomPair, makes
 from .versions import enable_bits, make_mass_matrix
 

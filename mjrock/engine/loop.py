@@ -1,9 +1,9 @@
 """The compiled loops around the engine's steps: of one length, and fitted to the motion.
 
 A step that fits the motion is made in four moves: predict (which contacts will touch), change the step, let the engine
-step, judge (how long the next may be). The rules are in modules of their own: `pace` (how long), `touches` (when),
-`sticking` (where), `sliding` (friction), and `mjrock.scene.course` (the force of the moving base). The loops call
-`mj_step` by its address and change timestep, rows, friction and velocities in the memory of the engine.
+step, judge (how long the next may be). The rules are in modules of their own: `step_control` (how long), `touches`
+(when), `sticking` (where), `sliding` (friction), and `mjrock.scene.course` (the force of the moving base). The loops
+call `mj_step` by its address and change timestep, rows, friction and velocities in the memory of the engine.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from ..quantities import ON_ITS_FACE, Array, Flags
 from ..scene.course import Ground, mean_acceleration, push_along
 from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
-from .pace import Pace, approached, judged, step_of, while_loaded, while_taut
 from .record import Record
 from .rows import Points, set_rows
 from .setting import Setting, push
@@ -34,6 +33,7 @@ from .sliding import (
     sliding_changed,
     time_to_stop,
 )
+from .step_control import StepControl, approached, judged, step_of, while_loaded, while_taut
 from .sticking import Joints, StepPoses, put_sticking_edges_back
 from .touches import Openings, Touches, closure_changed, follow_openings, step_to_break, step_to_touch
 
@@ -159,7 +159,7 @@ class StepClock(NamedTuple):
 
     Args:
         t: time of the next pose [s].
-        allowed: length of step that the pace allows [s].
+        allowed: length of step that the step control allows [s].
         previous: length of the last step, zero at the release [s].
         energy: twice the kinetic energy at the last touch [J], by which changes are measured, see `Method.faster`.
         calm_steps: how many steps in a row changed little.
@@ -180,9 +180,9 @@ class StepClock(NamedTuple):
     ended: bool
 
     @classmethod
-    def started(cls, pace: Pace, energy: float) -> StepClock:
+    def started(cls, control: StepControl, energy: float) -> StepClock:
         """At the release, with the energy of the release [J]."""
-        return cls(0.0, pace.short, 0.0, max(2 * energy, pace.least_energy), 0, True, False, 0, False)
+        return cls(0.0, control.short, 0.0, max(2 * energy, control.least_energy), 0, True, False, 0, False)
 
 
 @inlined
@@ -267,10 +267,10 @@ def shift_velocity(
 
 
 @inlined
-def set_step(memory: EngineArrays, points: Points, pace: Pace, step: float) -> None:
+def set_step(memory: EngineArrays, points: Points, control: StepControl, step: float) -> None:
     """Set timestep, rows and friction for a step of another length."""
     memory.options[TIMESTEP] = step
-    memory.options[IMPRATIO] = set_rows(points, step_of(pace, step), memory.rows)
+    memory.options[IMPRATIO] = set_rows(points, step_of(control, step), memory.rows)
 
 
 @inlined
@@ -336,10 +336,12 @@ def make_step(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: 
 
 
 @inlined
-def settle_pose(memory: EngineArrays, setting: Setting, pace: Pace, state: Progress, record: Record, n: int) -> None:
+def settle_pose(
+    memory: EngineArrays, setting: Setting, control: StepControl, state: Progress, record: Record, n: int
+) -> None:
     """Put sticking edges back after step n of the record, take frames of the new pose, and let ties yield and break."""
     moved = StepPoses(record.pose[n], state.frames, memory.pose, state.next_frames)
-    put_sticking_edges_back(setting.points, pace, state.joints, record, n, moved, memory.options[IMPRATIO])
+    put_sticking_edges_back(setting.points, control, state.joints, record, n, moved, memory.options[IMPRATIO])
     for body in range(len(state.frames)):
         copy_into(state.next_frames[body], state.frames[body])
     settle_ties(memory, setting, state.frames)
@@ -355,15 +357,15 @@ def settle_ties(memory: EngineArrays, setting: Setting, frames: Array) -> None:
 
 
 @inlined
-def allowed_step(setting: Setting, pace: Pace, openings: Openings, h: float) -> float:
-    """The step that the pace allows, shortened for loaded contacts and taut ties."""
-    loaded = while_loaded(pace, setting.points, openings, h)
-    return while_taut(pace, setting.ties, openings, loaded)
+def allowed_step(setting: Setting, control: StepControl, openings: Openings, h: float) -> float:
+    """The step that the step control allows, shortened for loaded contacts and taut ties."""
+    loaded = while_loaded(control, setting.points, openings, h)
+    return while_taut(control, setting.ties, openings, loaded)
 
 
 @compiled
 def fitted_loop(
-    memory: EngineArrays, setting: Setting, pace: Pace, state: Progress, clock: StepClock, record: Record
+    memory: EngineArrays, setting: Setting, control: StepControl, state: Progress, clock: StepClock, record: Record
 ) -> tuple[tuple[Any, ...], int]:
     """Steps that fit the motion until the record is full or the run is over.
 
@@ -371,27 +373,27 @@ def fitted_loop(
     """
     t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
-    axes, on_moving_ground = points.places.axes, setting.splits
+    axes, method, on_moving_ground = points.places.axes, control.method, setting.splits
     if previous == 0:
-        set_step(memory, points, pace, allowed)
+        set_step(memory, points, control, allowed)
         before_the_release(memory, setting, state, allowed)
     while n < len(record.t) and not ended:
         at_the_pose(memory, setting, state, t, previous)
-        if closure_changed(points.places, openings, state.closed) and previous > pace.short and not no_rate:
+        if closure_changed(points.places, openings, state.closed) and previous > control.short and not no_rate:
             acceleration_from_engine(memory, setting, state, t)
-            allowed, calm_steps, no_rate = pace.short, 0, True
+            allowed, calm_steps, no_rate = control.short, 0, True
 
         # predict
-        step = allowed_step(setting, pace, openings, allowed)
-        least = pace.method.faded * pace.accuracy * energy
+        step = allowed_step(setting, control, openings, allowed)
+        least = method.faded * control.accuracy * energy
         to_touch = 0.0
         if not unpredictable:
-            ahead = step / pace.method.approach if on_moving_ground else step
-            to_touch = step_to_touch(state.touches, openings, ahead, allowed, least, pace.short)
+            ahead = step / method.approach if on_moving_ground else step
+            to_touch = step_to_touch(state.touches, openings, ahead, allowed, least, control.short)
             if on_moving_ground:
                 stop = time_to_stop(points.places, sliding, state.frames, state.velocity_now, state.acceleration_now)
-                step, to_touch = approached(pace, min(step, max(pace.method.approach * stop, pace.short)), to_touch)
-            to_break = step_to_break(setting.ties, openings, step, pace.short)
+                step, to_touch = approached(control, min(step, max(method.approach * stop, control.short)), to_touch)
+            to_break = step_to_break(setting.ties, openings, step, control.short)
             if to_break > 0 and not 0 < to_touch < to_break:
                 to_touch = to_break
         if to_touch > 0:
@@ -399,30 +401,30 @@ def fitted_loop(
 
         # step
         if previous == 0:
-            set_step(memory, points, pace, step)
+            set_step(memory, points, control, step)
             release(memory, setting, sliding, state.frames, state.velocity_now)
             copy_into(memory.acceleration, state.acceleration)
         elif step != previous:
             shift_velocity(memory, setting, state, t, step, previous)
-            set_step(memory, points, pace, step)
+            set_step(memory, points, control, step)
         record.t[n], record.h[n] = t, step
         make_step(memory, setting, sliding, state.frames, record, n)
         ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points, openings)
         sliding_turned = sliding_changed(sliding)
         change = change_of_acceleration(memory, setting, state, t, previous, step, no_rate or sliding_turned)
         moves = kinetic(setting.masses, setting.products, memory.velocity)
-        change /= max(energy, pace.method.faster * moves)
-        unpredictable = change > pace.method.abrupt * pace.method.abrupt
-        settle_pose(memory, setting, pace, state, record, n)
+        change /= max(energy, method.faster * moves)
+        unpredictable = change > method.abrupt * method.abrupt
+        settle_pose(memory, setting, control, state, record, n)
 
         # judge
         t, previous = t + step, step
         if to_touch > 0:
-            energy = max(moves, pace.least_energy)
+            energy = max(moves, control.least_energy)
             touches += 1
-            allowed, calm_steps, no_rate = pace.short, 0, True
+            allowed, calm_steps, no_rate = control.short, 0, True
         else:
-            allowed, calm_steps = judged(pace, step, math.inf if no_rate else change, calm_steps)
+            allowed, calm_steps = judged(control, step, math.inf if no_rate else change, calm_steps)
             no_rate = False
         n += 1
     return (t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended), n

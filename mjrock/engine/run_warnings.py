@@ -81,7 +81,7 @@ def warn_if_slow(scene: Scene) -> None:
         warn_of(
             f"explicit steps would take some {explicit:.2g} s for a simulated second of these {blocks} "
             f"blocks, and steps that fit the motion in MuJoCo {least:.2g} to {most:.2g} s, the more the blocks slide "
-            "and strike: take mr.solve_explicit(case), or a timestep",
+            "and strike: take mr.solve_explicit(case), or a timestep"
         )
 
 
@@ -97,7 +97,7 @@ def warn_if_plain_is_slow(scene: Scene, duration: float, h: float) -> None:
         warn_of(
             f"this plain model would take some {seconds / 60:.2g} minutes, {duration / h:.2g} steps of {h:.2g} s, whose"
             f" length the stiffest joint sets (omega h = {h * scene.highest_frequency:.2g}); explicit steps would take "
-            f"some {explicit_seconds(scene) * duration / 60:.2g}: take mr.solve_explicit(case), or softer joints",
+            f"some {explicit_seconds(scene) * duration / 60:.2g}: take mr.solve_explicit(case), or softer joints"
         )
 
 
@@ -141,7 +141,7 @@ def warn_if_sheared(scene: Scene) -> None:
         least = (np.asarray(contacts.k_s) / contacts.area)[sprung].min()
         warn_of(
             f"k_s = {least:.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick rigidly up to their "
-            "friction",
+            "friction"
         )
 
 
@@ -153,12 +153,12 @@ def warn_if_coarse(scene: Scene, h: float) -> None:
         warn_of(
             f"with a fixed step of {h:.3g} s |e| scatters by {scatter:.0%} (standard deviation) with the phase of the "
             f"touch; below {WORTH_SAYING / SCATTER / scene.highest_frequency:.3g} s it is less than "
-            f"{WORTH_SAYING:.0%}, and fitted steps have no such scatter",
+            f"{WORTH_SAYING:.0%}, and fitted steps have no such scatter"
         )
     if resolved > METHOD.smooth:
         warn_of(
             f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
-            f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",
+            f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s"
         )
 
 
@@ -171,7 +171,7 @@ def warn_if_lifted(scene: Scene, steps: Steps) -> None:
         warn_of(
             f"contacts that slide are pressed apart by {lift:.0%} of their normal force on top of it: the rows of a "
             "fixed step, which are those of the model text, do not slide as Coulomb has it. Pass coulomb=True, or take "
-            "steps that fit the motion",
+            "steps that fit the motion"
         )
 
 
@@ -184,7 +184,7 @@ def warn_if_slid(run: EngineRun) -> None:
         half_base = 0.5 * float(np.ptp(run.scene.contacts.at[holds, 0]))
         warn_of(
             f"the base slid by up to {slid * half_base:.3g} m, {slid:.1%} of b, although it should hold: no "
-            "edge was loaded enough to hold it. Give the base the friction that it has",
+            "edge was loaded enough to hold it. Give the base the friction that it has"
         )
 
 

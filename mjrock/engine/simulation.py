@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inspect
 
+from ..background_compilation import expect, first_answer
 from ..method import METHOD, Method
-from ..patience import expect, first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
@@ -24,7 +24,6 @@ from ..scene.scene import Scene
 from .mjcf import pair_rows
 from .model import engine_of
 from .options import Accuracy, FixedStep, NewmarkBeta, Options
-from .pace import short_step
 from .plain.run import simulate_plain
 from .run import EngineRun, Settings, explained
 from .run_warnings import (
@@ -37,6 +36,7 @@ from .run_warnings import (
     warn_if_slow,
     warn_of_gain,
 )
+from .step_control import short_step
 from .stepping import fitted_steps, fixed_steps
 
 ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4

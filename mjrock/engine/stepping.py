@@ -23,11 +23,11 @@ from ..scene.course import Course
 from ..scene.scene import Scene
 from .loop import Progress, StepClock, fitted_loop, fixed_loop, release, settle_ties
 from .model import Engine, require_well
-from .pace import Pace
 from .record import Record, StepKinds, Steps
 from .setting import Setting
 from .shapes import PLATE
 from .sliding import Sliding
+from .step_control import StepControl
 from .sticking import Joints
 
 
@@ -45,23 +45,25 @@ def fitted_steps(
     if setting.splits:
         method = method.on_moving_ground()
         setting = Setting.of(scene, course, method)
-    memory, pace = engine.memory, Pace.of(scene, course, accuracy, method)
+    memory, control = engine.memory, StepControl.of(scene, course, accuracy, method)
     places, released_on = setting.points.places, engine.closed
     engine.model.tendon_damping[:] = 0.0  # dampers act as applied forces, at the velocity of the pose
     settle_ties(memory, setting, frames_of(memory.pose, places.freedom))
     sliding = Sliding.of(setting.points, coulomb=coulomb, method=method)
     state = Progress.of(memory, setting, Joints.of_scene(scene), sliding)
-    clock = StepClock.started(pace, course.energy(scene))
+    clock = StepClock.started(control, course.energy(scene))
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal clock
-        values, n = fitted_loop(memory, setting, pace, state, clock, record)
+        values, n = fitted_loop(memory, setting, control, state, clock, record)
         clock = StepClock(*values)
         return n, clock.t, clock.ended
 
     record = on_plates(_recorded(engine, course.duration, advance), scene)
-    kind = (record.h * pace.frequency >= method.smooth).astype(np.int64)
-    return Steps(record, StepKinds(pace.beta, pace.ringing, kind, released_on), clock.touches, method, places.freedom)
+    kind = (record.h * control.frequency >= method.smooth).astype(np.int64)
+    return Steps(
+        record, StepKinds(control.beta, control.ringing, kind, released_on), clock.touches, method, places.freedom
+    )
 
 
 def fixed_steps(

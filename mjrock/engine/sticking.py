@@ -28,10 +28,10 @@ from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, ways_alo
 from ..geometry.vectors import Vector, dot, minus, spun
 from ..quantities import Array, Integers
 from ..scene.scene import Scene
-from .pace import Pace, step_of
 from .record import Record
 from .rows import Points, Step, row_of
 from .sliding import slipping
+from .step_control import StepControl, step_of
 
 EQUAL = 1e-6
 """Difference of two penetrations, over the lesser one, that is rounding, as of the two ends of an edge in space [-]."""
@@ -180,10 +180,10 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: StepPoses) -
 
 @inlined
 def put_sticking_edges_back(
-    points: Points, pace: Pace, joints: Joints, record: Record, n: int, moved: StepPoses, impratio: float
+    points: Points, control: StepControl, joints: Joints, record: Record, n: int, moved: StepPoses, impratio: float
 ) -> None:
     """Take the frames of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
-    step = step_of(pace, record.h[n])
+    step = step_of(control, record.h[n])
     take_frames(moved.pose, moved.frames, points.places.axes)
     for j in range(len(joints.body)):
         i = deepest(points.places, joints, j, moved.frames)

@@ -12,12 +12,7 @@ from .plain.run import PlainModel, require_plain
 
 
 def mjcf_of(
-    case: AnyCase,
-    contacts: Contacts | None,
-    timestep: float,
-    *,
-    newmark_beta: float = 0.25,
-    collisions: bool = False,
+    case: AnyCase, contacts: Contacts | None, timestep: float, *, newmark_beta: float = 0.25, collisions: bool = False
 ) -> str:
     """The model of a case as MJCF text; the same arguments give the same bytes.
 

@@ -194,12 +194,7 @@ def _grid(
     ends = np.cumsum([len(cell) for cell in cells])
     tables = {"connectivity": np.concatenate([np.array(cell) for cell in cells]), "offsets": ends, "types": kinds}
     shown = {"CellData": ' Scalars="colour"'} if "colour" in at_cells else {}
-    parts = {
-        "Points": {"Points": points},
-        "Cells": tables,
-        "PointData": at_points,
-        "CellData": at_cells,
-    }
+    parts = {"Points": {"Points": points}, "Cells": tables, "PointData": at_points, "CellData": at_cells}
     text = "\n".join(
         f"<{part}{shown.get(part, '')}>\n"
         + "\n".join(_array(name, array) for name, array in arrays.items())

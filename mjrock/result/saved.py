@@ -181,6 +181,6 @@ def _answer(path: Path, file: Any, laws: Iterable[type]) -> Any:
             raise
         trees["end"]["memory"] = None
         warn_of(
-            f"{path}: {error}. The rest is read; a run that goes on from its end starts from pose and velocity alone",
+            f"{path}: {error}. The rest is read; a run that goes on from its end starts from pose and velocity alone"
         )
         return Reader(values, laws).value(trees, "")

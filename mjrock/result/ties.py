@@ -147,5 +147,5 @@ def warn_of_ties(case: AnyCase, plastic: Mapping[str, Plastic]) -> None:
             warn_of(
                 f"{name} was drawn out by {1e3 * drawn.elongation:.3g} mm, {drawn.elongation / length:.1%} of its "
                 f"length of {length:g} m. A steel bar breaks at some {PLAUSIBLE:.0%}, and an anchor plate follows "
-                "less; give the tie the elongation up to which it holds as ultimate",
+                "less; give the tie the elongation up to which it holds as ultimate"
             )

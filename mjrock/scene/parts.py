@@ -430,7 +430,7 @@ class Limits:
         reach, overlap: largest gap and deepest penetration of a contact that a run follows [m]; beyond them a body has
             gone too far.
         damped_joints: whether the dashpots of contacts that bear weight matter in long steps too, as those between flat
-            blocks do; see `mjrock.engine.pace`.
+            blocks do; see `mjrock.engine.step_control`.
     """
 
     reach: float = math.inf

@@ -9,11 +9,11 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from time import perf_counter
 
+from ..background_compilation import compiles
 from ..bars import Bar
 from ..command_line import Answer, parser
 from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
-from ..patience import compiles
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.ground.motion import GroundMotion
@@ -76,7 +76,7 @@ def answer(argv: Sequence[str]) -> Answer:
     parser("compile", what).parse_args(argv)
     if not compiles():
         raise ValueError("nothing can be compiled: numba is not installed, or NUMBA_DISABLE_JIT is set")
-    from ..stored import folder  # which imports numba
+    from ..loop_cache import folder  # which imports numba
 
     stored = folder().parent
     os.environ["MJROCK_INTERPRET"], begun = "0", perf_counter()

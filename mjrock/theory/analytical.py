@@ -12,7 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..patience import first_answer
+from ..background_compilation import first_answer
 from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution, impacts_of
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case

@@ -25,7 +25,7 @@ from pathlib import Path
 from filelock import FileLock
 from tqdm import tqdm
 
-from mjrock.patience import ENDING
+from mjrock.background_compilation import ENDING
 from scripts.shared import cli
 
 ROOT = Path(__file__).parents[2]
@@ -48,10 +48,10 @@ first = time.perf_counter() - begun
 print(first)
 """
 UNTIL_STORED = """
-from mjrock import patience
-while "numba" not in sys.modules and patience._here.compiler is not None and time.perf_counter() - begun < 300:
+from mjrock import background_compilation as behind
+while "numba" not in sys.modules and behind._here.compiler is not None and time.perf_counter() - begun < 300:
     time.sleep(0.2)
-    patience.news()
+    behind.news()
 print(time.perf_counter() - begun)
 """
 STARTS = """

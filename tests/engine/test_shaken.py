@@ -5,7 +5,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.engine.model import engine_of
-from mjrock.engine.pace import Pace, approached
+from mjrock.engine.step_control import StepControl, approached
 from mjrock.engine.stepping import fitted_steps
 from mjrock.method import METHOD
 from mjrock.scene.course import Shaking, ground_velocity
@@ -39,12 +39,12 @@ def test_a_wall_on_ice_stays_where_it_is(accuracy):
 def test_touches_are_approached(two_sided, contacts):
     """A step on moving ground ends before a touch that is not near, and meets one that is."""
     scene = mr.scene_of(two_sided, contacts)
-    pace = Pace.of(scene, wall_course(two_sided, scene), 1e-3)
-    near = METHOD.near * pace.short
-    assert approached(pace, 1.0, 10 * near) == (METHOD.approach * (10 * near), 0.0)
-    assert approached(pace, 5 * near, 10 * near) == (5 * near, 0.0)
-    assert approached(pace, near, 0.9 * near) == (near, 0.9 * near)
-    assert approached(pace, 0.5 * near, 0.9 * near) == (0.5 * near, 0.0)
+    control = StepControl.of(scene, wall_course(two_sided, scene), 1e-3)
+    near = METHOD.near * control.short
+    assert approached(control, 1.0, 10 * near) == (METHOD.approach * (10 * near), 0.0)
+    assert approached(control, 5 * near, 10 * near) == (5 * near, 0.0)
+    assert approached(control, near, 0.9 * near) == (near, 0.9 * near)
+    assert approached(control, 0.5 * near, 0.9 * near) == (0.5 * near, 0.0)
 
 
 @pytest.mark.parametrize("seed", [0, 1])

@@ -8,7 +8,7 @@ from scenes import course, fixed_steps
 import mjrock as mr
 from mjrock.engine import run as engine_run
 from mjrock.engine.model import engine_of
-from mjrock.engine.pace import short_step
+from mjrock.engine.step_control import short_step
 from mjrock.engine.stepping import fitted_steps
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD

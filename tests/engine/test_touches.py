@@ -8,10 +8,10 @@ import mjrock as mr
 from mjrock.engine.loop import Progress, StepClock, fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
-from mjrock.engine.pace import Pace, short_step
 from mjrock.engine.record import Record
 from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding
+from mjrock.engine.step_control import StepControl, short_step
 from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.sticking import Joints
 from mjrock.engine.touches import Openings, Touches, hardest, predict
@@ -37,11 +37,11 @@ def ice():
 def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False):
     """The clock after a step of the block, `away` from the stop and moving towards it, and the step itself.
 
-    The pace allows the step h, as long as the last. The acceleration in the last step was zero.
+    The control allows the step h, as long as the last. The acceleration in the last step was zero.
     """
     start = scene.at_rest + np.array([away, 0.0, 0.0])
     slides = course(scene, [[-SPEED, 0.0, 0.0]], 1.0, pose=start)
-    pace, setting = Pace.of(scene, slides, ACCURACY), Setting.of(scene, slides)
+    control, setting = StepControl.of(scene, slides, ACCURACY), Setting.of(scene, slides)
     with engine_of(scene) as engine:
         engine.follow(h, pair_rows(scene, h, 0.25))
         engine.release(slides)
@@ -51,14 +51,14 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         record = Record.of(1, (3, 3), len(scene.contacts.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
         before = StepClock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
-        values, n = fitted_loop(engine.memory, setting, pace, state, before, record)
+        values, n = fitted_loop(engine.memory, setting, control, state, before, record)
     assert n == 1
     return StepClock(*values), record
 
 
 @pytest.mark.parametrize("share", [0.1, 0.9])
 def test_a_step_ends_half_a_short_step_after_the_touch(ice, share):
-    """The block arrives after a share of the step that the pace allows; a step that does not arrive is left alone."""
+    """The block arrives after a share of the step that is allowed; a step that does not arrive is left alone."""
     short = short_step(ice, ACCURACY)
     for h in (short, 4 * short):
         after, record = one_step(ice, share * h * SPEED, h)

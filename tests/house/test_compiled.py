@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import bars, compiled, compiler, patience, stored
+from mjrock import background_compilation, bars, compiled, compiler, loop_cache
 
 PACKAGE = Path(mr.__file__).parent
 
@@ -125,16 +125,16 @@ def test_the_stamp_of_a_module_is_that_of_what_it_imports(tmp_path):
         return {name for name, stamp in before.items() if stamp != after[name]}
 
     def stamps():
-        stored._imports.cache_clear()
+        loop_cache._imports.cache_clear()
         names = ("engine/loop.py", "theory/arcs.py", "distinct/loop.py")
-        return {name: stored.stamp(copy / name) for name in names}
+        return {name: loop_cache.stamp(copy / name) for name in names}
 
     before = stamps()
     assert edited("distinct/loop.py") == {"distinct/loop.py"}
     assert edited("distinct/contacts/contact.py") == {"distinct/loop.py"}
     assert edited("theory/arcs.py") == {"theory/arcs.py"}
     assert edited("engine/loop.py") == {"engine/loop.py"}
-    assert edited("engine/pace.py") == {"engine/loop.py"}
+    assert edited("engine/step_control.py") == {"engine/loop.py"}
     assert "engine/loop.py" in edited("geometry/frames.py")  # which it reaches by others
     assert edited("engine/memory.py", "TIMESTEP, IMPRATIO = 0, 1", "TIMESTEP, IMPRATIO = 1, 0") == {"engine/loop.py"}
     order = "    pose: Array\n    velocity: Array\n", "    velocity: Array\n    pose: Array\n"
@@ -169,7 +169,7 @@ def test_a_read_only_installation_works(tmp_path):
     command = [sys.executable, "-m", "mjrock", "compile"]
     setting = os.environ | nowhere | {"PYTHONPATH": str(tmp_path / "site")}
     refused = subprocess.run(command, env=setting, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert (refused.returncode, refused.stderr) == (2, f"error: {stored.NOWHERE}\n")
+    assert (refused.returncode, refused.stderr) == (2, f"error: {loop_cache.NOWHERE}\n")
 
 
 def test_a_cache_that_cannot_be_read_or_written_is_none(monkeypatch):
@@ -195,7 +195,7 @@ def test_a_cache_that_names_a_class_that_is_gone_is_made_anew():
         pytest.skip("without numba nothing is stored")
     index = Path(compiled.compiled(PROBE).dispatcher._cache._cache_file._index_path)
     index.parent.mkdir(exist_ok=True)
-    index.write_bytes(pickle.dumps(compiled.numba.__version__) + b"cmjrock.compiled\ngone\n.")
+    index.write_bytes(pickle.dumps(compiled._numba().__version__) + b"cmjrock.compiled\ngone\n.")
     for _ in range(2):  # the second reads what the first has stored
         double, room = compiled.compiled(PROBE), np.array([1.0, 2.0])
         double(room)
@@ -212,7 +212,7 @@ def test_where_no_folder_can_be_written_it_says_so(monkeypatch, capfd):
     monkeypatch.setattr(FunctionCache._impl_class, "_locator_classes", [])
     compiled.compiled(PROBE)(np.ones(2))
     assert capfd.readouterr().err == ""  # what takes no time is not worth a line
-    monkeypatch.setitem(stored.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
+    monkeypatch.setitem(loop_cache.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
     compiled.compiled(PROBE)(np.ones(2))
     assert capfd.readouterr().err == f"mjrock: compiling probes, some 7 s of a core, {ANEW}\n"
 
@@ -224,13 +224,13 @@ def test_where_nothing_can_be_stored_short_runs_are_plain_python(monkeypatch):
 
     monkeypatch.setattr(FunctionCache._impl_class, "_locator_classes", [])
     monkeypatch.setenv("MJROCK_INTERPRET", "1")
-    monkeypatch.setattr(patience._here, "taken", 0.0)
-    monkeypatch.setattr(patience._here, "started", patience.MOST)
+    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
+    monkeypatch.setattr(background_compilation._here, "started", background_compilation.MOST)
     probe, room = compiled.compiled(PROBE), np.ones(2)
-    with patience.first_answer(print):
+    with background_compilation.first_answer(print):
         probe(room)
         assert not probe.signatures
-        monkeypatch.setattr(patience._here, "taken", patience.COMPILING)
+        monkeypatch.setattr(background_compilation._here, "taken", background_compilation.COMPILING)
         probe(room)
     assert len(probe.signatures) == 1
     assert list(room) == [4.0, 4.0]
@@ -244,7 +244,7 @@ def test_where_there_is_no_standard_error_it_compiles_in_silence(monkeypatch, tm
     from numba.core.caching import FunctionCache
 
     monkeypatch.setattr(FunctionCache, "load_overload", lambda self, *key: None)
-    monkeypatch.setitem(stored.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
+    monkeypatch.setitem(loop_cache.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
     monkeypatch.setattr(sys, "stderr", None)
     room = np.ones(2)
     compiled.compiled(PROBE)(room)
@@ -292,7 +292,7 @@ def test_squares_are_products():
 
 
 def test_loops_that_take_seconds_to_compile_are_there():
-    for name in stored.SLOW:
+    for name in loop_cache.SLOW:
         module, function = name.rsplit(".", 1)
         assert callable(getattr(importlib.import_module(module), function))
 

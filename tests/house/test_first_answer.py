@@ -1,4 +1,4 @@
-"""Where no loop is stored, a short run has its answer as plain Python while another process compiles: `patience`."""
+"""Where no loop is stored, a short run has its answer as plain Python while another process compiles."""
 
 import multiprocessing
 import os
@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import compiled, patience
+from mjrock import background_compilation, compiled
 
 PACKAGE = Path(mr.__file__).parent
 pytest.importorskip("numba")
@@ -25,19 +25,19 @@ pytest.importorskip("numba")
 WALL = """
 import sys, time
 import mjrock as mr
-from mjrock import patience
+from mjrock import background_compilation
 wall = mr.Block.from_size(0.6, 4.2)
 contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
 case = mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False)
 answer = mr.simulate(case, contacts)
-behind = patience._here.compiler
+behind = background_compilation._here.compiler
 print(answer.theta[-1].hex(), "numba" in sys.modules, behind and behind.process.pid, flush=True)
 """
 
 THEORY = """
 import sys, time
 import mjrock as mr
-from mjrock import patience
+from mjrock import background_compilation
 from mjrock.theory.arcs import rocking_loop
 wall = mr.Block.from_size(0.6, 4.2)
 case, e = mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False), mr.Restitution.from_geometry(wall)
@@ -66,7 +66,7 @@ def fresh(tmp_path):
 def started(folder, program=WALL, interpret="1", *, at_home=False, **environment):
     """A program in a process of its own that takes the package in a folder; as if it were no test, where it lies at
     home."""
-    away = ("NUMBA_CACHE_DIR", *(patience.ENDING if at_home else ()))
+    away = ("NUMBA_CACHE_DIR", *(background_compilation.ENDING if at_home else ()))
     setting = {name: value for name, value in os.environ.items() if name not in away}
     setting |= {"PYTHONPATH": str(folder), "MJROCK_INTERPRET": interpret} | environment
     if at_home:
@@ -152,7 +152,7 @@ def test_the_second_start_takes_compiled_loops(fresh):
     counted = "print(sum(rocking_loop.stats.cache_hits.values()) if rocking_loop._loaded else 0)"
     first = started(fresh, THEORY + counted, at_home=True)
     told, said = first.communicate("")
-    if patience._cores() == 1:
+    if background_compilation._cores() == 1:
         pytest.skip("one core: nothing compiles behind a run")
     assert told.split()[-1] == "0"
     assert ended(said.split("process ")[1].split()[0], within=300)
@@ -171,20 +171,20 @@ def test_one_process_for_each_store_compiles_behind_others(fresh):
         assert parent.communicate("")[1] == ""
 
 
-@pytest.mark.parametrize("setting", [*patience.ENDING, "NUMBA_CACHE_DIR", "first process", "worker"])
+@pytest.mark.parametrize("setting", [*background_compilation.ENDING, "NUMBA_CACHE_DIR", "first process", "worker"])
 def test_where_the_process_that_compiles_ends_with_its_parent(setting, monkeypatch, tmp_path):
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
-    for name in (*patience.ENDING, "NUMBA_CACHE_DIR"):
+    for name in (*background_compilation.ENDING, "NUMBA_CACHE_DIR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os, "getppid", lambda: 77)
-    assert patience.may_outlive()
+    assert background_compilation.may_outlive()
     if setting == "first process":
         monkeypatch.setattr(os, "getppid", lambda: 1)
     elif setting == "worker":
         monkeypatch.setattr(multiprocessing, "parent_process", multiprocessing.current_process)
     else:
         monkeypatch.setenv(setting, str(tmp_path / "store"))
-    assert not patience.may_outlive()
+    assert not background_compilation.may_outlive()
 
 
 @linux
@@ -192,7 +192,7 @@ def test_the_process_that_compiles_is_limited():
     """In the time of a core, in memory, and in time after its parent."""
     limits = "from mjrock import compiler; import resource as r; compiler.limit(); print(*r.getrlimit(r.RLIMIT_CPU))"
     assert subprocess.check_output([sys.executable, "-c", limits], text=True).split() == ["120", "120"]
-    run = patience.Run(timeit.timeit, {"stmt": "import time; time.sleep(60)", "number": 1})
+    run = background_compilation.Run(timeit.timeit, {"stmt": "import time; time.sleep(60)", "number": 1})
     begun = time.monotonic()
     process = subprocess.Popen([sys.executable, "-c", BEHIND], stdin=subprocess.PIPE)
     process.communicate(pickle.dumps(pickle.dumps(run)))
@@ -206,7 +206,7 @@ def test_later_calls_take_what_another_process_has_stored(fresh):
 first, until = answer.theta, time.monotonic() + 300
 while "numba" not in sys.modules and time.monotonic() < until:
     time.sleep(0.5)
-    patience._here.taken = 0.0  # as if plain Python took no time
+    background_compilation._here.taken = 0.0  # as if plain Python took no time
     answer = mr.solve_analytical(case, e)
 assert (answer.theta == first).all()
 print(bool(rocking_loop.signatures), sum(rocking_loop.stats.cache_hits.values()))
@@ -252,38 +252,38 @@ if __name__ == "__main__":
 
 def test_switched_off_it_compiles(fresh, monkeypatch):
     monkeypatch.setenv("MJROCK_INTERPRET", "0")
-    with patience.first_answer(print):
-        assert not patience.allowed(at_once=False)
+    with background_compilation.first_answer(print):
+        assert not background_compilation.allowed(at_once=False)
     monkeypatch.setenv("MJROCK_INTERPRET", "1")
-    with patience.first_answer(print):
-        assert patience.allowed(at_once=False)
-        assert not patience.allowed(at_once=True)
-        monkeypatch.setattr(patience._here, "taken", patience.COMPILING)
-        assert not patience.allowed(at_once=False)
-    monkeypatch.setattr(patience._here, "taken", 0.0)
-    assert not patience.allowed(at_once=False)
+    with background_compilation.first_answer(print):
+        assert background_compilation.allowed(at_once=False)
+        assert not background_compilation.allowed(at_once=True)
+        monkeypatch.setattr(background_compilation._here, "taken", background_compilation.COMPILING)
+        assert not background_compilation.allowed(at_once=False)
+    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
+    assert not background_compilation.allowed(at_once=False)
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
-    with patience.first_answer(print):
-        assert not patience.allowed(at_once=False)
+    with background_compilation.first_answer(print):
+        assert not background_compilation.allowed(at_once=False)
 
 
 def test_a_long_run_compiles_at_once(monkeypatch):
     monkeypatch.setenv("MJROCK_INTERPRET", "1")
-    monkeypatch.setattr(patience._here, "taken", 0.0)
-    with patience.first_answer(print):
-        patience.expect(0.5 * patience.COMPILING)
-        assert patience.allowed(at_once=False)
-        monkeypatch.setattr(patience._here, "taken", 0.6 * patience.COMPILING)
-        patience.expect(0.5 * patience.COMPILING)
-        assert not patience.allowed(at_once=False)
+    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
+    with background_compilation.first_answer(print):
+        background_compilation.expect(0.5 * background_compilation.COMPILING)
+        assert background_compilation.allowed(at_once=False)
+        monkeypatch.setattr(background_compilation._here, "taken", 0.6 * background_compilation.COMPILING)
+        background_compilation.expect(0.5 * background_compilation.COMPILING)
+        assert not background_compilation.allowed(at_once=False)
 
 
 @pytest.fixture
 def patient(monkeypatch):
     """First answers in this process, by loops that nobody compiles behind it."""
     monkeypatch.setenv("MJROCK_INTERPRET", "1")
-    monkeypatch.setattr(patience._here, "taken", 0.0)
-    monkeypatch.setattr(patience._here, "started", patience.MOST)
+    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
+    monkeypatch.setattr(background_compilation._here, "started", background_compilation.MOST)
 
 
 def double(values):
@@ -295,11 +295,11 @@ def test_the_time_of_plain_python_counts(patient, monkeypatch):
     """Once it is as long as compiling, the loop is compiled."""
     loop, room = compiled.compiled(double), np.array([1.0, 2.0])
     monkeypatch.setattr(compiled, "may_be_stored", lambda function: False)
-    with patience.first_answer(print):
+    with background_compilation.first_answer(print):
         loop(room)
-        assert 0 < patience._here.taken < 1
+        assert 0 < background_compilation._here.taken < 1
         assert "dispatcher" not in vars(loop)
-        monkeypatch.setattr(patience._here, "taken", patience.COMPILING)
+        monkeypatch.setattr(background_compilation._here, "taken", background_compilation.COMPILING)
         loop(room)
     assert len(loop.signatures) == 1
     assert list(room) == [4.0, 8.0]
@@ -316,7 +316,7 @@ def test_a_disk_that_refuses(patient, monkeypatch, written):
     for name in ("save_overload", "load_overload") if written == "never" else ("load_overload",):
         monkeypatch.setattr(FunctionCache, name, refused)
     loop, room = compiled.compiled(double), np.array([1.0])
-    with patience.first_answer(print):
+    with background_compilation.first_answer(print):
         loop(room)
     loop(room)
     assert list(room) == [4.0]

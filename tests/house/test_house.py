@@ -16,8 +16,8 @@ ROOT = Path(mjrock.__file__).parent
 FLOORS = (
     ("contacts",),
     ("machine", "notice"),
-    ("_version", "bars", "command_line", "interrupts", "notebook", "patience"),
-    ("stored",),
+    ("_version", "bars", "command_line", "background_compilation", "interrupts", "notebook"),
+    ("loop_cache",),
     ("compiled", "compiler", "method", "quantities"),
     ("geometry", "linear"),
     ("problem.ground",),

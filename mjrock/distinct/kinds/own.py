@@ -18,9 +18,9 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from ...background_compilation import compiles
 from ...compiled import by_type, inlined
 from ...geometry.vectors import dot, no_spin, plus, put, read, scaled
-from ...patience import compiles
 from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...problem.masonry.laws.own_law import OF_K_N, Own
 from ...problem.wall.user_law import (

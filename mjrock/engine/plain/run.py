@@ -248,9 +248,7 @@ def response_of_plain(run: PlainRun, settings: dict[str, float], options: Option
     plastic, account = run.plastic(), run.ledger()
     overlap, message = run.overlap
     if overlap > DOUBTED:
-        warn_of(
-            f"{message}, over the smaller one; a shorter timestep or stiffer joints keep them apart",
-        )
+        warn_of(f"{message}, over the smaller one; a shorter timestep or stiffer joints keep them apart")
     residual = float(np.abs(account.residual).max())
     advice = f"the step is long for this motion, take timestep = {0.5 * settings['timestep']:.2g} s"
     warn_if_open(residual, account.largest, OPEN, "its largest part", lambda share: advice)

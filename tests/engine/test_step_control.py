@@ -8,8 +8,8 @@ import pytest
 from scenes import changed, course, two_blocks
 
 import mjrock as mr
-from mjrock.engine.pace import Pace, judged, resolves, short_step, while_loaded, while_taut
 from mjrock.engine.rows import points_of
+from mjrock.engine.step_control import StepControl, judged, resolves, short_step, while_loaded, while_taut
 from mjrock.engine.sticking import Joints, StepPoses, deepest, presses, rolled
 from mjrock.engine.touches import Openings
 from mjrock.geometry.frames import frames_of
@@ -35,16 +35,16 @@ def openings(count, of):
 
 def test_the_limits_of_a_wall(scene, wall, contacts):
     """The short step resolves the contacts, the longest the rocking; both go with the root of the accuracy."""
-    pace = Pace.of(scene, course(scene), 1e-4)
-    assert pace.short == pytest.approx(math.sqrt(METHOD.short * 1e-4) / scene.highest_frequency)
-    assert pace.longest == pytest.approx(math.sqrt(METHOD.longest * 1e-4) / wall.p)
-    assert Pace.of(scene, course(scene), 0.1).short == pytest.approx(METHOD.most / scene.highest_frequency)
+    control = StepControl.of(scene, course(scene), 1e-4)
+    assert control.short == pytest.approx(math.sqrt(METHOD.short * 1e-4) / scene.highest_frequency)
+    assert control.longest == pytest.approx(math.sqrt(METHOD.longest * 1e-4) / wall.p)
+    assert StepControl.of(scene, course(scene), 0.1).short == pytest.approx(METHOD.most / scene.highest_frequency)
     # two lines hold m g with their springs, m g / 2 each
-    assert pace.least_energy == pytest.approx(wall.weight**2 / contacts.base.stiffness.sum())
-    np.testing.assert_allclose(pace.ringing, [[0] * 4, [METHOD.ringing_borne] * 2 + [METHOD.ringing_open] * 2])
-    np.testing.assert_allclose(pace.beta, [[1 / 12] * 4, (1 + pace.ringing[1] ** 2) / 4])
+    assert control.least_energy == pytest.approx(wall.weight**2 / contacts.base.stiffness.sum())
+    np.testing.assert_allclose(control.ringing, [[0] * 4, [METHOD.ringing_borne] * 2 + [METHOD.ringing_open] * 2])
+    np.testing.assert_allclose(control.beta, [[1 / 12] * 4, (1 + control.ringing[1] ** 2) / 4])
     for share, kind in ((0.99, 0), (1.01, 1)):
-        assert resolves(pace, share * METHOD.smooth / scene.highest_frequency) == kind
+        assert resolves(control, share * METHOD.smooth / scene.highest_frequency) == kind
 
 
 def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
@@ -56,7 +56,7 @@ def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
         mr.Case(wall, 0.0, 1.0, vertical=motion),
     ):
         scene = wall_scene(shaken, contacts)
-        assert Pace.of(scene, wall_course(shaken, scene), 1e-3).longest == 3e-3
+        assert StepControl.of(scene, wall_course(shaken, scene), 1e-3).longest == 3e-3
     case = mr.Case(wall, 0.0, 1.0, side_stop=False)
     for xi, limited in ((0.08, False), (0.12, False), (0.2, True), (0.8, True)):
         damped = wall_scene(case, dataclasses.replace(contacts, base=dataclasses.replace(contacts.base, xi=xi)))
@@ -70,31 +70,31 @@ def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
 
 def test_a_step_is_judged_by_the_change_of_acceleration(scene):
     """Halved above what is tolerated, doubled after two steps in a row below a quarter of it."""
-    pace = Pace.of(scene, course(scene), 1e-3)
-    tolerated, h = (METHOD.change * 1e-3) ** 2, math.sqrt(pace.short * pace.longest)
-    assert judged(pace, h, 1.01 * tolerated, 1) == (0.5 * h, 0)
-    assert judged(pace, h, 0.99 * tolerated, 1) == (h, 0)
-    assert judged(pace, h, 1.01 * tolerated / 16, 1) == (h, 0)
-    assert judged(pace, h, 0.99 * tolerated / 16, 0) == (h, 1)
-    assert judged(pace, h, 0.99 * tolerated / 16, 1) == (2 * h, 0)
-    assert judged(pace, 1.5 * pace.short, 2 * tolerated, 0) == (pace.short, 0)
-    assert judged(pace, 0.7 * pace.longest, 0.0, 1) == (pace.longest, 0)
+    control = StepControl.of(scene, course(scene), 1e-3)
+    tolerated, h = (METHOD.change * 1e-3) ** 2, math.sqrt(control.short * control.longest)
+    assert judged(control, h, 1.01 * tolerated, 1) == (0.5 * h, 0)
+    assert judged(control, h, 0.99 * tolerated, 1) == (h, 0)
+    assert judged(control, h, 1.01 * tolerated / 16, 1) == (h, 0)
+    assert judged(control, h, 0.99 * tolerated / 16, 0) == (h, 1)
+    assert judged(control, h, 0.99 * tolerated / 16, 1) == (2 * h, 0)
+    assert judged(control, 1.5 * control.short, 2 * tolerated, 0) == (control.short, 0)
+    assert judged(control, 0.7 * control.longest, 0.0, 1) == (control.longest, 0)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_loaded_point_stays_loaded(scene, sign):
     """h^2/2 |g2| = stays |g|; what has lifted off or bears nothing at rest does not count."""
     pressed, curve, points = scene.bears[0], 3.0, points_of(scene)
-    pace = Pace.of(scene, course(scene), 1e-3)._replace(short=1e-5)
+    control = StepControl.of(scene, course(scene), 1e-3)._replace(short=1e-5)
     longest = math.sqrt(2 * METHOD.stays * pressed / curve)
     just, hardly = 1.01 * METHOD.loaded, 0.99 * METHOD.loaded
     for point, share, counts in ((0, 1.0, True), (1, just, True), (1, hardly, False), (3, 1, False)):
         moving = openings(4, {point: (-share * pressed, 0.0, 7.0, sign * curve)})
         expected = math.sqrt(share) * longest if counts else 1.0
-        assert while_loaded(pace, points, moving, 1.0) == pytest.approx(expected)
+        assert while_loaded(control, points, moving, 1.0) == pytest.approx(expected)
     moving = openings(4, {0: (-pressed, 0.0, 0.0, sign * curve), 3: (-pressed, 0.0, 7.0, sign * curve)})
-    assert while_loaded(pace, points, moving, 0.99 * longest) == 0.99 * longest
-    assert while_loaded(pace._replace(short=2 * longest), points, moving, 1.0) == 2 * longest
+    assert while_loaded(control, points, moving, 0.99 * longest) == 0.99 * longest
+    assert while_loaded(control._replace(short=2 * longest), points, moving, 1.0) == 2 * longest
 
 
 def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
@@ -102,17 +102,17 @@ def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
     scene = two_blocks()
     ties = scene.ties._replace(k=np.ones(1), stretch=np.ones(1), reach=np.ones(1))
     longer = openings(5, {4: (-0.01, -0.3, 20.0, 10.0)})
-    pace = Pace.of(scene, course(scene), 1e-3)._replace(short=1e-4, taut=1.0)
-    assert while_taut(pace, ties, longer, 0.02) == pytest.approx(0.01)
-    assert while_taut(pace._replace(short=0.015), ties, longer, 0.02) == 0.015
-    assert while_taut(pace, ties, longer, 0.009) == 0.009
+    control = StepControl.of(scene, course(scene), 1e-3)._replace(short=1e-4, taut=1.0)
+    assert while_taut(control, ties, longer, 0.02) == pytest.approx(0.01)
+    assert while_taut(control._replace(short=0.015), ties, longer, 0.02) == 0.015
+    assert while_taut(control, ties, longer, 0.009) == 0.009
     for other in ((0.01, -0.3, 20.0, 10.0), (-0.01, 0.3, 20.0, 10.0)):  # slack, and shortening
-        assert while_taut(pace, ties, openings(5, {4: other}), 0.02) == 0.02
+        assert while_taut(control, ties, openings(5, {4: other}), 0.02) == 0.02
     elastic = ties._replace(stretch=np.array([math.inf]))
-    assert while_taut(pace, elastic, longer, 0.02) == 0.02
-    assert while_taut(pace._replace(taut=0.004), elastic, longer, 0.02) == 0.004
+    assert while_taut(control, elastic, longer, 0.02) == 0.02
+    assert while_taut(control._replace(taut=0.004), elastic, longer, 0.02) == 0.004
     slack = openings(5, {4: (0.01, -0.3, 20.0, 10.0)})
-    assert while_taut(pace._replace(taut=0.004), elastic, slack, 0.02) == 0.02
+    assert while_taut(control._replace(taut=0.004), elastic, slack, 0.02) == 0.02
 
 
 def test_steps_on_a_taut_tie(wall, contacts):
@@ -122,7 +122,7 @@ def test_steps_on_a_taut_tie(wall, contacts):
 
     def taut(case):
         scene = wall_scene(case, contacts)
-        return Pace.of(scene, wall_course(case, scene), 1e-3).taut
+        return StepControl.of(scene, wall_course(case, scene), 1e-3).taut
 
     assert taut(free) == math.inf
     omega = math.sqrt(1e6 * (1 / wall.mass + wall.h**2 / wall.inertia))
@@ -228,7 +228,7 @@ def test_a_base_sticks_up_to_mu(share, slides):
 def test_between_blocks_the_extra_dashpot_is_only_what_the_joint_lacks():
     for xi in (0.0, 1e-4, 0.05):
         scene = two_blocks(xi=xi)
-        pace = Pace.of(scene, course(scene), 1e-3)
-        lacking = np.maximum(METHOD.ringing_borne - scene.contacts.c / scene.contacts.k / pace.longest, 0)
-        np.testing.assert_allclose(pace.ringing[1], lacking)
+        control = StepControl.of(scene, course(scene), 1e-3)
+        lacking = np.maximum(METHOD.ringing_borne - scene.contacts.c / scene.contacts.k / control.longest, 0)
+        np.testing.assert_allclose(control.ringing[1], lacking)
         assert (lacking[0] == METHOD.ringing_borne, lacking[0] == 0) == (xi == 0, xi == 0.05)

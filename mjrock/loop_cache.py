@@ -13,8 +13,8 @@ from typing import Any
 from numba.core import event
 from numba.core.caching import FunctionCache, NullCache
 
+from .background_compilation import NotStoredError, allowed
 from .notice import notice
-from .patience import NotStoredError, allowed
 
 SLOW = {
     "mjrock.theory.arcs.rocking_loop": ("rocking theory", 3),
@@ -167,10 +167,10 @@ def folder() -> Path:
 
 
 class Compilations(event.Listener):  # type: ignore[misc]
-    """Says which loop is being compiled where that takes seconds, how many, and where it is stored."""
+    """Writes which loop is being compiled where that takes seconds, how many, and where it is stored."""
 
     def on_start(self, event: Any) -> None:
-        """Tell the user why nothing seems to happen."""
+        """Write why nothing seems to happen."""
         dispatcher = event.data.get("dispatcher")
         function = getattr(dispatcher, "py_func", None)
         slow = SLOW.get(f"{function.__module__}.{function.__name__}") if function is not None else None
@@ -183,6 +183,7 @@ class Compilations(event.Listener):  # type: ignore[misc]
         """Nothing to say."""
 
 
-def tell_of_compilations() -> None:
-    """From now on, tell the user of compilations that take seconds."""
+@cache
+def report_compilations() -> None:
+    """From now on, write a line on each compilation that takes seconds."""
     event.register("numba:compile", Compilations())

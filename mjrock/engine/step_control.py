@@ -1,4 +1,4 @@
-"""Pace: how long the steps of a run may be.
+"""Step control: how long the steps of a run may be.
 
 The lengths follow from the contacts, the rocking and an error estimate:
 
@@ -41,7 +41,7 @@ LIGHTEST = {2: 6, 3: 7}
 slender block, and 7/m at the corner of a thin plate."""
 
 
-class Pace(NamedTuple):
+class StepControl(NamedTuple):
     """The limits of the steps of a run.
 
     Args:
@@ -67,7 +67,7 @@ class Pace(NamedTuple):
     method: Method
 
     @classmethod
-    def of(cls, scene: Scene, course: Course, accuracy: float, method: Method = METHOD) -> Pace:
+    def of(cls, scene: Scene, course: Course, accuracy: float, method: Method = METHOD) -> StepControl:
         """The limits for a scene and what happens to it."""
         short, weight = short_step(scene, accuracy, method), points_of(scene, method).weight
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
@@ -105,21 +105,21 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
 
 
 @inlined
-def resolves(pace: Pace, h: float) -> int:
-    """Which row of `pace.beta` and `pace.ringing` a step of length h takes: 0 where it resolves the contacts, otherwise
-    1."""
-    return 0 if h * pace.frequency < pace.method.smooth else 1
+def resolves(control: StepControl, h: float) -> int:
+    """Which row of `control.beta` and `control.ringing` a step of length h takes: 0 where it resolves the contacts,
+    otherwise 1."""
+    return 0 if h * control.frequency < control.method.smooth else 1
 
 
 @inlined
-def step_of(pace: Pace, h: float) -> Step:
+def step_of(control: StepControl, h: float) -> Step:
     """The step of length h."""
-    kind = resolves(pace, h)
-    return Step(h, pace.beta[kind], pace.ringing[kind])
+    kind = resolves(control, h)
+    return Step(h, control.beta[kind], control.ringing[kind])
 
 
 @inlined
-def while_loaded(pace: Pace, points: Points, openings: Openings, h: float) -> float:
+def while_loaded(control: StepControl, points: Points, openings: Openings, h: float) -> float:
     """The step h [s], shortened to what every loaded contact stays loaded in, but not below the short step.
 
     h^2/2 |g2| <= stays |g| for every loaded point, with g its gap and g2 what the velocities alone make of its second
@@ -127,13 +127,13 @@ def while_loaded(pace: Pace, points: Points, openings: Openings, h: float) -> fl
     """
     for i in range(len(points.bears)):
         g, swept = openings.value[i], openings.swept[i]
-        if -g > pace.method.loaded * points.bears[i] > 0 and 0.5 * h * h * abs(swept) > -pace.method.stays * g:
-            h = math.sqrt(-2 * pace.method.stays * g / abs(swept))
-    return max(h, pace.short)
+        if -g > control.method.loaded * points.bears[i] > 0 and 0.5 * h * h * abs(swept) > -control.method.stays * g:
+            h = math.sqrt(-2 * control.method.stays * g / abs(swept))
+    return max(h, control.short)
 
 
 @inlined
-def while_taut(pace: Pace, ties: Ties, openings: Openings, h: float) -> float:
+def while_taut(control: StepControl, ties: Ties, openings: Openings, h: float) -> float:
     """The step h [s], shortened to what a taut tie is integrated well in, but not below the short step.
 
     It also ends where a tie that can yield is longest. A tie yields up to its greatest length, which a long step would
@@ -144,39 +144,39 @@ def while_taut(pace: Pace, ties: Ties, openings: Openings, h: float) -> float:
         j = first + i
         g, g1, g2 = openings.value[j], openings.rate[j], openings.linear[j] + openings.swept[j]
         if g < 0:
-            h = min(h, pace.taut)
+            h = min(h, control.taut)
         if ties.stretch[i] < math.inf and g < 0 and g1 < 0 and g1 + h * g2 > 0:
             h = -g1 / g2
-    return max(h, pace.short)
+    return max(h, control.short)
 
 
 @inlined
-def approached(pace: Pace, step: float, to_touch: float) -> tuple[float, float]:
+def approached(control: StepControl, step: float, to_touch: float) -> tuple[float, float]:
     """The step on moving ground, and the step to a touch, zero where none is met in it [s].
 
     A touch that is predicted from the motion of now comes earlier or later as the ground goes on, the more the further
     ahead it is. So one that is not near is approached only.
     """
-    if to_touch > pace.method.near * pace.short:
-        return min(step, pace.method.approach * to_touch), 0.0
+    if to_touch > control.method.near * control.short:
+        return min(step, control.method.approach * to_touch), 0.0
     return step, to_touch if to_touch <= step else 0.0
 
 
 @inlined
-def judged(pace: Pace, h: float, change: float, calm: int) -> tuple[float, int]:
+def judged(control: StepControl, h: float, change: float, calm: int) -> tuple[float, int]:
     """The length of the next step, and how many steps in a row have been calm.
 
     Args:
-        pace: the limits.
+        control: the limits.
         h: the step [s].
         change: (h |da| / |v|)^2 of the step just made [-].
         calm: the steps that were calm before it.
     """
-    tolerated = (pace.method.change * pace.accuracy) * (pace.method.change * pace.accuracy)
+    tolerated = (control.method.change * control.accuracy) * (control.method.change * control.accuracy)
     if change > tolerated:
-        return max(0.5 * h, pace.short), 0
+        return max(0.5 * h, control.short), 0
     if 16 * change >= tolerated:
         return h, 0
     if calm == 0:
         return h, 1
-    return min(2 * h, pace.longest), 0
+    return min(2 * h, control.longest), 0
