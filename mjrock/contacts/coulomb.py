@@ -86,6 +86,9 @@ class CoulombFriction:
         self._left = np.zeros(model.nv)
         self.sliding: tuple[int, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<CoulombFriction of {len(self._pairs)} pairs, kinetic = {self.kinetic:g}>"
+
     def __call__(self, data: mujoco.MjData) -> tuple[int, ...]:
         """Write the friction of what slides into `qfrc_applied`.
 

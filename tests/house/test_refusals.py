@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from entries import ENTRIES, entry, solved
 from offenders import not_refused
 
 import mjrock as mr
@@ -56,32 +57,23 @@ def analysis():
     return mr.Analysis(CASE, "analytical", E)
 
 
-PATHS = {
-    "Response.csv": (lambda path: answer().csv(path), "path"),
-    "animate": (lambda path: plotting.animate(answer(), path), "path"),
-    "save": (lambda path: plotting.save(plotting.single(lambda ax: ax), path), "path"),
-    "law.save": (lambda path: mr.CALIBRATED.save(path), "path"),
-    "law.load": (lambda path: mr.DampingLaw.load(path), "path"),
-    "from_at2": (mr.GroundMotion.from_at2, "path"),
-    "from_csv": (lambda path: mr.GroundMotion.from_csv(path, "g"), "path"),
-    "Store": (lambda path: mr.Store(path), "path"),
-    "rescue": (lambda path: mr.Store.rescue(path, "new.sqlite"), "damaged"),
-    "rescue to": (lambda path: mr.Store.rescue("old.sqlite", path), "path"),
-    "results": (lambda path: mr.results([], path), "store"),
-    "campaign": (lambda path: mr.campaign([], path), "store"),
-    "histories": (lambda path: mr.campaign([], "c.sqlite", histories=path), "histories"),
-    "ida": (lambda path: mr.ida(lambda scale: analysis(), [1.0], path), "store"),
-    "thresholds": (lambda path: mr.thresholds(lambda scale: analysis(), [1.0], path), "store"),
-    "overturning_map": (lambda path: mr.overturning_map(lambda a, T: analysis(), [1.0], [1.0], path), "store"),
+PATHS = {(name, argument): row for name, row in ENTRIES.items() for argument in sorted(row.paths)}
+DRAWN = {
+    ("animate", "path"): entry(lambda path: plotting.animate(answer(), path), path="a.gif"),
+    ("save", "path"): entry(lambda path: plotting.save(plotting.single(lambda ax: ax), path), path="a.png"),
 }
 NO_PATHS = (1, 1.0, True, b"a", [], "", "a\0b", "\ud800", Unspeakable())
 
 
-@pytest.mark.parametrize("name", PATHS)
-def test_what_is_no_path(name, tmp_path, monkeypatch):
+@pytest.mark.parametrize(("name", "argument"), [*PATHS, *DRAWN])
+def test_what_is_no_path(name, argument, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    function, argument = PATHS[name]
-    calls = ((type(path).__name__, lambda path=path: function(path), f"^{argument} = ") for path in NO_PATHS)
+    row = (PATHS | DRAWN)[name, argument]
+    given = {one: solved(value) for one, value in row.given.items()}
+    calls = (
+        (type(path).__name__, lambda path=path: row.call(**given | {argument: path}), f"^{argument} = ")
+        for path in NO_PATHS
+    )
     assert not_refused(calls) == []
     assert not list(tmp_path.iterdir())
 

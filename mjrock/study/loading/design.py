@@ -209,7 +209,7 @@ def design(
     given = listed("values", values)
     if not given:
         raise ValueError("values is empty; at least one is needed")
-    if demand is not None and not isinstance(demand, int | float):
+    if demand is not None and (isinstance(demand, bool) or not isinstance(demand, int | float)):
         required_demands(demand, options.get("code"))
     if method is not None:
         require_one_of("method", method, METHODS)
