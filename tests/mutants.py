@@ -167,11 +167,9 @@ EQUIVALENT = {
     "energy_work.py: work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 1 else given": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
-    **{
-        f"joint_law.py: row = Law(k[i], {numbers})": "at rest no dashpot, shear spring or friction of the row is read"
-        for numbers in ("1, 0.0, 0.0, 0.0", "0.0, 1, 0.0, 0.0", "0.0, 0.0, 1, 0.0")
-    },
-    "joint_law.py: force[i], energy[i] = normal_force(row, gap[i], 1), stored(row, gap[i])": "no dashpot is read",
+    "joint_law.py: force[i], energy[i] = normal_force(law[i], gap[i], 1), stored(law[i], gap[i])": (
+        "no contact at rest has a dashpot that is read"
+    ),
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
     "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardening": (
         "at the peak both are the same"

@@ -10,6 +10,7 @@ import numpy as np
 from ..geometry.vectors import tangents
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.histories import Support
+from ..problem.masonry.laws.joint_law import Law
 from ..quantities import Array
 from ..scene.course import Ground
 from ..scene.scene import Scene
@@ -39,7 +40,7 @@ def system_of(scene: Scene, *, ended: bool = False) -> System:
 
 def lines_of(scene: Scene) -> Rows:
     """The contact lines of a scene, whose faces have no end."""
-    places = scene.places
+    places, law = scene.places, scene.contacts.law
     return rows(
         kinds(scene.bodies.rest.shape[1]).line,
         len(scene.contacts.k),
@@ -52,11 +53,8 @@ def lines_of(scene: Scene) -> Rows:
         at=places.at,
         origin=places.face_at + places.between,
         normal=places.normal,
-        k=scene.contacts.k,
-        c=scene.contacts.c,
-        k_s=scene.contacts.k_s,
-        friction=scene.contacts.friction,
         margin=np.inf,
+        **{name: law[name] for name in Law._fields},
     )
 
 

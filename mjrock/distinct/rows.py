@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..problem.masonry.laws.joint_law import Law
 from ..quantities import Array, Flags, Integers
 
 Rows = NDArray[np.void]
@@ -105,9 +106,7 @@ def _line(d: int, s: int) -> Fields:
         *vectors(d, "origin"),  # a point of the face from the centroid of its body [m]
         *vectors(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
         *vectors(d, "normal"),  # unit vector out of the face, of a POINT_ON_FIXED_BLOCK into that of the body
-        *numbers("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
-        *numbers("bent"),  # stiffness of the linear spring that holds the same energy, less k [N/m]
-        *numbers("friction"),  # coefficient [-]
+        *numbers(*Law._fields, "c_s"),  # of the law, and the dashpot along the face [N s/m]
         *numbers("margin"),  # square of the least way from the origin to the end of the face, or infinite [m2]
         *integers("first", "last"),  # the edges of the face
         *integers("own_first", "own_last"),  # the edges of the face of its own body

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..compiled import compiled, inlined
 from ..quantities import Array, Integers
@@ -34,8 +35,9 @@ class Places(NamedTuple):
         between: vector from the origin of the face to the point, at rest [m], shape (m, d).
         radius: of the spheres that stand for the points in MuJoCo [m].
         joint: number of the joint that each point belongs to, shape (m,).
-        k, c: spring [N/m] and dashpot [N s/m] of each, shape (m,).
-        friction: coefficient of friction, zero for none [-], shape (m,).
+        law: rows of the law of each, see `joint_law.LAW_ROW`, shape (m,).
+        k, c: spring [N/m] and dashpot [N s/m] of each, shape (m,), which are columns of the law.
+        friction: coefficient of friction, zero for none [-], shape (m,), likewise.
         tension, cohesion: what the bond of each holds along the normal and along the face without pressure [N], (m,).
     """
 
@@ -48,6 +50,7 @@ class Places(NamedTuple):
     between: Array
     radius: float
     joint: Integers
+    law: NDArray[np.void]
     k: Array
     c: Array
     friction: Array

@@ -183,7 +183,7 @@ def stands_on_stiff_joints(scene: Scene) -> bool:
 def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
     """The scene of masonry, which all cases of it with the same effects share."""
     blocks, free, number = masonry.blocks, list(masonry.free), free_numbers(masonry.blocks)
-    lines = _sorted(masonry.lines, number)
+    lines, table = _sorted(masonry.lines, number), masonry.table
     mass, centroids, inertia = laden(masonry, effects)
     origin = np.where(number[:, None] == GROUND, 0.0, centroids)
     middles = np.array([joint.middle for joint in masonry.joints])
@@ -220,6 +220,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             k_s=masonry.joint_shear[lines.joint] * lines.k / masonry.joint_stiffness[lines.joint],
             area=masonry.areas_of(lines.k, lines.joint),
             bonds=masonry.bonds,
+            further={name: values[lines.joint] for name, values in table.further.items()},
         ),
         *attachments(effects, number, lambda effect: place_in_world(masonry, effect), centroids[free]),
         limits=limits,
@@ -230,7 +231,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             masonry.retardation,
             masonry.joint_friction,
             masonry.residual_friction,
-            masonry.table.points,
+            table.points,
             masonry.of_pair if callable(masonry.pairs) else masonry.of_pair(0, 1),
         ),
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",

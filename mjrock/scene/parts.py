@@ -19,6 +19,7 @@ from scipy.sparse import csr_array
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
 from ..problem.masonry.laws.dry import Meets
+from ..problem.masonry.laws.joint_law import LawRows, law_rows
 from ..problem.masonry.laws.own_law import Own
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import constant_forces_of, link_effects
@@ -209,6 +210,7 @@ class ContactPoints:
             for all.
         area: what part of its joint each contact stands for [m2], shape (m,), or one number for all.
         bonds: the bond of each joint, or its own law, None where a joint is dry; empty where all are.
+        further: the other numbers of the law of each contact by name, see `joint_law.Law`, shape (m,) each.
     """
 
     body: Integers
@@ -225,6 +227,7 @@ class ContactPoints:
     k_s: Array | float = math.inf
     area: Array | float = 0.0
     bonds: tuple[Bond | Own | None, ...] = ()
+    further: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         m, directions = len(self.k), np.shape(self.normal)[-1] if np.size(self.normal) else 2
@@ -243,6 +246,12 @@ class ContactPoints:
         object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), (m,))))
         for name in ("k_s", "area"):
             object.__setattr__(self, name, frozen(np.broadcast_to(np.array(getattr(self, name), dtype=float), (m,))))
+
+    @cached_property
+    def law(self) -> LawRows:
+        """Rows of the law of the contacts, with all its numbers, shape (m,)."""
+        springs = {"k": self.k, "c": self.c, "k_s": np.asarray(self.k_s)}
+        return law_rows(len(self.k), friction=self.friction, **springs, **self.further)
 
     @cached_property
     def tension(self) -> Array:

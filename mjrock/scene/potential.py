@@ -46,7 +46,7 @@ from ..geometry.kinematics import (
 from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
 from ..linear import entries, highest_square, sprung
-from ..problem.masonry.laws.joint_law import Law, resting, stored
+from ..problem.masonry.laws.joint_law import LawRows, law_rows, resting, stored, tangent_stiffness
 from ..problem.masonry.laws.own_law import OwnSprings
 from ..quantities import GRAVITY, Array, Flags, Integers, frozen
 from .masses import coupling
@@ -76,7 +76,7 @@ class Structure(NamedTuple):
 @inlined
 def spring_energy(places: Places, i: int, frames: Array) -> float:
     """Energy in the spring of contact i [J]."""
-    return stored(Law(places.k[i], 0.0, 0.0, 0.0, 0.0), -depth(places, i, frames))
+    return stored(places.law[i], -depth(places, i, frames))
 
 
 @inlined
@@ -178,6 +178,12 @@ class Potential:
     own: OwnSprings | None = None
 
     @cached_property
+    def law(self) -> LawRows:
+        """Rows of the law of contacts and ties, of which a tie has the spring alone, shape (m + t,)."""
+        ties = law_rows(len(self.structure.ties.k), k=self.structure.ties.k)
+        return np.append(self.structure.places.law, ties).view(np.recarray)
+
+    @cached_property
     def bonded(self) -> Flags:
         """Which contacts and ties pull as they push, shape (m + t,): those with a bond in tension, or a law that
         pulls."""
@@ -196,14 +202,14 @@ class Potential:
 
     def resting(self, openings: Array) -> tuple[Array, Array]:
         """Force [N] and energy [J] of each spring at its opening [m], shape (m + t,) each."""
-        force, energy = resting(self.springs, openings, self.bonded)
+        force, energy = resting(self.law, openings, self.bonded)
         if self.own is not None:
             force[self.own.springs], energy[self.own.springs] = self.own.answers(openings)
         return force, energy
 
     def springs_at(self, openings: Array) -> Array:
         """Stiffness of contacts and ties at their openings [N/m], shape (m + t,)."""
-        springs = self.springs
+        springs = np.array(tangent_stiffness(self.law, np.maximum(-openings, 0.0)))
         if self.own is not None:
             springs[self.own.springs] = self.own.slopes(openings)
         return springs

@@ -25,7 +25,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, vstack
 from ..geometry.kinematics import Places, gaps
 from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung, times
-from ..problem.masonry.laws.joint_law import Law, shear_limit
+from ..problem.masonry.laws.joint_law import shear_limit
 from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential, Structure
 
@@ -315,9 +315,7 @@ def stiffness_at(potential: Potential, search: Search, trial: Trial) -> csr_arra
     springs = np.where(trial.closed, trial.springs, LEAST_LOOSE * trial.springs)
     stiffness = sprung(trial.rates, springs) + curvature(potential, trial) + shear_stiffness(trial.grips, 0.0)
     pressed = (trial.push[:m] > 0)[slipping]
-    rises = np.where(
-        pressed, shear_limit(Law(friction=places.friction), trial.springs[:m])[slipping], 0.0
-    )  # with depth [N/m]
+    rises = np.where(pressed, shear_limit(places.law, trial.springs[:m])[slipping], 0.0)  # with depth [N/m]
     return csr_array(stiffness + trial.grips.along(slipping).T @ times(rises, csr_array(trial.rates[:m][slipping])))
 
 
@@ -347,7 +345,7 @@ def sliders_at(contacts: Places, search: Search, push: Array) -> Sliders:
     """Sliders under forces of the contacts, negative where one is open [N], shape (m,)."""
     bonded, m = contacts.tension > 0, len(push)
     rubs = bonded | ((push >= 0) & (contacts.friction > 0))
-    most = contacts.cohesion + shear_limit(Law(friction=contacts.friction), np.maximum(push, 0.0))
+    most = contacts.cohesion + shear_limit(contacts.law, np.maximum(push, 0.0))
     limit = np.where(rubs, most if search.limited else np.inf, -np.inf)
     if search.limited:
         shares = csr_array((np.ones(rubs.sum()), np.flatnonzero(rubs), np.append(0, np.cumsum(rubs))), shape=(m, m))

@@ -234,7 +234,7 @@ class Scene:
         for part in (self.bodies, self.contacts, self.links, self.forces):
             for entry in fields(part):
                 values = getattr(part, entry.name)
-                if part is self.contacts and entry.name in ("k", "c", "k_s", "area", "bonds"):
+                if part is self.contacts and entry.name in ("k", "c", "k_s", "area", "bonds", "further"):
                     continue
                 if entry.name == "parts":
                     values = tuple(part for of_body in values.values() for part in of_body)

@@ -5,7 +5,15 @@ import pytest
 
 import mjrock as mr
 from mjrock.problem.masonry.laws import joint_law
-from mjrock.problem.masonry.laws.joint_law import Law, normal_force, resting, shear_limit, stored, stored_along
+from mjrock.problem.masonry.laws.joint_law import (
+    Law,
+    law_rows,
+    normal_force,
+    resting,
+    shear_limit,
+    stored,
+    stored_along,
+)
 
 LAW = Law(k=100.0, c=2.0, k_s=50.0, friction=0.6)
 
@@ -24,13 +32,13 @@ def test_a_law_without_numbers_holds_and_stores_nothing():
 
 def test_arrays_and_numbers_have_one_law():
     gaps = np.array([-0.1, 0.1, -0.2])
-    force, energy = resting(np.full(3, LAW.k), gaps, np.zeros(3, dtype=bool))
+    force, energy = resting(law_rows(3, k=LAW.k), gaps, np.zeros(3, dtype=bool))
     np.testing.assert_allclose(force, [normal_force(LAW, gap, 0.0) for gap in gaps])
     np.testing.assert_allclose(energy, [stored(LAW, gap) for gap in gaps])
 
 
 def test_a_bonded_contact_at_rest_is_a_spring_both_ways():
-    force, energy = resting(np.full(2, LAW.k), np.array([0.1, -0.1]), np.array([True, True]))
+    force, energy = resting(law_rows(2, k=LAW.k), np.array([0.1, -0.1]), np.array([True, True]))
     np.testing.assert_allclose(force, [-10.0, 10.0])
     np.testing.assert_allclose(energy, [0.5, 0.5])
 

@@ -13,12 +13,13 @@ import numpy as np
 
 from ...compiled import inlined
 from ...problem.masonry.laws.bond import Bond
+from ...problem.masonry.laws.joint_law import Law
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
 from ..rows import Fields, Row, Rows, numbers, rows, vectors
 from ..system import Books, System
 
-OF_A_LINE = ("k", "c", "k_s", "c_s", "friction", "margin", "grip")
+OF_A_LINE = (*Law._fields, "c_s", "margin", "grip")
 """Numbers of a contact line that a law can take over."""
 
 

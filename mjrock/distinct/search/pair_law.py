@@ -30,6 +30,7 @@ import numpy as np
 
 from ...geometry.hull import Side, area_vector
 from ...problem.masonry.laws.dry import Meets
+from ...problem.masonry.laws.joint_law import INTENSIVE, Law, largest_stiffness
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.parts import JointSprings
@@ -41,6 +42,7 @@ from .constants import AS_STIFF, LEAST_CONTACT, SIDES_THAT_BEAR, WHOLE_CONTACT
 
 SHARED_COLUMNS = ("k", "c", "k_s", "c_s")
 """The properties that the places of a pair share."""
+OF_FRICTION = INTENSIVE.index("friction")
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -71,8 +73,8 @@ class PairLaw(NamedTuple):
 
     Args:
         jointed: numbers of the pairs that have a joint, increasing, shape (p,).
-        of_pair: `SHARED_COLUMNS` and area [m2], in the plane width [m], of these pairs, shape (p, 5), and their
-            friction, (p,).
+        of_pair: `SHARED_COLUMNS` and area [m2], in the plane width [m], of these pairs, shape (p, 5), and the numbers
+            `INTENSIVE` of their law, of which the least of their joints count, (p, i).
         of_block: likewise of each block as a pair without a joint takes it.
         fixed, loose: which blocks are fixed, and which have no joint, shape (blocks,).
         given: friction and dashpot over spring of pairs without a joint that were asked for.
@@ -95,15 +97,16 @@ class PairLaw(NamedTuple):
         below, above = np.array([(each.below, each.above) for each in scene.standing.joints]).T
         areas = np.array([each.area if in_space else each.width for each in scene.standing.joints])
         sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED_COLUMNS), areas])
-        friction = np.zeros(joints)
-        friction[joint] = np.minimum(lines["friction"], springs.residual[joint])
+        others = np.zeros((joints, len(INTENSIVE)))
+        others[joint] = np.column_stack([lines[name] for name in INTENSIVE])
+        others[joint, OF_FRICTION] = np.minimum(others[joint, OF_FRICTION], springs.residual[joint])
         jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
         in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
-        least = np.full(len(jointed), np.inf)
-        np.minimum.at(least, of, friction)
-        shared, rough = _of_blocks(np.append(below, above), sums, friction, blocks)
+        least = np.full((len(jointed), len(INTENSIVE)), np.inf)
+        np.minimum.at(least, of, others)
+        shared, rough = _of_blocks(np.append(below, above), sums, others, blocks)
         loose = shared[:, 0] == 0
-        shared[loose], rough[loose] = _of_loose(scene, sums, friction, loose)
+        shared[loose], rough[loose] = _of_loose(scene, sums, others, loose)
         fixed = np.array([solid.fixed for solid in solids])
         return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose, GivenPairs(springs, blocks))
 
@@ -124,8 +127,9 @@ class PairLaw(NamedTuple):
             others = others[inverse_mass[one] + inverse_mass[others] > 0]
             slow = self.given.retardations(one, others)
             others, slow = others[slow > 0], slow[slow > 0]
-            stiffness = self._of_softer(np.array([np.full_like(others, one), others]))[0][:, 0]
-            frequency = np.sqrt(stiffness * (inverse_mass[one] + inverse_mass[others]))
+            ends = np.array([np.full_like(others, one), others])
+            law = law_of(self._of_softer(ends)[0][:, 0], self.of_block[1][ends].min(axis=0))
+            frequency = np.sqrt(largest_stiffness(law) * (inverse_mass[one] + inverse_mass[others]))
             for each in np.unique(slow).tolist():
                 fastest[each] = max(fastest.get(each, 0.0), float(frequency[slow == each].max()))
             slowest[one] = max(slowest[one], slow.max(initial=0.0))
@@ -138,16 +142,17 @@ class PairLaw(NamedTuple):
         face that lies over the other [m2], zero for edges, shape (n,) each."""
         had, loose = are_among(pair, self.jointed), np.zeros(len(pair), dtype=bool)
         there, alone = np.minimum(np.searchsorted(self.jointed, pair), len(self.jointed) - 1), ~had
-        shared, friction = self.of_pair[0][there], self.of_pair[1][there]
+        shared, others = self.of_pair[0][there], self.of_pair[1][there]
         if alone.any():
             ends = np.array(np.divmod(pair[alone], blocks))
             shared[alone], loose[alone] = self._of_softer(ends)
-            friction[alone] = self.of_block[1][ends].min(axis=0)
-            self.given.take(pair, shared, friction, alone)
+            others[alone] = self.of_block[1][ends].min(axis=0)
+            self.given.take(pair, shared, others[:, OF_FRICTION], alone)
         over = area / shared[:, -1]
         part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
-        return {**dict(zip(SHARED_COLUMNS, share * shared[:, :-1].T, strict=True)), "friction": friction}
+        columns = dict(zip(SHARED_COLUMNS, share * shared[:, :-1].T, strict=True))
+        return columns | dict(zip(INTENSIVE, others.T, strict=True)) | {"bent": np.zeros(len(pair))}
 
     def _of_softer(self, ends: Integers) -> tuple[Array, Flags]:
         """What pairs without a joint have, shape (n, 5), and whether the block that rules is loose, shape (n,), from
@@ -220,6 +225,11 @@ class GivenPairs:
                 shared[sprung, 3] = meets.retardation * shared[sprung, 2]
 
 
+def law_of(k: Array, others: Array) -> Law:
+    """The law of springs [N/m], shape (n,), with the numbers `INTENSIVE`, shape (n, i)."""
+    return Law(k=k, **dict(zip(INTENSIVE, others.T, strict=True)))
+
+
 def part_of_face(over: Array) -> Array:
     """Part of what a loose block has over its largest face, or a pair over its joint, that it has over another area,
     from this area over that of the face or the joint."""
@@ -236,24 +246,24 @@ def _sums(of: Integers, values: Array, count: int) -> Array:
     return np.asarray(np.bincount(of, weights=values, minlength=count), dtype=float)
 
 
-def _of_blocks(block: Integers, joints: Array, friction: Array, blocks: int) -> tuple[Array, Array]:
+def _of_blocks(block: Integers, joints: Array, others: Array, blocks: int) -> tuple[Array, Array]:
     """What each block has, from its joints: below of all and then above of all. One without a joint has nothing."""
-    joints, friction = np.concatenate([joints, joints]), np.concatenate([friction, friction])
+    joints, others = np.concatenate([joints, joints]), np.concatenate([others, others])
     sums = np.column_stack([_sums(block, column, blocks) for column in joints.T])
-    stiffest, least = np.zeros(blocks), np.zeros(blocks)
+    stiffest, least = np.zeros(blocks), np.zeros((blocks, others.shape[1]))
     np.maximum.at(stiffest, block, joints[:, 0])
-    least[block] = friction
-    np.minimum.at(least, block, friction)
+    least[block] = others
+    np.minimum.at(least, block, others)
     share = np.maximum(stiffest / np.where(sums[:, 0] == 0, 1.0, sums[:, 0]), 0.5)
     return share[:, None] * sums, least
 
 
-def _of_loose(scene: Scene, joints: Array, friction: Array, loose: Flags) -> tuple[Array, Array]:
+def _of_loose(scene: Scene, joints: Array, others: Array, loose: Flags) -> tuple[Array, Array]:
     """What loose blocks have over their largest faces. Of joints that are as soft, the softest along the face counts,
     then the least damped and the smoothest one."""
     assert scene.springs is not None
     springs, solids = scene.springs, [scene.standing.solids[i] for i in np.flatnonzero(loose)]
-    known = springs.k_n, springs.k_s, springs.retardation, friction
+    known = springs.k_n, springs.k_s, springs.retardation, *others.T
     softest = int(np.lexsort(known[::-1])[0])
     largest = np.reshape([max(side_area(side) for side in solid.sides) for solid in solids], (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
@@ -261,7 +271,7 @@ def _of_loose(scene: Scene, joints: Array, friction: Array, loose: Flags) -> tup
         length = np.array([[np.ptp(solid.drawn[0].corners[:, 1])] for solid in solids]).reshape(-1, 1)
         of_joint = scene.standing.joints[softest].length
         per_area = per_area * np.append(length / of_joint * np.ones(4), np.ones_like(length), 1)
-    return largest * per_area, np.full(len(solids), friction[softest])
+    return largest * per_area, np.tile(others[softest], (len(solids), 1))
 
 
 class LongestSteps(NamedTuple):
@@ -286,7 +296,7 @@ class LongestSteps(NamedTuple):
             slowest: the largest dashpot over its spring that is given for pairs of each block [s], shape (blocks,).
         """
         shared = law.of_block[0]
-        loose = longest_step_of_some(solids, law.loose & ~law.fixed, shared, system)
+        loose = longest_step_of_some(solids, law.loose & ~law.fixed, law, shared, system)
         slower = (slowest * shared[:, 0] > shared[:, 1]) & ~law.fixed
         if not slower.any():
             return cls(loose)
@@ -296,7 +306,7 @@ class LongestSteps(NamedTuple):
         damped[sprung, 3] = slowest[sprung] * shared[sprung, 2]
         both = np.array([0, 1, 0, 1, 0]) > 0
         given, slow = (
-            longest_step_of_some(solids, slower, each, system) for each in (np.where(both, 0.0, shared), damped)
+            longest_step_of_some(solids, slower, law, each, system) for each in (np.where(both, 0.0, shared), damped)
         )
         return cls(loose, given, slow / given)
 
@@ -305,14 +315,15 @@ class LongestSteps(NamedTuple):
         return min(max(self.loose, least), self.damped * max(self.given, least))
 
 
-def longest_step_of_some(solids: Sequence[Solid], some: Flags, shared: Array, system: System) -> float:
-    """The longest stable step of some blocks on springs and dashpots, see `PairLaw.of_block` [s]."""
+def longest_step_of_some(solids: Sequence[Solid], some: Flags, law: PairLaw, shared: Array, system: System) -> float:
+    """The longest stable step of some blocks by their law with other springs and dashpots, see `PairLaw.of_block`
+    [s]."""
     tables, kept, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
     for i in np.flatnonzero(some).tolist():
         solid = solids[i]
         centroid = solid.rest if in_space else solid.rest[::2]
         for corners, normal, springs in _springs(solid, shared[i]):
-            columns = dict(zip(SHARED_COLUMNS, springs, strict=True))
+            columns = dict(zip((*SHARED_COLUMNS, *INTENSIVE), (*springs, *law.of_block[1][i]), strict=True))
             ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
             tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
             kept.append(solid.body)

@@ -124,7 +124,7 @@ class PlainRun:
     def stored(self) -> tuple[Array, Array]:
         """Kinetic, potential and elastic energy [J], shape (n, 3), and what ties have taken, shape (n, ties)."""
         scene, at, flat = self.of.scene, self.at, (len(self.at.t), -1)
-        without = scene.structure._replace(places=scene.places._replace(k=np.zeros_like(scene.contacts.k)))
+        without = scene.structure._replace(places=scene.places._replace(law=np.zeros_like(scene.places.law)))
         parts, taken = energies(without, at.pose.reshape(flat), at.velocity.reshape(flat))
         parts[:, 2] += at.elastic.sum(axis=1)
         return parts, taken

@@ -276,17 +276,8 @@ class Masonry(Constructors, NotebookPicture):
             raise ValueError(f"masonry in space: {what} takes blocks in the plane, of the kind Polygon")
 
     def require_dry(self, what: str) -> None:
-        """Raise a ValueError that says what takes dry joints alone, if some have a bond or a law of one's own."""
-        own = {joint.name: bond for joint, bond in zip(self.joints, self.bonds, strict=True) if isinstance(bond, Own)}
-        if own:
-            laws = ", ".join(sorted({bond.name for bond in own.values()}))
-            raise ValueError(
-                f"law of {named(list(own))}: {what} knows k_n, xi and friction of a joint, and no {laws}; "
-                "solve_explicit takes laws of your own"
-            )
-        if any(self.bonds):
-            held = named([joint.name for joint, bond in zip(self.joints, self.bonds, strict=True) if bond is not None])
-            raise ValueError(f"bond of {held}: {what} takes joints that push only; solve_explicit takes bonds")
+        """Raise a ValueError that says what takes plain joints alone, see `JointTable.require_known`."""
+        self.table.require_known(what, self.joints)
 
     @cached_property
     def names(self) -> tuple[str, ...]:

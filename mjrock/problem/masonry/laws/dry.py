@@ -10,6 +10,7 @@ from typing import Annotated, Any, NamedTuple
 
 from ....quantities import Within, keep_declared, require_kind, shown
 from .bond import Bond
+from .joint_law import INTENSIVE
 from .own_law import Own, OwnLaw
 
 Properties = dict[str, Any]
@@ -60,14 +61,34 @@ class Dry:
         keep_declared(self)
         require_kind("law", self.law, OwnLaw, type(None))
         if self.law is not None:
+            require_plain(self, f"law = {self.law!r}")
             k_s = math.inf if self.k_s is None else self.k_s
             Own(self.law, self.k_n, self.friction).require_fit("the joint", self.k_n, k_s, self.friction, self.points)
 
     @property
+    def further(self) -> dict[str, float]:
+        """Numbers of its law for which masonry has no keyword, by name."""
+        return {name: getattr(self, name) for name in INTENSIVE if name not in KEYWORDS}
+
+    @property
     def properties(self) -> Properties:
-        """The keywords of `Masonry` that stand for it."""
-        numbers = dict(vars(self))
-        return {"bond": numbers.pop("law"), **numbers}
+        """The keywords of `Masonry` that stand for it. In the place of a bond stands its law, or the joint itself if it
+        has numbers that no keyword has."""
+        beside = self if self.further != NONE_FURTHER else self.law
+        return {"bond": beside, **{name: getattr(self, name) for name in KEYWORDS}}
+
+
+KEYWORDS = ("k_n", "friction", "xi", "k_s", "frequency", "points")
+"""Numbers of a joint that are keywords of masonry too."""
+NONE_FURTHER = Dry().further
+"""Its other numbers where they are not given."""
+
+
+def require_plain(dry: Dry, beside: str) -> None:
+    """Raise a ValueError for a joint with further numbers, which what it has beside them does not know."""
+    for name, value in dry.further.items():
+        if value != NONE_FURTHER[name]:
+            raise ValueError(f"{name} = {value:g} is given with {beside}, which does not know it; give one of both")
 
 
 @dataclass(frozen=True, repr=False)
@@ -101,6 +122,7 @@ class Mortar:
         dry = self.dry
         if dry.law is not None:
             raise ValueError(f"bond = {self.bond!r} on a joint whose law is {dry.law!r}: give one of both")
+        require_plain(dry, f"bond = {self.bond!r}")
         self.bond.require_fit("the joint", dry.k_n, math.inf if dry.k_s is None else dry.k_s, dry.friction, dry.points)
 
     @property

@@ -4,8 +4,11 @@ A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit ste
 pose of rest and limit analysis all take the law from here. MuJoCo has the same law in its rows, see `engine.rows`.
 
 The spring along the normal is linear, or one whose secant stiffness k is that of the pose, see `kinds.own`: the linear
-spring that holds as much there is stiffer by `bent`. `secant_stiffness`, `equivalent_stiffness`, `largest_stiffness`,
-`depth_of_force` and `depth_of_energy` say so, and nothing else in explicit steps does.
+spring that holds as much there is stiffer by `bent`. `secant_stiffness` to `depth_of_energy` are the formulas of this
+spring, and explicit steps and the search for the pose of rest have no others.
+
+A new number of a joint is a field of `Law` here and one of the same name, with its range, in `dry.Dry`. The scene and
+the rows of the steps then have it by its name, and solvers that do not know it refuse it by its name.
 """
 
 from __future__ import annotations
@@ -14,12 +17,14 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....compiled import compiled, inlined
 from ....quantities import Array, Flags
 
 LawRow = Any
-"""Anything with the numbers of the law by name: a row of compiled steps, or a `Law`."""
+"""Anything with the numbers of the law by name: a row of compiled steps, a row of `law_rows`, or a `Law`."""
+LawRows = NDArray[np.void]
 
 
 class Law(NamedTuple):
@@ -39,6 +44,22 @@ class Law(NamedTuple):
     bent: Any = 0.0
 
 
+EXTENSIVE = ("k", "c", "k_s", "bent")
+"""Numbers of the law that a part of the area of a line has in proportion. It has the others as they are."""
+INTENSIVE = tuple(name for name in Law._fields if name not in EXTENSIVE)
+"""Those others: the friction, and the further numbers of a `Dry`, for which masonry has no keyword."""
+LAW_ROW = np.dtype([(name, float) for name in Law._fields])
+"""A row with the numbers of the law."""
+
+
+def law_rows(count: int, **columns: Array) -> LawRows:
+    """Rows of the law with these columns, and zeros in the others, shape (count,)."""
+    table = np.zeros(count, dtype=LAW_ROW)
+    for name, values in columns.items():
+        table[name] = values
+    return table.view(np.recarray)
+
+
 @inlined
 def secant_stiffness(row: LawRow, depth: float) -> Any:
     """Force of the spring along the normal over its depth [N/m], at a depth [m]."""
@@ -49,6 +70,12 @@ def secant_stiffness(row: LawRow, depth: float) -> Any:
 def equivalent_stiffness(row: LawRow, depth: float) -> Any:
     """Stiffness of the linear spring that holds the same energy at a depth [N/m]."""
     return row.k + row.bent
+
+
+@inlined
+def tangent_stiffness(row: LawRow, depth: Any) -> Any:
+    """Increase of the force of the spring along the normal with the depth [N/m], at a depth [m]."""
+    return row.k
 
 
 @inlined
@@ -99,18 +126,18 @@ def stored_along(row: LawRow, square: float) -> float:
     return energy
 
 
-def resting(k: Array, gap: Array, bonded: Flags) -> tuple[Array, Array]:
-    """Force along the normal [N] of contacts at rest, and the energy in their springs [J], shape (m,) each.
+def resting(law: LawRows, gap: Array, bonded: Flags) -> tuple[Array, Array]:
+    """Force along the normal [N] of contacts at rest, and the energy in their springs [J], shape (m,) each, from their
+    rows of the law and their gaps [m].
 
     Those that are bonded pull as they push.
     """
-    force, energy = np.empty(len(gap)), np.empty(len(gap))
-    _resting(k, gap, force, energy)
+    force, energy, k = np.empty(len(gap)), np.empty(len(gap)), law["k"]
+    _resting(law, gap, force, energy)
     return np.where(bonded, -k * gap, force), np.where(bonded, 0.5 * k * gap * gap, energy)
 
 
 @compiled
-def _resting(k: Array, gap: Array, force: Array, energy: Array) -> None:
+def _resting(law: LawRows, gap: Array, force: Array, energy: Array) -> None:
     for i in range(len(gap)):
-        row = Law(k[i], 0.0, 0.0, 0.0, 0.0)
-        force[i], energy[i] = normal_force(row, gap[i], 0.0), stored(row, gap[i])
+        force[i], energy[i] = normal_force(law[i], gap[i], 0.0), stored(law[i], gap[i])

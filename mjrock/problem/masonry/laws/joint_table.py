@@ -11,12 +11,13 @@ from typing import Annotated, Any, NamedTuple, TypedDict, TypeVar
 
 import numpy as np
 
-from ....quantities import Array, Integers, Within, declared, require_kind, shown, within_ranges
+from ....quantities import Array, Integers, Within, declared, named, require_kind, shown, within_ranges
 from ...damping.contacts import AnyLaw
 from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 from .bond import Bond
-from .dry import AnyPairs, Dry, Mortar, Properties
+from .dry import NONE_FURTHER, AnyPairs, Dry, Mortar, Properties
+from .joint_law import LawRows, law_rows
 from .own_law import Own, OwnLaw
 
 AnyJoint = Joint | SpaceJoint
@@ -33,9 +34,9 @@ OfShear = Annotated[OfJoint | None, declared(Dry)["k_s"].within]
 OfFrequency = Annotated[OfJoint | None, declared(Dry)["frequency"].within]
 OfPoints = Annotated[OfCount | None, declared(Dry)["points"].within]
 """The properties of joints one by one, in the ranges of a `Dry`."""
-OfBond = Bond | OwnLaw | FunctionOfJoint[Bond | OwnLaw | None] | None
-"""A bond or a law of one's own, a function of the joint that gives one or None where the joint is dry, or None where
-all are dry."""
+OfBond = Bond | OwnLaw | Dry | FunctionOfJoint[Bond | OwnLaw | Dry | None] | None
+"""A bond, a law of one's own, or a joint for its further numbers, a function of the joint that gives one or None where
+the joint is dry, or None where all are dry."""
 AnyJoints = Dry | Mortar | FunctionOfJoint[Dry | Mortar]
 """What all joints of masonry are, or a function of the joint that says what it is."""
 PROPERTIES = tuple(Dry().properties)
@@ -182,7 +183,7 @@ class Halved:
     between: OfBond
     within: Bond
 
-    def __call__(self, joint: AnyJoint) -> Bond | OwnLaw | None:
+    def __call__(self, joint: AnyJoint) -> Bond | OwnLaw | Dry | None:
         """The bond of a joint."""
         first, second = joint.name.split("|")
         if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
@@ -194,6 +195,8 @@ FOR_NONE = {"k_s": np.inf, "frequency": np.nan}
 """What stands for None in a table: a joint that sticks rigidly, and the lowest frequency of the masonry."""
 
 
+KNOWN_BY_ALL = ("k_n", "xi", "friction")
+"""Numbers of a joint that all solvers of masonry know."""
 POINTS_IN_SPACE = Within(2, 50, whole=True)
 """Valid `points` of a joint in space. In the plane they are those of `Dry`."""
 
@@ -209,6 +212,7 @@ class JointTable(NamedTuple):
         frequency: to which it refers [rad/s], NaN for the lowest one of the masonry, shape (joints,).
         points: contact lines, shape (joints,).
         bonds: what mortar holds, or the law of one's own on each joint, None where a joint is dry.
+        further: the numbers of their law for which masonry has no keyword, by name, shape (joints,) each.
     """
 
     k_n: Array
@@ -218,6 +222,7 @@ class JointTable(NamedTuple):
     frequency: Array
     points: Integers
     bonds: tuple[Bond | Own | None, ...]
+    further: dict[str, Array]
 
     @classmethod
     def of(cls, joints: Sequence[AnyJoint], given: Properties) -> JointTable:
@@ -233,12 +238,47 @@ class JointTable(NamedTuple):
             if isinstance(joint, SpaceJoint):
                 POINTS_IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
         bonds = _bonds(given["bond"], joints, columns)
-        table = cls(**columns, points=points, bonds=bonds)
+        dry = [bond.further if isinstance(bond, Dry) else NONE_FURTHER for bond in bonds]
+        further = {name: np.array([each[name] for each in dry]) for name in NONE_FURTHER}
+        own = tuple(None if isinstance(bond, Dry) else bond for bond in bonds)
+        table = cls(**columns, points=points, bonds=own, further=further)
         springs = (column.tolist() for column in (table.k_n, table.k_s, table.friction, points))
         for joint, bond, *numbers in zip(joints, table.bonds, *springs, strict=True):
             if bond is not None:
                 bond.require_fit(joint.name, *numbers)
         return table
+
+    def laws(self, joint: Integers, **numbers: Array) -> LawRows:
+        """Rows of the law of lines, see `law_rows`.
+
+        Args:
+            joint: of each line, shape (m,).
+            numbers: those that are not what their joints have, shape (m,) each.
+        """
+        of_joints = {"friction": self.friction, **self.further}
+        return law_rows(len(joint), **{name: values[joint] for name, values in of_joints.items()} | numbers)
+
+    def require_known(self, what: str, joints: Sequence[AnyJoint], known: tuple[str, ...] = KNOWN_BY_ALL) -> None:
+        """Raise a ValueError that names what takes joints with these numbers alone, if some have others, a bond or an
+        own law."""
+
+        def names(some: Sequence[object]) -> str:
+            return named([joint.name for joint, one in zip(joints, some, strict=True) if one])
+
+        own = [bond if isinstance(bond, Own) else None for bond in self.bonds]
+        numbers = {name: values != NONE_FURTHER[name] for name, values in self.further.items()}
+        unknown = {f"{name} of {names(some)}": name for name, some in numbers.items() if some.any()}
+        if any(own):
+            unknown[f"law of {names(own)}"] = ", ".join(sorted({bond.name for bond in own if bond}))
+        for held, beside in unknown.items():
+            raise ValueError(
+                f"{held}: {what} knows {', '.join(known[:-1])} and {known[-1]} of a joint, and no {beside}; "
+                "solve_explicit takes laws of your own"
+            )
+        if any(self.bonds):
+            raise ValueError(
+                f"bond of {names(self.bonds)}: {what} takes joints that push only; solve_explicit takes bonds"
+            )
 
     @property
     def residual_friction(self) -> Array:
@@ -256,17 +296,17 @@ def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Arr
     return np.array([FOR_NONE[name] if value is None else value for value in found])
 
 
-def _bonds(given: OfBond, joints: Sequence[AnyJoint], columns: dict[str, Array]) -> tuple[Bond | Own | None, ...]:
-    """The bond of each joint, or the law of one's own, None where it is dry."""
-    found: list[Bond | Own | None] = []
+def _bonds(given: OfBond, joints: Sequence[AnyJoint], columns: dict[str, Array]) -> list[Bond | Own | Dry | None]:
+    """The bond of each joint, the law of one's own, or the joint with its further numbers, None where it has none."""
+    found: list[Bond | Own | Dry | None] = []
     for i, joint in enumerate(joints):
         bond = asked("bond", given, joint) if callable(given) else given
-        require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, OwnLaw, type(None))
+        require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, OwnLaw, Dry, type(None))
         if isinstance(bond, OwnLaw):
             found.append(Own(bond, float(columns["k_n"][i]), float(columns["friction"][i])))
         else:
-            found.append(None if bond is None or bond.is_dry else bond)
-    return tuple(found)
+            found.append(None if isinstance(bond, Bond) and bond.is_dry else bond)
+    return found
 
 
 Class = TypeVar("Class", bound=type)

@@ -15,7 +15,7 @@ from ....quantities import Array, named
 from ...wall.case import Case
 from ...wall.effect import Effect
 from ..blocks.joints_in_space import axes_along
-from ..laws.joint_law import Law, shear_limit
+from ..laws.joint_law import shear_limit
 from ..masonry import Masonry
 from .limit_state import Programme, states_without_dilatancy
 from .statics import Pulls, bonded, cones, edges_of, least_cost, method, moving, sizes_of, weight_of
@@ -202,7 +202,7 @@ def _associated(
         raise ValueError(f"masonry: the programme for its multiplier has no answer: {answer.message}")
     shares, limits = (
         answer.x[:count].reshape(-1, len(lines.k), 1),
-        shear_limit(Law(friction=friction[lines.joint]), 1.0),
+        shear_limit(masonry.table.laws(lines.joint, friction=friction[lines.joint]), 1.0),
     )
     forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(across))).sum(axis=0)
     forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * ways).sum(axis=0)

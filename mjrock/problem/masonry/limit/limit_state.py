@@ -29,7 +29,7 @@ import scipy
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
 from ....quantities import Array, Flags, Integers
-from ..laws.joint_law import Law, shear_limit
+from ..laws.joint_law import shear_limit
 from ..lines import rates
 from ..masonry import Masonry
 from .statics import Pulls, edges_of, least_cost, method, sizes_of, weight_of
@@ -111,7 +111,7 @@ class Programme:
         leader, of_line = np.unique(group, return_index=True, return_inverse=True)[1:]
         edges = edges_of(across)
         rubbing = [rates(masonry.blocks, lines, edge)[leader] for edge in edges]
-        limits = np.asarray(shear_limit(Law(friction=masonry.joint_friction[lines.joint]), 1.0))
+        limits = np.asarray(shear_limit(masonry.table.laws(lines.joint), 1.0))
         held, whole = csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader))
         pressing = rates(masonry.blocks, lines, lines.normal)
         balance = [diags_array(1 / sizes) @ part.T for part in (pressing, *rubbing)]

@@ -15,7 +15,7 @@ from ....geometry.graph import connected_parts
 from ....linear import loose
 from ....quantities import GRAVITY, Array, Flags, named
 from ..laws.bond import strengths
-from ..laws.joint_law import Law, shear_limit
+from ..laws.joint_law import shear_limit
 from ..laws.own_law import Own
 from ..lines import free_numbers, mean_slip_rates, rates
 from ..masonry import Masonry
@@ -174,7 +174,8 @@ def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = 
     """
     lines = masonry.lines
     pressing = rates(masonry.blocks, lines, lines.normal)
-    rubbed = diags_array(shear_limit(Law(friction=friction[lines.joint]), 1.0))  # along the face, of a unit pressure
+    law = masonry.table.laws(lines.joint, friction=friction[lines.joint])
+    rubbed = diags_array(shear_limit(law, 1.0))  # along the face, of a unit pressure
     rows = [pressing + rubbed @ rates(masonry.blocks, lines, edge) for edge in edges_of(across or lines.across)]
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
