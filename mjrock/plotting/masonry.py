@@ -276,7 +276,7 @@ def laden(
 
 def _pushing(masonry: Masonry, effect: Effect) -> tuple[Array, Array] | None:
     """Where an effect pushes [m] and its force [N], that of an axle on the ground; None where an arrow says nothing."""
-    told = effect.told
+    told = effect.report_item
     if isinstance(told, Axle):
         return np.array([told.at, told.top]), np.array([0.0, -told.force])
     if len(effect.outline) or effect.force_vector is None:

@@ -70,7 +70,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
         note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
         note.set_bbox(BEHIND)
     updates += [_force(ax, case, effect, force, moving) for effect, force in forces]
-    updates += [_mass(ax, added, moving) for added in case.wall.masses if added.told is not None]
+    updates += [_mass(ax, added, moving) for added in case.wall.masses if added.report_item is not None]
     if bodies.limits is not None:
         ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
     return together(updates)
@@ -270,10 +270,10 @@ def _effects(case: Case, *, arguments: bool) -> list[Note]:
         if not effect.mass_added:
             named.setdefault(effect, []).append(name)
     for effect, names in [*named.items(), *((mass, []) for mass in case.wall.masses)]:
-        if (told := effect.told) is None:
+        if (told := effect.report_item) is None:
             continue
         label = ", ".join(plain[name] for name in names) or told.label
-        note = f"{type(told).__name__}({told.arguments})" if arguments else f"{label}: {told.said}"
+        note = f"{type(told).__name__}({told.arguments})" if arguments else f"{label}: {told.description}"
         if breaks := [breaking[name] for name in names if name in breaking and not arguments]:
             moved = float(case.wall.pose(np.array([min(breaks)]))[0, 0])
             note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"

@@ -1,1 +1,1 @@
-"""What is asked: the wall, its contacts and their damping laws, ground motions, and the case."""
+"""The problem: the wall, its contacts and their damping laws, ground motions, and the case."""

@@ -23,7 +23,7 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
-from ..problem.wall.effect import Effect, Told
+from ..problem.wall.effect import Effect, ReportItem
 from ..problem.wall.effects import constant_forces_of, named_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import GRAVITY, Array, declared
@@ -386,7 +386,7 @@ def loads_in(subjects: Sequence[object], words: Words) -> list[str]:
         told_name(name, effect, words): None
         for named in found
         for name, (effect, force) in named.items()
-        if not any(force[:2]) and force[2] < 0 and effect.told is not None
+        if not any(force[:2]) and force[2] < 0 and effect.report_item is not None
     }
     return list(loads)
 
@@ -396,14 +396,14 @@ def of_effects(effects: Sequence[Effect], words: Words, masonry: Masonry | None 
     named = named_effects(effects)
     others = [effect for effect in effects if effect not in named.values()]
     named |= {f"{effect.label}_{i}": effect for i, effect in enumerate(others)}
-    told = [(name, one.told, told_name(name, one, words)) for name, one in named.items()]
+    told = [(name, one.report_item, told_name(name, one, words)) for name, one in named.items()]
     return [Input(name, said, described(effect, words, masonry)) for name, effect, said in told if effect is not None]
 
 
-def described(effect: Told, words: Words, masonry: Masonry | None = None) -> str:
+def described(effect: ReportItem, words: Words, masonry: Masonry | None = None) -> str:
     """An effect in words: each of its numbers with its name; its own text where the report has no words for it."""
     if not words.or_else(f"effect_{effect.label}", ""):
-        return effect.said.replace("\n", " ")
+        return effect.description.replace("\n", " ")
     kind: Any = type(effect)  # mypy takes a class for a thing without a hash
     units = {name: "" if one.within.whole else one.within.unit for name, one in declared(kind).items()} | UNITS
     left_out = [name for name in ("prestress", "damping") if not getattr(effect, name, 1.0)]

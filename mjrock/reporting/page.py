@@ -215,7 +215,7 @@ def require_same(name: str, response: Response, asked: Asked) -> None:
     """Raise a ValueError for a response of another wall or of other masonry than the case and what is checked."""
     subjects = [asked.case, *(one for mechanism in asked.mechanisms for one in mechanism.subjects)]
     if not any(is_of(response.case, subject) for subject in subjects):
-        own, due = response.case.said, case_of(asked.case).said
+        own, due = response.case.description, case_of(asked.case).description
         other = "other " if own == due else ""
         raise ValueError(f"{name} is of {own}, and the case of {other}{due}")
 

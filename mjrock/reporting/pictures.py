@@ -182,7 +182,7 @@ def _names(case: Case, words: Words) -> list[Name]:
     """The names of the effects with their heights."""
     figure, found = Figure(), []
     for name, effect in case.named.items():
-        if effect.told is None:
+        if effect.report_item is None:
             continue
         said, z = words.marked(f"{told_name(name, effect, words)}, {effect.height:.4g} m"), effect.height
         inside = effect.on_face or len(effect.outline) > 0

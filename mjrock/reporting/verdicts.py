@@ -396,7 +396,7 @@ def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
 
 def told_name(name: str, effect: Effect, words: Words) -> str:
     """The name of an effect in a report: its own, or that of what several effects stand for."""
-    told = effect.told
+    told = effect.report_item
     return effect_name(name, words) if told is None or told is effect else words(f"effect_{told.label}")
 
 

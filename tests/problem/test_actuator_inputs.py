@@ -80,7 +80,7 @@ def test_a_displacement_in_millimetres_is_refused():
 
 
 def test_it_says_its_height_its_farthest_displacement_and_its_stiffness():
-    assert actuator().said == "z = 2.5 m,\nto -50 mm, k = 20 kN/mm"
+    assert actuator().description == "z = 2.5 m,\nto -50 mm, k = 20 kN/mm"
 
 
 def test_an_actuator_of_all_blocks_has_no_point_and_no_guide():
@@ -88,7 +88,7 @@ def test_an_actuator_of_all_blocks_has_no_point_and_no_guide():
     one = actuator(**whole)
     assert (one.block, one.at, one.direction) == (None, None, (-1.0, 0.0))
     assert np.isnan(one.height)
-    assert one.said == "all blocks,\nto -50 mm, k = 20 kN/mm"
+    assert one.description == "all blocks,\nto -50 mm, k = 20 kN/mm"
     assert actuator(block=None, at=None).direction == (1.0, 0.0)
     assert actuator(**whole | {"direction": (0.0, 3.0, 0.0)}).direction == (0.0, 1.0, 0.0)
     for changed in ({"at": (0.0, 1.0)}, {"guided": "upright"}):

@@ -53,7 +53,7 @@ def test_plates_and_numbers(other, strength):
 def test_what_governs_is_kept_and_said(plate, name):
     tie = mr.Tie.of_bar(**BAR | {"plate": plate})
     assert tie.governed_by == name
-    assert tie.said.endswith(f" kN ({name})")
+    assert tie.description.endswith(f" kN ({name})")
     assert "governed_by" not in repr(mr.Tie(6.0, 1e6))
     assert mr.Case(mr.Block(0.5, 3.5), 0.0, 1.0, effects=(tie,)).effects == (tie,)
     with pytest.raises(ValueError, match="governed_by of the tie = 'hope' is not one of bar, punching, bearing"):
@@ -95,8 +95,8 @@ def test_what_cannot_be(other, complaint):
 
 
 def test_a_tie_says_at_which_force_it_yields_in_kilonewtons():
-    assert "yields at 64.8 kN" in mr.Tie.of_bar(**BAR).said
-    assert "yields" not in mr.Tie(6.0, 1e6).said
+    assert "yields at 64.8 kN" in mr.Tie.of_bar(**BAR).description
+    assert "yields" not in mr.Tie(6.0, 1e6).description
 
 
 @pytest.mark.parametrize(("thickness", "taken"), [(0.049, False), (0.05, True), (10.0, True), (10.1, False)])

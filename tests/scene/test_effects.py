@@ -356,4 +356,4 @@ def test_a_wall_that_leans_rests_where_its_springs_carry_it():
 
 def test_a_tie_says_where_it_is_and_what_it_bears():
     tie = mr.Tie(6.0, 22e6, 0.02, 110e3, 4.0, ultimate=0.05)
-    assert tie.said == "z = 6 m, 4 m long,\nk = 22 kN/mm, slack 20 mm,\nyields at 110 kN, breaks at 50 mm"
+    assert tie.description == "z = 6 m, 4 m long,\nk = 22 kN/mm, slack 20 mm,\nyields at 110 kN, breaks at 50 mm"

@@ -167,19 +167,19 @@ class Interface:
 
 def _predicted(law: DampingFunction, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """The two damping ratios of a law of the user, or a TypeError that names the law."""
-    asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
+    refusal = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
         given: object = law(wall, e, k_base)
     except TypeError as error:
-        raise TypeError(f"{asked}: {error}") from None
+        raise TypeError(f"{refusal}: {error}") from None
     if not is_iterable(given) or not isinstance(given, Sequence | np.ndarray) or len(given) != 2:
-        raise TypeError(f"{asked}: it gives {shown(given)}")
+        raise TypeError(f"{refusal}: it gives {shown(given)}")
     xi_base, xi_side = given
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 
 def required_law(law: AnyLaw | str | None, points: int = 2) -> AnyLaw:
-    """A law, by its name too; None stands for the calibrated one of so many contact lines a face."""
+    """A law, by its name too; None stands for the calibrated one of a number of contact lines a face."""
     if law is None:
         return CALIBRATED if points == 2 else CALIBRATED_BED
     if isinstance(law, str):
@@ -304,7 +304,7 @@ class Contacts:
             wall, e: the wall, and the restitution of the interfaces.
             k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
             law: a law or its name; None takes CALIBRATED for two lines and CALIBRATED_BED for more. A law of your own
-                is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` and `amplitude` too.
+                is called as `law(wall, e, k_base)`; a `DampingLaw` takes `k_side` and `amplitude` too.
             points: contact lines a face, 2 to 1000.
             amplitude: rotation theta_0/alpha from which the wall falls to the rebound that matters most [-], 1e-3 to 1.
             friction, side_friction: coefficients as in `Interface` [-], 0 to 10.
@@ -334,7 +334,7 @@ class Contacts:
             warn_of(
                 f"no rebound can lift an edge as e asks for it from {amplitude:g} alpha: it would turn the wall "
                 f"{lifts:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then "
-                f"elastic or larger than asked for. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3"
+                f"elastic or larger than required. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3"
             )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
@@ -383,12 +383,12 @@ class Contacts:
         faces = [("base", self.base, (2 * wall.half_base, wall.base_length))]
         if side_stop:
             faces.append(("side", self._stopping, (2 * wall.h, wall.length)))
-        for name, interface, asked in faces:
+        for name, interface, required in faces:
             size = interface.face, interface.length
-            if not all(math.isclose(given, needed, rel_tol=1e-9) for given, needed in zip(size, asked, strict=True)):
+            if not all(math.isclose(given, needed, rel_tol=1e-9) for given, needed in zip(size, required, strict=True)):
                 raise ValueError(
                     f"the {name} contacts were made for a face of {size[0]:g} x {size[1]:g} m, "
-                    f"but that of the wall of this case is {asked[0]:g} x {asked[1]:g} m"
+                    f"but that of the wall of this case is {required[0]:g} x {required[1]:g} m"
                 )
 
     def uplift_rotation(self, wall: Block) -> float:

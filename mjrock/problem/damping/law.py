@@ -133,7 +133,7 @@ class PowerLaw:
 class CornerLaw:
     """The base of a wall on two corner lines.
 
-    With L = -ln e_2s the loss asked for, L_H that of Eq. 2 and w = work, the loss goes from an undamped
+    With L = -ln e_2s the required loss, L_H that of Eq. 2 and w = work, the loss goes from an undamped
     bounce to a plastic touch-down as the damping grows:
 
         L = L_f - (L_f - L_u) exp(-xi / xi_0)        xi = xi_0 ln[(L_f - L_u) / (L_f - L)]
@@ -405,12 +405,12 @@ class DampingLaw:
             covered["|e_side| [-]"] = (abs(e.side), 1.0, self.side_range)
         else:
             covered = {"R [m]": (wall.R, 1.0, self.R_range)} | covered
-        said = []
+        beyond = []
         for name, (value, factor, (low, high)) in covered.items():
             if not low * (1 - 1e-9) <= value * factor <= high * (1 + 1e-9):
                 at = "" if abs(factor - 1) < 1e-9 else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
-                said.append(f"{name} = {value:.4g}{at} not in {low:g} to {high:g}")
-        return said
+                beyond.append(f"{name} = {value:.4g}{at} not in {low:g} to {high:g}")
+        return beyond
 
     def save(self, path: str | Path) -> Path:
         """Write the law as a TOML file that `DampingLaw.load` reads and a text editor shows.

@@ -77,11 +77,12 @@ class Restitution:
                 f"the restitution is that of a wall of alpha = {alpha:.4g} rad, and this one has {wall.alpha:.4g} rad; "
                 "take one wall for both, with its added masses: Restitution.from_geometry(case.wall)"
             )
-        asked = share if stop_top is None else min(stop_top / (2 * wall.h), 1.0)
-        if abs(asked - share) > ANOTHER_WALL:
+        required = share if stop_top is None else min(stop_top / (2 * wall.h), 1.0)
+        if abs(required - share) > ANOTHER_WALL:
+            top = required * 2 * wall.h
             return (
                 f"the restitution is that of a side stop up to {share * 2 * wall.h:.4g} m, and this one reaches "
-                f"{asked * 2 * wall.h:.4g} m; take Restitution.from_geometry(wall, stop_top={asked * 2 * wall.h:.4g})"
+                f"{top:.4g} m; take Restitution.from_geometry(wall, stop_top={top:.4g})"
             )
         return None
 
@@ -233,7 +234,7 @@ AnyRestitution = Restitution | ScatteredRestitution
 
 
 def impacts_of(e: AnyRestitution, *, lumped: bool) -> Callable[[int], Array]:
-    """A function that gives e of the next impacts of a run, so many [-]; `lumped` of the sequence base, side, base."""
+    """A function that gives e of a number of next impacts of a run [-]; `lumped` of the sequence base, side, base."""
     if isinstance(e, Restitution) or e.sd == 0:
         same = e.lumped if lumped else e.base
         return lambda count: np.full(count, same)

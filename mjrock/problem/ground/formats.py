@@ -168,8 +168,8 @@ def parse_at2(lines: list[str]) -> list[Trace]:
     if head is None:
         raise ValueError(f"line 4 states no NPTS and DT as in NPTS= 4000, DT= .0100 SEC alone: {in_message(lines[3])}")
     place = AT2_PLACE.fullmatch(BREAK.sub(" ", lines[1])[:EVENT_LINE].strip())
-    said = dict(zip(("EVENT_NAME", "STATION_NAME", "STREAM"), place.groups(), strict=True)) if place else {}
-    return [Trace(GRAVITY * samples(lines, 4, int(head[1])), step(head[2], 4), said)]
+    stated = dict(zip(("EVENT_NAME", "STATION_NAME", "STREAM"), place.groups(), strict=True)) if place else {}
+    return [Trace(GRAVITY * samples(lines, 4, int(head[1])), step(head[2], 4), stated)]
 
 
 def parse_sac(lines: list[str], unit: str | float) -> list[Trace]:
@@ -191,26 +191,26 @@ def parse_knet(lines: list[str]) -> list[Trace]:
     So does the network, whose header states the largest |acceleration| from the mean. The component of KiK-net is a
     number, 1 to 3 in the borehole (LOCATION 1) and 4 to 6 at the surface (LOCATION 2).
     """
-    said: dict[str, str] = {}
+    stated: dict[str, str] = {}
     for place, line in enumerate(lines[:KNET_HEAD], 1):
         for name, written in KNET.items():
             if line.startswith(name):
                 found = re.fullmatch(written, line[len(name) :].strip(), AS_ASCII)
                 if found is None:
                     raise ValueError(f"line {place} is {in_message(line)}: not as in a K-NET or KiK-net file")
-                said |= found.groupdict()
-    if missing := [name for name, written in KNET.items() if re.findall(r"P<(\w+)>", written)[0] not in said]:
+                stated |= found.groupdict()
+    if missing := [name for name, written in KNET.items() if re.findall(r"P<(\w+)>", written)[0] not in stated]:
         raise NoRecordError(f"the first {KNET_HEAD} lines have no {missing[0]}: not a K-NET or KiK-net file")
-    rate, gal, full = (value_of(said[name]) for name in ("rate", "gal", "counts"))
+    rate, gal, full = (value_of(stated[name]) for name in ("rate", "gal", "counts"))
     require_within("line 11: sampling frequency", rate, 1 / COARSEST, 1 / FINEST, "Hz")
     require_within("line 14: counts of the scale factor", full, 1, 1e12)
-    counts = samples(lines, KNET_HEAD, round(value_of(said["span"]) * rate), 12)
-    header = {name: said[name] for name in ("STATION_CODE", "EVENT_ID")}
-    if said["dir"].isdigit():  # KiK-net
-        number_of = int(said["dir"]) - 1
+    counts = samples(lines, KNET_HEAD, round(value_of(stated["span"]) * rate), 12)
+    header = {name: stated[name] for name in ("STATION_CODE", "EVENT_ID")}
+    if stated["dir"].isdigit():  # KiK-net
+        number_of = int(stated["dir"]) - 1
         header |= {"STREAM": KNET_STREAMS[number_of % 3], "LOCATION": str(1 + number_of // 3)}
     else:
-        header["STREAM"] = said["dir"].replace("-", "")
+        header["STREAM"] = stated["dir"].replace("-", "")
     return [Trace(ACCELERATION_UNITS["cm/s2"] * gal / full * (counts - counts.mean()), 1 / rate, header)]
 
 
@@ -322,25 +322,25 @@ def parse_geonet(lines: list[str]) -> list[Trace]:
 
 def _geonet_component(lines: list[str], first: int) -> Trace:
     """The component that begins at a line, the first as number 0."""
-    said: dict[str, tuple[int, re.Match[str]]] = {}
+    stated: dict[str, tuple[int, re.Match[str]]] = {}
     patterns = {
         "count": GEONET_COUNT, "step": GEONET_STEP, "STREAM": re.compile(r"Component (\S+).*"),
         "STATION_CODE": re.compile(r"Site (\S+).*"), "EVENT_ID": re.compile(r"(\d{4} \w+ +\d+ +[\d:]+ UT).*"),
         "unit": re.compile(r"Acceleration:\s+peak\s+\S+ (mm/s/s).*", AS_ASCII),
     }  # fmt: skip
     for place, line in enumerate(lines[first : first + 16], first + 1):
-        said |= {name: (place, found) for name, pattern in patterns.items() if (found := pattern.fullmatch(line))}
-    if missing := [name for name in patterns if name not in said]:
+        stated |= {name: (place, found) for name, pattern in patterns.items() if (found := pattern.fullmatch(line))}
+    if missing := [name for name in patterns if name not in stated]:
         raise ValueError(f"lines {first + 1} to {first + 16} state no {missing[0]}: no header of a GeoNet component")
-    count, (place, every) = int(said["count"][1][1]), said["step"]
+    count, (place, every) = int(stated["count"][1][1]), stated["step"]
     after = first + GEONET_HEAD
     values = np.array(all_numbers(lines, after))
     if len(values) not in (count, 3 * count):
         raise ValueError(
-            f"{len(values)} samples from line {after + 1} on; line {said['count'][0]} states {count}, of accelerations "
-            "alone or of velocities and displacements too"
+            f"{len(values)} samples from line {after + 1} on; line {stated['count'][0]} states {count}, of "
+            "accelerations alone or of velocities and displacements too"
         )
-    header = {name: said[name][1][1] for name in ("STATION_CODE", "STREAM", "EVENT_ID")}
+    header = {name: stated[name][1][1] for name in ("STATION_CODE", "STREAM", "EVENT_ID")}
     return Trace(ACCELERATION_UNITS["mm/s2"] * values[:count], step(every[1] or every[2], place), header)
 
 
@@ -424,8 +424,8 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     traces = []
     for trace in stream:
         _require_accelerometer(trace.stats, unit)
-        said = {name: str(getattr(trace.stats, field)) for name, field in SEISMOGRAM.items()}
-        header = {name: value for name, value in said.items() if value}
+        stated = {name: str(getattr(trace.stats, field)) for name, field in SEISMOGRAM.items()}
+        header = {name: value for name, value in stated.items() if value}
         traces.append(Trace(factor_of(unit) * np.asarray(trace.data, dtype=float), float(trace.stats.delta), header))
     return traces
 

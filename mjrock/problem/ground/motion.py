@@ -156,8 +156,8 @@ class GroundMotion:
     def _doubt_of_unit(self, once: str = "") -> None:
         """Warn of a peak beyond 3 g, with `once` a line of a script once."""
         if self.peak > SUSPICIOUS and (self.instants is None or self.dt > IMPULSE):
-            said = f"{self.name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2"
-            warn_of(said, once=once)
+            peak = f"{self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g"
+            warn_of(f"{self.name} peaks at {peak}; accelerations are in m/s2", once=once)
 
     def __repr__(self) -> str:
         step = f"dt = {self.dt:g} s" if self.instants is None else f"{self.duration:g} s by pieces"
@@ -480,7 +480,7 @@ class GroundMotion:
             amplitude: of the acceleration [m/s2], -1e4 to 1e4.
             period: of the sine [s], 0.01 to 100.
             cycles: number of periods [-], 0.5 to 1000.
-            samples: steps to a period, so many that a step has 1e-5 to 1 s.
+            samples: steps to a period, of 1e-5 to 1 s each.
 
         Raises:
             ValueError: for a value outside its range.
@@ -500,7 +500,7 @@ class GroundMotion:
         Args:
             amplitude: of the acceleration [m/s2], -1e4 to 1e4.
             duration: of the half [s], 0.01 to 100.
-            samples: so many that a step has 1e-5 to 1 s.
+            samples: of a period, with a step of 1e-5 to 1 s.
 
         Raises:
             ValueError: for a value outside its range.
@@ -582,7 +582,7 @@ class GroundMotion:
             amplitude: A, the largest |acceleration|, with its sign [m/s2], -1e4 to 1e4.
             period: T [s], 0.01 to 100.
             antisymmetric: whether it is the antisymmetric one.
-            samples: steps to a period, at least 10, so many that a step has 1e-5 to 1 s.
+            samples: steps to a period, at least 10, of 1e-5 to 1 s each.
 
         Raises:
             ValueError: for a value outside its range.
@@ -783,8 +783,8 @@ class GroundMotion:
             ValueError: for another format, another number of samples than is stated, or what is not a finite number.
         """
         if unit is None:
-            said = "the text of a SAC set states no unit: give unit=, which will be needed; cm/s2 are taken"
-            warn_of(said, FutureWarning)
+            message = "the text of a SAC set states no unit: give unit=, which will be needed; cm/s2 are taken"
+            warn_of(message, FutureWarning)
         return cls._from_text(path, lambda lines: parse_sac(lines, "cm/s2" if unit is None else unit))
 
     @classmethod

@@ -224,7 +224,7 @@ def stated_units(text: str) -> list[str]:
 
 
 def samples(lines: Sequence[str], header: int, count: int, stated: int | None = None) -> Array:
-    """All numbers after so many lines; a ValueError if they are not as many as a line states, the last by default."""
+    """All numbers after the header; a ValueError if they are not as many as a line states, the last by default."""
     values = all_numbers(lines, header)
     if len(values) != count:
         raise ValueError(f"{len(values)} samples; the header states {count} in line {stated or header}")
@@ -237,7 +237,7 @@ def step(text: str, place: int) -> float:
 
 
 def all_numbers(lines: Sequence[str], first: int, end: int | None = None) -> list[float]:
-    """The numbers of lines, from one after the first so many on up to an end."""
+    """The numbers of lines, after the first ones up to an end."""
     return [x for place, line in enumerate(lines[first:end], first + 1) for x in numbers(line, place)]
 
 
@@ -280,7 +280,7 @@ UNEVEN_ROUNDED = 0.1
 SLOW_SAMPLING = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
 ALONE = 5.0
-"""A first number that is the largest, and so many times as large as those soon after it, is doubted: it may be one of
+"""A first number that is the largest, and `RATIO` times as large as those soon after it, is doubted: it may be one of
 the header."""
 SOON = 10
 """How many numbers those are."""
@@ -805,8 +805,8 @@ def _factor(found: RecordTable, unit: str | float | None, column: int) -> float:
     stated = of_name or list(of_head)
     if unit is None:
         if len(stated) != 1:
-            said = " and ".join(stated) or "no unit"
-            raise NoRecordError(f"the header names {said}; give unit=, one of {', '.join(ACCELERATION_UNITS)}")
+            names = " and ".join(stated) or "no unit"
+            raise NoRecordError(f"the header names {names}; give unit=, one of {', '.join(ACCELERATION_UNITS)}")
         return ACCELERATION_UNITS[stated[0]]
     if isinstance(unit, str) and found.head and len(stated) == 1 and stated != [unit]:
         where = f"the name {in_message(name)} of the column" if of_name else f"line {of_head[stated[0]]}"

@@ -334,7 +334,7 @@ SpectrumOfCode = CodeSpectrum | FloorSpectrum | PointSpectrum
 OF_NTC = "{name} = {value} is of NTC 2018; {code} takes ag and soil"
 OF_EC8 = "{name} = {value} is of a national annex of EC8; NTC 2018 takes soil, F0 and Tc"
 ALIKE_IN_G = "ag = {ag:g} m/s2 is {share:.3g} g; accelerations are in m/s2: is it in g?"
-"""What is said of arguments of the other code, and of an acceleration that is likely in g."""
+"""What is wrong with arguments of the other code, and of an acceleration that is likely in g."""
 
 
 @within_ranges
@@ -507,7 +507,7 @@ def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float 
     Args:
         motion: the ground motion.
         period: T [s], 0.01 to 100.
-        sa: the pseudo-acceleration asked for [m/s2], 1e-6 to 1e4.
+        sa: the required pseudo-acceleration [m/s2], 1e-6 to 1e4.
         damping: damping ratio [-], 0 to 0.9.
 
     Raises:
@@ -559,17 +559,17 @@ def factor_to_spectrum(
     spectrum = response_spectrum(motion, periods, damping)
     if isinstance(target, SpectrumOfCode):
         target = target(spectrum.period, damping)
-    asked = require_row("target", target, "pseudo-acceleration [m/s2]")
-    for value in asked:
+    values = require_row("target", target, "pseudo-acceleration [m/s2]")
+    for value in values:
         require_within("target", value, 1e-6, 1e4, "m/s2")
-    if asked.shape != spectrum.period.shape:
+    if values.shape != spectrum.period.shape:
         raise ValueError(
             Message(
-                "target has {asked} values and periods {period}; they have to be pairs",
-                asked=len(asked),
+                "target has {values} values and periods {period}; they have to be pairs",
+                values=len(values),
                 period=len(spectrum.period),
             )
         )
     if motion.peak == 0:
         raise ValueError(Message("motion is at rest: no factor gives it a spectrum"))
-    return float(np.exp(np.log(asked / spectrum.Sa).mean()))
+    return float(np.exp(np.log(values / spectrum.Sa).mean()))

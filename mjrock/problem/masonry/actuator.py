@@ -116,7 +116,7 @@ class Actuator(Effect):
         return GUIDES[self.guided]
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         far = max(self.displacement[1], key=abs)
         where = "all blocks" if self.at is None else f"z = {self.height:g} m"

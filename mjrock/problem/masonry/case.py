@@ -166,11 +166,11 @@ class MasonryCase(Carrying):
     tilt: Annotated[Any, Tilt] = field(default=None, kw_only=True)
 
     def __repr__(self) -> str:
-        said = [f"{self.duration:.6g} s", *(f"{name} {motion.name!r}" for name, motion in self.grounds.items())]
+        parts = [f"{self.duration:.6g} s", *(f"{name} {motion.name!r}" for name, motion in self.grounds.items())]
         given = {name: getattr(self, name) for name in ("velocity", "supports", "tilt")}
-        said += [name for name, value in given.items() if value is not None and len(value)]
-        said += [type(effect).__name__ for effect in self.effects]
-        return f"<MasonryCase of {self.masonry!r}: {', '.join(said)}{'' if self.settled else ', as drawn'}>"
+        parts += [name for name, value in given.items() if value is not None and len(value)]
+        parts += [type(effect).__name__ for effect in self.effects]
+        return f"<MasonryCase of {self.masonry!r}: {', '.join(parts)}{'' if self.settled else ', as drawn'}>"
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
@@ -248,7 +248,7 @@ class MasonryCase(Carrying):
         return self.masonry
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """The same in words."""
         return "masonry"
 
@@ -390,7 +390,7 @@ class MasonryCase(Carrying):
 
 
 AnyCase = Case | MasonryCase
-"""A case of a wall or of masonry. What both answer alike is asked of either, without asking which it is."""
+"""A case of a wall or of masonry. Both answer alike for what they share."""
 
 
 def require_wall(name: str, value: object, instead: str) -> None:

@@ -22,7 +22,7 @@ LARGEST_BLOCK, SMALLEST_BLOCK = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
 LARGE_BLOCKS, SMALL_BLOCKS, MANY = 5.0, 0.02, 5
 """Sizes that half of the free blocks of masonry exceed, or fall short of, which are probably not in m, where there are
-so many [m, m, -]."""
+at least `MANY` [m, m, -]."""
 STANDS = 1.5
 """Height of blocks that stand, and are no wall that lies on its face [m]."""
 USUAL, COMMON_SIZE = (0.04, 3.0), 0.35
@@ -98,9 +98,9 @@ def odd_sizes(sizes: Mapping[str, float]) -> str:
     found = {unit: sizes[name] * scale for unit, scale in LENGTH_UNITS.items()}
     likely = [unit for unit, size in found.items() if unit != "m" and USUAL[0] <= size <= USUAL[1]] or ["mm"]
     likely.sort(key=lambda unit: abs(math.log(found[unit] / COMMON_SIZE)))
-    asked = " or ".join(f"{unit}, {found[unit]:.2g} m" for unit in likely)
+    units = " or ".join(f"{unit}, {found[unit]:.2g} m" for unit in likely)
     return (
-        f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in {asked}? A file takes unit={likely[0]!r}"
+        f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in {units}? A file takes unit={likely[0]!r}"
     )
 
 
@@ -130,13 +130,13 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
     free = [i for i, block in enumerate(blocks) if not block.fixed]
     held = [i for i, block in enumerate(blocks) if block.fixed]
     extent = np.ptp(np.concatenate([blocks[i].corners for i in free]), axis=0)
-    said = "z points upwards: does {0} in this file? up={0!r} turns it, and up='z' says that all is well"
+    text = "z points upwards: does {0} in this file? up={0!r} turns it, and up='z' says that all is well"
     if not ground:
         centroids = np.array([block.centroid for block in blocks])
         beyond = (centroids[free].mean(axis=0) - centroids[held].mean(axis=0)) / extent.max()
         axis = 0 if beyond[0] > beyond[1] else 1
         if beyond[axis] > LIES and beyond[2] < 0.1 * beyond[axis]:
-            return f"the free blocks lie along {'xy'[axis]} from the fixed ones and not above them; " + said.format(
+            return f"the free blocks lie along {'xy'[axis]} from the fixed ones and not above them; " + text.format(
                 "xy"[axis]
             )
         return ""
@@ -147,14 +147,14 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
     lying = len({joint.above for joint in joints if joint.below in held})
     axis = 0 if areas[0] > areas[1] else 1
     if len(inner) > 1 and lying >= ON_GROUND * len(free) and areas[axis] > ALONG * (areas.sum() - areas[axis]):
-        return f"{lying} of {len(free)} blocks lie on the ground, side by side along {'xy'[axis]}; " + said.format(
+        return f"{lying} of {len(free)} blocks lie on the ground, side by side along {'xy'[axis]}; " + text.format(
             "xy"[axis]
         )
     return ""
 
 
 def remedy(deepest: float, joints_within: JointFinder, blocks: Sequence[AnyBlock]) -> str:
-    """The tolerance that takes blocks which overlap by at most so much [m], and the joints that it finds."""
+    """The tolerance that takes blocks which overlap by at most an amount [m], and the joints that it finds."""
     tolerance = rounded_up(deepest)
     if tolerance > WIDEST_TOLERANCE:
         return f"no tolerance up to {WIDEST_TOLERANCE:g} m takes them"
@@ -164,8 +164,8 @@ def remedy(deepest: float, joints_within: JointFinder, blocks: Sequence[AnyBlock
         return f"with tolerance = {tolerance:g} m, which takes them, {loose} blocks have no joint: mend the file"
     lost = len(not_joined(blocks, joints, tolerance))
     narrow = SHORTEST_JOINT * tolerance
-    said = f", and leaves {lost} pairs of near blocks without one, since joints are wider than {narrow:g} m"
-    return f"tolerance = {tolerance:g} m takes them: it finds {len(joints)} joints{said if lost else ''}"
+    text = f", and leaves {lost} pairs of near blocks without one, since joints are wider than {narrow:g} m"
+    return f"tolerance = {tolerance:g} m takes them: it finds {len(joints)} joints{text if lost else ''}"
 
 
 def rounded_up(value: float) -> float:
@@ -185,11 +185,11 @@ def nearly(names: Sequence[str], gap: float, tolerance: float) -> str:
     """What is odd about joints of a file that only another gap finds [m], in words, empty where none are."""
     if not names:
         return ""
-    said = f"{len(names)} pairs of blocks have no joint and lie less than {gap:g} m apart, such as {named(names)}; "
+    text = f"{len(names)} pairs of blocks have no joint and lie less than {gap:g} m apart, such as {named(names)}; "
     if gap > tolerance:
-        return f"{said}gap = {gap:g} m joins them"
+        return f"{text}gap = {gap:g} m joins them"
     return (
-        f"{said}their faces are no wider than {SHORTEST_JOINT:g} times the tolerance of {tolerance:g} m; gap = {gap:g} "
+        f"{text}their faces are no wider than {SHORTEST_JOINT:g} times the tolerance of {tolerance:g} m; gap = {gap:g} "
         "m in its place joins them"
     )
 
@@ -228,7 +228,7 @@ def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     return "at a corner" if in_space and fewest == 1 else "along a line"
 
 
-def touches_told(touches: Sequence[Touch], names: Sequence[str]) -> str:
+def touches_text(touches: Sequence[Touch], names: Sequence[str]) -> str:
     """Blocks that touch without a joint, in words."""
     pairs = named([f"{names[touch.block]} and {names[touch.other]} touch {touch.where}" for touch in touches])
     return f"{pairs}; a joint takes faces: cut the edge or the corner back to a small face"
@@ -251,14 +251,14 @@ def smallest_gap(
     one, other = divmod(int(apart.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
     touches = [touch for touch in along_lines(blocks, (), reach) if {touch.block, touch.other} & set(loose)]
-    said = f"{touches_told(touches, names)}; " if touches else ""
+    text = f"{touches_text(touches, names)}; " if touches else ""
     if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
-        return said.removesuffix("; ")
-    said += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
+        return text.removesuffix("; ")
+    text += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
     needed = needed_gap(loose, joints_within, reach)
     if needed is None:
-        return f"{said}, and no gap up to {WIDEST_TOLERANCE:g} m joins all of them"
-    return f"{said}; gap = {needed:.2g} m joins all of them: it finds {len(joints_within(needed))} joints"
+        return f"{text}, and no gap up to {WIDEST_TOLERANCE:g} m joins all of them"
+    return f"{text}; gap = {needed:.2g} m joins all of them: it finds {len(joints_within(needed))} joints"
 
 
 def needed_gap(loose: Sequence[int], joints_within: JointFinder, given: float) -> float | None:

@@ -20,7 +20,7 @@ from ...quantities import (
     require_within,
     short_repr,
 )
-from ..wall.effect import Effect, Told
+from ..wall.effect import Effect, ReportItem
 from ..wall.effects import Load
 from ..wall.tie import Tie
 from .blocks.polygon import Polygon
@@ -85,7 +85,7 @@ class Fill:
         keep_declared(self)
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         return f"up to z = {self.top:g} m, {self.density:g} kg/m3"
 
@@ -222,7 +222,7 @@ class Axle:
     top: Annotated[float, Within(-1e4, 1e4, "m")]
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         return f"{self.force / 1e3:g} kN at x = {self.at:g} m"
 
@@ -240,7 +240,7 @@ class EarthLoad(Load):
     drawn: tuple[tuple[float, float], ...] = field(kw_only=True, repr=False)
 
     @property
-    def told(self) -> Told | None:
+    def report_item(self) -> ReportItem | None:
         """The fill or the axle, once."""
         return self.stands_for
 
@@ -254,6 +254,6 @@ class EarthTie(Tie):
     """What a fill bears where a face moves into it. Sketch and report show the fill."""
 
     @property
-    def told(self) -> None:
+    def report_item(self) -> None:
         """Nothing: the fill is shown once."""
         return

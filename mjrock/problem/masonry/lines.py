@@ -93,7 +93,7 @@ def lines_of(
     point is on the block below, unless that one is fixed. Lines are `mirrored` where the masonry is: of two blocks
     beside each other the point is on the one that is farther from the middle of the masonry, where both or neither
     have a corner or an edge there. If they are as far, it is on either, with half the stiffness. The stiffness of each
-    joint is k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, of each of them or of all, in
+    joint is k_n [N/m3], shape (joints,). A joint has as many lines as `points`, of each of them or of all, in
     space see `geometry.convex.spread`.
     Those that are `bonded` have the stiffness k_n I in bending, see `geometry.convex.sectioned`.
     """

@@ -54,7 +54,7 @@ from .drawing import (
     sizes_in_errors,
     smallest_gap,
     split_faces,
-    touches_told,
+    touches_text,
 )
 from .files.bodies import (
     AnyPath,
@@ -159,7 +159,7 @@ class Masonry(Constructors, NotebookPicture):
             elastic section for any number of them; five or more follow the crack, see docs/mortar.md.
         joints: what the joints are, a `Dry` or a `Mortar` for all, or a function of the joint that gives one, in the
             place of k_n, friction, xi, k_s, frequency, points and bond, which are the short way to the same. A function
-            is asked once of each joint. The joints that are found are then `joints`.
+            is called once for each joint. The joints that are found are then `joints`.
         pairs: friction and damping of blocks that have no joint, where they meet in explicit steps and in plain models:
             a `Dry` for all, or a function of the names of two blocks, in their order, that gives one or None. Of the
             `Dry` `friction`, `xi` and `frequency` count. None takes the joints of the two blocks, see `solve_explicit`.
@@ -217,7 +217,7 @@ class Masonry(Constructors, NotebookPicture):
         if not self.joints:
             side = "a face" if self.in_space else "an edge"
             raise ValueError(
-                f"blocks: no two of them touch along {side} within {self._reach_said}; "
+                f"blocks: no two of them touch along {side} within {self._reach_text}; "
                 f"{smallest_gap(self.blocks, self.names, self.free, self._joints_within, self.reach)}"
             )
         if law is not None:
@@ -233,12 +233,12 @@ class Masonry(Constructors, NotebookPicture):
         left = {"k_s": np.isinf(self.joint_shear).all(), "xi": self.law is not None}
         names = (name for name in ("k_n", "k_s", "friction", "xi", "points") if not left.get(name))
         given = ((name, getattr(self, name)) for name in names)
-        said = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in given]
+        parts = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in given]
         if self.law is not None:
-            said.insert(-1, f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
+            parts.insert(-1, f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
         bonded = ", mortar" if any(isinstance(bond, Bond) for bond in self.bonds) else ""
         bonded += ", laws of their own" if any(isinstance(bond, Own) for bond in self.bonds) else ""
-        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}{bonded}>"
+        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(parts)}{bonded}>"
 
     @property
     def in_space(self) -> bool:
@@ -308,7 +308,7 @@ class Masonry(Constructors, NotebookPicture):
         return self.tolerance + (self.gap or 0.0)
 
     @property
-    def _reach_said(self) -> str:
+    def _reach_text(self) -> str:
         """The largest distance between faces that are a joint, in words."""
         return f"the {'tolerance' if self.gap is None else 'gap'} of {self.reach:g} m"
 
@@ -432,7 +432,7 @@ class Masonry(Constructors, NotebookPicture):
             odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
         sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
-        alone = f"without a joint {touches_told(touches, self.names)}" if touches else ""
+        alone = f"without a joint {touches_text(touches, self.names)}" if touches else ""
         return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
 
     @classmethod
@@ -586,7 +586,7 @@ class Masonry(Constructors, NotebookPicture):
         loose = [i for i in self.free if i not in touching]
         if loose:
             raise ValueError(
-                f"{named([self.names[i] for i in loose])} touch no other block within {self._reach_said}; "
+                f"{named([self.names[i] for i in loose])} touch no other block within {self._reach_text}; "
                 f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.reach)}"
             )
         wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)

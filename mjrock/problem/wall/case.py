@@ -1,4 +1,4 @@
-"""The physical problem that every solver is asked."""
+"""The physical problem of a wall, which every solver takes."""
 
 from __future__ import annotations
 
@@ -275,7 +275,7 @@ class Case(Carrying):
         return self.block
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """The same in words."""
         return repr(self.block)
 

@@ -159,8 +159,8 @@ def resistance(law: LinkLaw, rate: float) -> float:
     return law.c * rate
 
 
-class Told(Protocol):
-    """What sketch and report speak of: an effect, or what several effects stand for.
+class ReportItem(Protocol):
+    """What sketch and report show: an effect, or what several effects stand for.
 
     Attributes:
         label: its name.
@@ -171,7 +171,7 @@ class Told(Protocol):
     arguments: ClassVar[str]
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """Where it is and what it does."""
 
 
@@ -238,13 +238,13 @@ class Effect:
         return None
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """Where it is and what it does, for sketch and report."""
         raise NotImplementedError
 
     @property
-    def told(self) -> Told | None:
-        """What sketch and report speak of in its place: itself, or None where they have already spoken of it."""
+    def report_item(self) -> ReportItem | None:
+        """What sketch and report show in its place: itself, or None where they show it already."""
         return self
 
     @property

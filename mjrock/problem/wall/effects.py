@@ -75,7 +75,7 @@ class Damper(Anchored):
         return LinkLaw(c=self.c)
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, c = {self.c / 1e3:g} kN s/m"
 
@@ -123,10 +123,10 @@ class FrictionDamper(Anchored):
         return LinkLaw(self.stiffness, self.span, self.slip_force, push=self.slip_force)
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
-        said = f"z = {self.height:g} m,\nk = {self.stiffness / 1e6:.4g} kN/mm"
-        return f"{said}, slips at {self.slip_force / 1e3:g} kN"
+        text = f"z = {self.height:g} m,\nk = {self.stiffness / 1e6:.4g} kN/mm"
+        return f"{text}, slips at {self.slip_force / 1e3:g} kN"
 
 
 @dataclass(frozen=True, repr=False)
@@ -177,7 +177,7 @@ class Thrust(Effect):
         return self.force * x, self.force * y, self.force * z
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, {self.force / 1e3:g} kN outwards"
 
@@ -216,7 +216,7 @@ class Load(Effect):
         return 0.0, 0.0, -self.force
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:g} m, x = {self.offset:g} m,\n{self.force / 1e3:g} kN downwards"
 
@@ -252,7 +252,7 @@ class AddedMass(Effect):
         return self.mass
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         return f"z = {self.height:.4g} m, x = {self.offset:.4g} m, {self.mass:.4g} kg"
 

@@ -178,6 +178,6 @@ class Link(Anchored):
         return LinkLaw()
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches and reports."""
         return f"z = {self.height:g} m, {self.own!r}"

@@ -71,7 +71,7 @@ def warn_of_low_stop(case: Any) -> None:
 
 
 def warn_if_still(case: Any, *, forces: bool = False) -> None:
-    """Warn of a run of a wall that nothing moves, unless it is asked for the forces at rest."""
+    """Warn of a run of a wall that nothing moves, unless the forces at rest are required."""
     if case.is_still and not forces:
         warn_of(
             Message(
@@ -117,7 +117,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
     Args:
         motion, duration: the record and the duration.
         called: what is shaken.
-        start: acceleration over g at which it starts to move from rest [-], infinite where that is not asked.
+        start: acceleration over g at which it starts to move from rest [-], infinite where that is not known.
     """
     if motion is None:
         return []

@@ -59,7 +59,7 @@ class Tie(Anchored):
         anchor: of masonry, its other end at rest [m]. None is `length` behind the point.
         anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
             plane the end lies `length` to the left.
-        prestress: its force at rest [N], 0 to 1e9 and below the strength; without slack. It pulls with so much before
+        prestress: its force at rest [N], 0 to 1e9 and below the strength; without slack. It pulls with it before
             anything moves.
         governed_by: what its strength is that of, "bar", "punching", "bearing" or "other end", for sketch and report;
             `of_bar` sets it. None does not say.
@@ -203,17 +203,17 @@ class Tie(Anchored):
         return LinkLaw(self.stiffness, self.reach, self.strength, ultimate=self.breaks_at)
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
-        said = f"z = {self.height:g} m, {self.length:g} m long,\n"
-        said += f"k = {self.stiffness / 1e6:.4g} kN/mm, slack {1e3 * self.slack:g} mm"
+        text = f"z = {self.height:g} m, {self.length:g} m long,\n"
+        text += f"k = {self.stiffness / 1e6:.4g} kN/mm, slack {1e3 * self.slack:g} mm"
         if self.prestress:
-            said += f", prestress {self.prestress / 1e3:.4g} kN"
+            text += f", prestress {self.prestress / 1e3:.4g} kN"
         if self.strength < math.inf:
-            said += f",\nyields at {self.strength / 1e3:.4g} kN"
+            text += f",\nyields at {self.strength / 1e3:.4g} kN"
         if self.governed_by is not None:
-            said += f" ({self.governed_by})"
-        return said if self.ultimate is None else f"{said}, breaks at {1e3 * self.ultimate:g} mm"
+            text += f" ({self.governed_by})"
+        return text if self.ultimate is None else f"{text}, breaks at {1e3 * self.ultimate:g} mm"
 
 
 def area_of_bar(diameter: float) -> float:

@@ -69,7 +69,7 @@ class Wedge(CombinedEffect):
         return self.height * math.tan(self.angle)
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
         of = "" if self.density is None else f", {self.density:g} kg/m3"
         return (
@@ -135,7 +135,7 @@ class WedgeMass(AddedMass):
     first: bool = field(kw_only=True, repr=False)
 
     @property
-    def told(self) -> Wedge | None:
+    def report_item(self) -> Wedge | None:
         """The wedges, once."""
         return self.wedge if self.first else None
 
@@ -218,8 +218,8 @@ class Corner:
         try:
             _ = self.block, self.masses
         except ValueError as error:
-            said = f"thickness = {self.thickness:g} m, height = {self.height:g} m, angle = {self.angle:g} rad"
-            raise ValueError(f"{said} are no corner that a wall can stand for: {error}") from None
+            sizes = f"thickness = {self.thickness:g} m, height = {self.height:g} m, angle = {self.angle:g} rad"
+            raise ValueError(f"{sizes} are no corner that a wall can stand for: {error}") from None
         _ = self.case
 
     @property

@@ -184,7 +184,7 @@ def checked_name(name: str | None) -> str | None:
 
 
 def required_vertices(vertices: ArrayLike | Sequence[Sequence[float]], least: int, axes: int) -> Array:
-    """Vertices as an array, at least so many; a TypeError or ValueError says what is wrong with them."""
+    """Vertices as an array, at least a given number; a TypeError or ValueError says what is wrong with them."""
     shape = f"({least} to {MOST_VERTICES}, {axes})"
     points = require_reals("vertices", vertices, f"an array of real numbers of the shape {shape}")
     if points.ndim != 2 or points.shape[1] != axes or not least <= len(points) <= MOST_VERTICES:

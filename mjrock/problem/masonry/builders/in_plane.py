@@ -279,7 +279,7 @@ def voussoirs_of(
 
 
 def curved(arch: Sequence[Polygon], chords: int) -> list[FlatBlock]:
-    """An arch in which so many voussoirs that follow each other are one, see `arch`."""
+    """An arch in which a number of successive voussoirs are one each, see `arch`."""
     if chords == 1:
         return list(arch)
     left, *pieces, right = arch

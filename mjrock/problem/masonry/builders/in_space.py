@@ -52,7 +52,7 @@ __all__ = ["between_sides", "box", "column", "corner", "dome", "facade", "wallet
 WHOLE = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
 SLENDEREST = 100.0
-"""Height of a drum over its width at most, and the other way round [-]: a hundred sides are still told apart."""
+"""Height of a drum over its width at most, and the other way round [-]: a hundred sides can still be distinguished."""
 
 
 def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
@@ -262,7 +262,7 @@ def facade(
 
     All walls are one unit thick and in running bond, by half a unit. In every second course the return walls come
     through to the face of the facade as headers. Units are made to fit: their length and height are the nearest to
-    those asked for that divide the walls. The face of the facade is x = 0, and the middle of its length is y = 0.
+    the given ones that divide the walls. The face of the facade is x = 0, and the middle of its length is y = 0.
     Blocks are named `facade_`, `left_` and `right_` with the course and a number in it.
 
     Args:
@@ -534,8 +534,8 @@ def wallette(
         length, height, unit, thickness, density, halves: as of `running_bond`; units of several leaves are whole.
         leaves: wythes beside each other through the thickness, 1 to 10. The joints between them have the normal x,
             so that a function of the joint gives them a bond of their own.
-        headers: every so many courses, 0 to 1000, one of headers, half a unit long, that go through all leaves;
-            0 for none.
+        headers: courses from one course of headers to the next, 0 to 1000, 0 for none. Headers are half a unit long
+            and go through all leaves.
         beam: whether a fixed beam lies on it, which the case leads by `supports={"beam": (t, dx, dy, dz)}`.
 
     Raises:

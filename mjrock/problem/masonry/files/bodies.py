@@ -258,8 +258,8 @@ def _all_bodies(meshes: Sequence[Mesh]) -> list[Mesh]:
             seen.add(places)
         bodies += own if len(own) == 1 else [body._replace(name=f"{mesh.name}_{i}") for i, body in enumerate(own)]
     if again:
-        said = named([body.name for body in again])
-        warn_of(f"{len(again)} bodies are drawn twice, and read once: {said}")
+        names = named([body.name for body in again])
+        warn_of(f"{len(again)} bodies are drawn twice, and read once: {names}")
     count = Counter(body.name for body in bodies)
     return [body if count[body.name] == 1 else body._replace(name=f"{body.name}_{i}") for i, body in enumerate(bodies)]
 
@@ -410,8 +410,8 @@ def _say_dented(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | 
     most, total = dented[0], sum(bound.enclosed for bound in bounds)
     whole = sum(bound.of_hull - bound.enclosed for bound in dented) / total
     if convex == "hull":
-        said = named([f"{bound.body.name} {bound.added:.2%}" for bound in dented])
-        warn_of(f"convex='hull' adds volume to {len(dented)} bodies: {said}; to all {whole:.2%}")
+        names = named([f"{bound.body.name} {bound.added:.2%}" for bound in dented])
+        warn_of(f"convex='hull' adds volume to {len(dented)} bodies: {names}; to all {whole:.2%}")
         return
     others = f", the most of {len(dented)} such bodies of {len(bounds)}" if len(dented) > 1 else ""
     raise ValueError(

@@ -96,8 +96,8 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
             raise ValueError(f"layers = {layer!r} holds nothing; the layers are {named(list(found))}")
     every, others = _outlines([each for each in entities if layers is None or each.dxf.layer in layers])
     if repairs := [*auditor.errors, *auditor.fixes]:
-        said = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
-        warn_of(f"path = {path} is damaged, and was repaired while it was read: {said}")
+        text = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
+        warn_of(f"path = {path} is damaged, and was repaired while it was read: {text}")
     first: dict[bytes, Outline] = {}
     if again := [one.name for one in every if first.setdefault(_places(one), one) is not one]:
         warn_of(f"path = {path}: {len(again)} outlines are drawn twice, and read once: {named(again)}")
@@ -148,8 +148,8 @@ def _sound(call: Callable[P, Result], *given: P.args, **options: P.kwargs) -> Re
     except DrawingError:
         raise
     except Exception as error:  # a damaged file ends in IndexError, AttributeError, AssertionError and others there
-        said = " ".join(str(error).split())[:200] or type(error).__name__
-        raise ValueError(f"it is not a drawing in DXF, or is damaged: {said}") from None
+        text = " ".join(str(error).split())[:200] or type(error).__name__
+        raise ValueError(f"it is not a drawing in DXF, or is damaged: {text}") from None
 
 
 def _is_polyline(entity: DXFEntity) -> TypeGuard[LWPolyline | Polyline]:

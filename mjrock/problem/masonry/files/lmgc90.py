@@ -68,9 +68,9 @@ def read_lmgc90(path: AnyPath) -> list[Mesh]:
             density = materials.get(behaviour[1]) if behaviour else None
             meshes.append(Mesh(f"body_{number}", placed, faces, driven.get(number) is not None, density))
     if others:
-        said = ", ".join(f"{count} {kind}" for kind, count in sorted(others.items()))
+        kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(others.items()))
         warn_of(
-            f"path = {bodies}: only polyhedra POLYR are read; left out are {said}; ground=True puts ground under all"
+            f"path = {bodies}: only polyhedra POLYR are read; left out are {kinds}; ground=True puts ground under all"
         )
     if moved := [f"body_{number}" for number, speed in driven.items() if speed]:
         warn_of(f"path = {bodies}: {named(moved)} are driven, and read as fixed; supports= of MasonryCase moves them")

@@ -151,8 +151,8 @@ def read_ply(path: AnyPath) -> list[Mesh]:
         if not all(len(face) > 2 and min(face) >= 0 and max(face) < len(places) for face in faces):
             raise ValueError("a face is not three or more of the vertices")
     except (KeyError, IndexError, ValueError, TypeError, OverflowError, StopIteration, struct.error) as error:
-        said = f": {error}" if type(error) is ValueError else ""
-        raise ValueError(f"it is not a PLY file of faces, or is cut short{said}") from None
+        cause = f": {error}" if type(error) is ValueError else ""
+        raise ValueError(f"it is not a PLY file of faces, or is cut short{cause}") from None
     return [Mesh("body", places, faces)]
 
 
