@@ -152,7 +152,7 @@ class PairLaw(NamedTuple):
         part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
         columns = dict(zip(SHARED_COLUMNS, share * shared[:, :-1].T, strict=True))
-        return columns | dict(zip(INTENSIVE, others.T, strict=True)) | {"bent": np.zeros(len(pair))}
+        return columns | dict(zip(INTENSIVE, others.T, strict=True))
 
     def _of_softer(self, ends: Integers) -> tuple[Array, Flags]:
         """What pairs without a joint have, shape (n, 5), and whether the block that rules is loose, shape (n,), from

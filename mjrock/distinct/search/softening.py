@@ -187,11 +187,14 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
 
     Args:
         sides: the two blocks of each place.
-        law: the numbers of the law of the places and `c_s`, by name, shape (n,) each.
+        law: the numbers of the law that places have, and `c_s`, by name, shape (n,) each.
         bodies: whose inverse inertia is taken in the axes of the world, in space.
         step: that is to be stable [s].
     """
-    along = step**2 * largest_stiffness(Law(*(law[name] for name in Law._fields))) + 2 * step * law["c"]
+    along = (
+        step**2 * largest_stiffness(Law(**{name: law[name] for name in Law._fields if name in law}))
+        + 2 * step * law["c"]
+    )
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
     nv, share = 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
     stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((2, nv, nv))
