@@ -31,6 +31,15 @@ EXCEPTIONS = {
     "docs/wind_earth_axles.md": ("verdicts[0].said",),
 }
 """Text that stays, by file: public names."""
+WITH_MATHEMATICS = (
+    "contacts_in_your_model", "damping", "explicit", "faq", "how_it_works", "plain_models", "results", "solvers",
+    "stiffness", "theory", "validation",
+)  # fmt: skip
+"""Pages whose prose writes symbols as mathematics."""
+NO_PROSE = re.compile(
+    r'```.*?```|\$\$.*?\$\$|\$[^$\n]+\$|`[^`\n]+`|\]\([^)]*\)|"[^"\n]*"|^#.*?$', re.DOTALL | re.MULTILINE
+)
+SYMBOLS = re.compile(r"(?<![\w/.-])(?:xi|omega|theta|alpha|mu|k_n|k_s|e_[12]s)(?:_\w+)?(?![\w(.=-])")
 WORDS = re.compile(rf"(?<![A-Za-z])({'|'.join(REPLACED)})(?![A-Za-z])", re.IGNORECASE)
 
 
@@ -63,6 +72,13 @@ def test_pages_use_the_words_of_the_field():
     pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
     assert len(pages) > 30
     assert [offender for path in pages for offender in replaced(path)] == []
+
+
+@pytest.mark.parametrize("name", WITH_MATHEMATICS)
+def test_symbols_in_prose_are_mathematics(name):
+    text = NO_PROSE.sub("", (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8"))
+    assert SYMBOLS.findall(text) == []
+    assert SYMBOLS.findall(f"{text} with xi = 0.1")
 
 
 def test_types_are_nouns():
