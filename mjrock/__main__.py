@@ -58,7 +58,7 @@ def answered(given: Sequence[str]) -> Answer:
     """What the command that is named answers; without one, the help."""
     made = parser("", "Rocking masonry in MuJoCo, by explicit steps and by theory. Commands that need no script.")
     made.prog, made.usage = "mjrock", "mjrock COMMAND ..."
-    made.epilog = f"{commands()}\n\nmjrock COMMAND --help says more of a command.\n{STATUSES}"
+    made.epilog = f"{commands()}\n\nmjrock COMMAND --help describes a command.\n{STATUSES}"
     made.add_argument("--version", action="version", version=f"mjrock {__version__}", help="print the version")
     made.add_argument("command", choices=COMMANDS, metavar="COMMAND", help=SUPPRESS)
     if not given:

@@ -52,7 +52,7 @@ def parser(name: str, description: str, epilog: str = "") -> argparse.ArgumentPa
     Args:
         name: of the command.
         description: what it does.
-        epilog: what stands below its arguments in the help.
+        epilog: text below its arguments in the help.
     """
     return argparse.ArgumentParser(f"mjrock {name}", description=description, epilog=epilog, formatter_class=Help)
 
@@ -97,7 +97,7 @@ def require_free(path: Path, force: bool) -> Path:
 
 
 def message_of(error: Exception) -> str:
-    """What an error says, of a file its name first."""
+    """The message of an error; that of a file begins with its name."""
     if isinstance(error, OSError) and error.filename and error.strerror:
         return f"{error.filename}: {error.strerror}"
     return str(error)

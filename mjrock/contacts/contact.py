@@ -258,7 +258,7 @@ class PairContact:
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
-        """Reasons in a model for which the contact differs from its numbers, a sentence each; empty without any.
+        """Reasons in a model for which the contact differs from the requested values, a sentence each.
 
         Args:
             model: a model with the contact, from `apply` or from the text of `xml`.

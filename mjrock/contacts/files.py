@@ -1,4 +1,4 @@
-"""Files that are whole or absent, and what stands in them: tables as CSV that NumPy, pandas and a spreadsheet read.
+"""Files that are whole or absent, and their content: tables as CSV that NumPy, pandas and a spreadsheet read.
 
 What is written takes the place of the old file when all of it is on the disk.
 """

@@ -1,4 +1,4 @@
-"""Reasons for which a contact differs from its numbers: options of the model, the step, and what was not written.
+"""Reasons for which a contact differs from the requested values: options of the model, the step, what was not written.
 
 Each function gives sentences. Those on one contact stand beside `PairContact`: `spoilers` of what `apply` leaves as it
 is, `missing` of what it writes.

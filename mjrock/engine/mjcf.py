@@ -76,7 +76,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         scene: the scene.
         timestep: MuJoCo's step, on which the contact rows depend [s].
         newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.contacts.solref.row`.
-        keyframe: of the release. None stands for the scene at rest.
+        keyframe: of the release. None means the scene at rest.
     """
     keyframe = (
         Keyframe(scene.at_rest, np.zeros_like(scene.bodies.masses), np.empty(0)) if keyframe is None else keyframe

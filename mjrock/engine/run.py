@@ -36,7 +36,7 @@ class EngineRun:
     """A run of the engine that has been checked.
 
     Args:
-        problem, scene, course: the problem, the bodies with their contacts, and what happened to them.
+        problem, scene, course: the problem, the structure, and what happened to it.
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).

@@ -69,12 +69,12 @@ def simulate(
         contacts: the interfaces of the wall; masonry has its own joints.
         timestep: a fixed step [s]; None lets the steps fit the motion, see `mjrock.engine.stepping`.
         accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy from one impact to the next
-            [-], 1e-8 to 0.1. None stands for 1e-3, and for 1e-4 for a wall on moving ground, whose rocking multiplies
+            [-], 1e-8 to 0.1. None means 1e-3, and 1e-4 for a wall on moving ground, whose rocking multiplies
             what an impact errs by. A run in which energy appears from nowhere is discarded and repeated with a tenth of
             it, twice at most, or down to 1e-6 where none is given.
         newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.contacts.solref`.
-        coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
-            steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
+        coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None means True where
+            steps fit the motion, and False at a fixed step, which then is the model text, stepped by MuJoCo.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; the last is the end of the run.
             Fixed steps are thinned to whole steps, None returns them all, with collisions one every 1 ms, and the run
             ends with the step that is nearest to the duration. Fitted steps are interpolated at even distances, None
@@ -86,8 +86,8 @@ def simulate(
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
         method: the constants of the method, see `mjrock.method`, for studies that vary them.
         collisions: whether MuJoCo finds the contacts itself, between boxes and hulls, so that blocks meet wherever they
-            are and run on when they have fallen, see `mjrock.engine.plain`. Steps have one length; None stands for 0.1
-            over the highest frequency of the closed contacts for a wall and 0.5 over it for masonry, and for less with
+            are and run on when they have fallen, see `mjrock.engine.plain`. Steps have one length; None means 0.1
+            over the highest frequency of the closed contacts for a wall and 0.5 over it for masonry, and less with
             strong dampers. It does not go with accuracy, newmark_beta, coulomb and method.
 
     Returns:

@@ -17,7 +17,7 @@ def mjcf_of(
     """The model of a case as MJCF text; the same arguments give the same bytes.
 
     Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, contacts, timestep)` where the
-    ground does not move. Without collisions, what stands a kilometre or more from the origin is written nearer to it by
+    ground does not move. Without collisions, a structure a kilometre or more from the origin is written nearer to it by
     whole kilometres. The camera is `front`. See `wall_mjcf` and `masonry_mjcf` for the other names in the text.
 
     What slides in this text is pressed apart: a contact with the slip v adds mu (c / 2 + newmark_beta h k) |v| to its

@@ -99,7 +99,7 @@ def _kept(polygon: Array, normal: Array, offset: float) -> Array:
 
 
 def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
-    """Corners of what of a convex cell lies on the side of a plane that its normal points to."""
+    """Corners of the part of a convex cell on the side of a plane to which its normal points."""
     above = cell @ normal - offset
     above = np.where(np.abs(above) <= ON_PLANE, 0.0, above)
     points = list(cell[above >= 0])

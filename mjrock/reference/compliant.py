@@ -53,7 +53,7 @@ def solve_compliant(
         contacts: the interfaces.
         rtol: relative tolerance of the integration (scipy, DOP853) [-], 1e-14 to 0.1.
         atol: absolute tolerance of it [-], in m, rad, m/s and rad/s, 1e-16 to 0.1.
-        output_step: largest spacing of the returned samples [s], 1e-9 to 1e6 and at most the duration; None stands for
+        output_step: largest spacing of the returned samples [s], 1e-9 to 1e6 and at most the duration; None means
             0.5 ms. They are evenly spaced, and the last is the end of the run.
 
     Returns:

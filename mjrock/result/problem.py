@@ -96,7 +96,7 @@ class MasonryProblem:
 
 
 Problem = WallProblem | MasonryProblem
-"""A case with what stands in it, what happens to it, and what is read from its motion."""
+"""A case with its structure, what happens to it, and what is read from its motion."""
 
 
 def problem_of(case: AnyCase, contacts: Contacts | None = None) -> Problem:
@@ -122,7 +122,7 @@ def scene_of(case: AnyCase, contacts: Contacts | None = None, method: Method = M
     """The scene of a case: a wall on its contacts, or masonry, which has joints of its own.
 
     Raises:
-        ValueError: if the contacts do not fit the case, or what stands in it falls under its weight.
+        ValueError: if the contacts do not fit the case, or its structure falls under its weight.
     """
     return problem_of(case, contacts).scene(method)
 

@@ -42,7 +42,7 @@ class UnreadableError(ValueError):
 
 @dataclasses.dataclass(frozen=True)
 class NotKept:
-    """What stands in the place of a value that a file cannot hold, such as a function. It cannot be called.
+    """The substitute for a value that a file cannot hold, such as a function. It cannot be called.
 
     Args:
         what: the value in words.

@@ -1,1 +1,1 @@
-"""What stands, as every solver of many bodies takes it: the scene, its equilibrium, and the course of a run."""
+"""The structure as every solver of many bodies takes it: the scene, its equilibrium, and the course of a run."""

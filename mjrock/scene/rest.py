@@ -38,7 +38,7 @@ LEANING = 1e-6
 ROTATION_OF_FALLEN, WAY_OF_FALLEN = 0.5, 1e2
 """Rotation [rad], and displacement in radii of inertia, beyond which a body no longer stands."""
 NEGLIGIBLE_STIFFNESS = 1e-12
-"""Negative stiffness that is put down to rounding, over the largest [-]."""
+"""Negative stiffness that counts as rounding, over the largest [-]."""
 LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 1e-12, 1.0
 """Stiffness that is lent to every motion in the search, over the largest [-]: at the start, the least of it, and that
 beyond which a search ends, since the bodies hardly move any more. Searches that find a pose lend less than 1e-5."""

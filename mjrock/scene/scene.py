@@ -1,4 +1,4 @@
-"""The scene: one flat description of what stands, for any number of bodies.
+"""The scene: one flat description of a structure, for any number of bodies.
 
 Everything lies in a plane, x horizontal and z upwards, or stands in space, with y along the facade. Vectors have d = 2
 or 3 numbers, poses of a body nq = 3 or 7, and velocities nv = 3 or 6, see `mjrock.geometry.frames`. At rest no body is

@@ -51,7 +51,7 @@ def solve_analytical(
         e: the coefficients of restitution, or those from which each impact draws its own.
         rtol: error of the integration, about, over alpha in a fall from alpha/2 [-], 1e-14 to 0.1. It sets the
             longest step.
-        output_step: largest spacing of the returned samples [s], 1e-9 to 1e6 and at most the duration; None stands for
+        output_step: largest spacing of the returned samples [s], 1e-9 to 1e6 and at most the duration; None means
             1 ms. They are evenly spaced, and the last is the end of the run.
         rest: smallest rebound that is still followed, as a share of the energy of release [-], 1e-30 to 0.1.
 

@@ -56,7 +56,7 @@ class PlainEngine:
 
     Args:
         model, data: of MuJoCo.
-        scene, pieces, pairs: what stands.
+        scene, pieces, pairs: the structure.
         supports: fixed blocks that are moved, in the order of their bodies.
     """
 

@@ -89,7 +89,7 @@ class Piece:
 
 
 def pieces_of(scene: Scene) -> list[Piece]:
-    """The pieces of a scene: those of its bodies in their order, and then what stands fixed."""
+    """The pieces of a scene: those of its bodies in their order, and then the fixed ones."""
     solids = sorted(scene.standing.solids, key=lambda solid: solid.fixed)
     return [piece for solid in solids for piece in _of_solid(solid, scene)]
 

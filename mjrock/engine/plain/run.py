@@ -54,7 +54,7 @@ class PlainModel:
     """A case as a plain model.
 
     Args:
-        problem, scene, course: the problem, what stands, and what happens to it.
+        problem, scene, course: the problem, the structure, and what happens to it.
     """
 
     problem: Problem

@@ -49,7 +49,7 @@ VISUAL = (
 )
 """Half the width of what casts shadows and the depth of what is seen, over half the extent."""
 PLASTER = (0.85, 0.82, 0.76, 1)
-"""Colour of what stands fixed."""
+"""Colour of fixed blocks and the ground."""
 SUPPORT_MASS = 1e12
 """Mass of a fixed block that is moved: nothing on it moves it [kg]."""
 ROUNDING = 1e-15
@@ -84,7 +84,7 @@ def plain_text(
     body before them where there are several; the keyframe `release`; the camera `front`.
 
     Args:
-        scene, pieces, pairs: what stands.
+        scene, pieces, pairs: the structure.
         timestep: MuJoCo's step [s].
         keyframe: of the release, as MuJoCo keeps it: qpos, qvel and the state of ties.
         moved: names of fixed blocks that are moved. Each is a body whose frame is that of the world at rest.
@@ -127,7 +127,7 @@ def plain_text(
 
 
 def _sun(middle: NDArray[np.float64], half: float) -> str:
-    """A light from far above, whose shadows end beyond what stands around the middle."""
+    """A light from far above, whose shadows end beyond the structure around the middle."""
     place = np.round(middle - 6 * half * np.array(SUN), 1)
     colours = {"ambient": np.full(3, 0.15), "diffuse": (0.6, 0.6, 0.57)}
     return element("light", name="sun", directional="true", pos=place, dir=SUN, **colours)
@@ -199,14 +199,14 @@ def _pairs(pieces: list[Piece], pairs: Pairs, laws: list[dict[str, object]]) -> 
 
 
 def _apart(moved: tuple[str, ...]) -> Iterator[str]:
-    """What stands fixed does not meet what is moved."""
+    """Fixed geoms do not collide with blocks that are moved."""
     for i, name in enumerate(moved):
         for other in ("world", *moved[:i]):
             yield element("exclude", body1=other, body2=name)
 
 
 def _world(scene: Scene, pieces: list[Piece], moved: tuple[str, ...]) -> Iterator[str]:
-    """What stands fixed, fixed blocks that are moved, and the bodies."""
+    """Fixed geoms, fixed blocks that are moved, and the bodies."""
     for piece in pieces:
         if piece.body == GROUND and piece.block not in moved:
             yield _geom(piece, rgba=PLASTER)
