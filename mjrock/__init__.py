@@ -104,10 +104,11 @@ if TYPE_CHECKING:
     from .study.intensity.rocking_spectrum import RockingSpectrum, rocking_spectrum
     from .study.intensity.thresholds import Island, Thresholds, thresholds
     from .study.loading.code import Code
-    from .study.loading.code_check import DynamicCheck, MechanismCheck, dynamic_check, mechanism_check
     from .study.loading.design import Design, design
+    from .study.loading.dynamic_check import DynamicCheck, dynamic_check
     from .study.loading.limit_analysis import LimitCurve, collapse_multiplier, limit_curve
     from .study.loading.load_check import LoadCheck, load_check
+    from .study.loading.mechanism_check import MechanismCheck, mechanism_check
     from .study.loading.push import Push, push
     from .study.loading.pushover import pushover
     from .study.matching.calibration import Plan, calibrate

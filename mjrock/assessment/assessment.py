@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..contacts.files import require_file, write_text
 from ..quantities import Message, require_path, require_text
 from ..result.response import Response
-from ..study.loading.code_check import DynamicCheck, MechanismCheck
 from ..study.loading.design import Design, design
+from ..study.loading.dynamic_check import DynamicCheck
+from ..study.loading.mechanism_check import MechanismCheck
 from .declarations import REQUIRED, Key, Maker, maker_of
 from .documents import UnwrittenError, mechanism_table, values_of
 from .mechanisms import Mechanism, mechanisms_of

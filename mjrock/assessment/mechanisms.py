@@ -16,17 +16,11 @@ from ..problem.wall.case import Case
 from ..quantities import Implausible, Message, reason, warn_of
 from ..result.response import Response
 from ..study.loading.code import USUAL_CODE, code_of
-from ..study.loading.code_check import (
-    Checked,
-    Demand,
-    DynamicCheck,
-    MechanismCheck,
-    case_of,
-    dynamic_check,
-    mechanism_check,
-    required_demands,
-)
+from ..study.loading.demand import Demand, required_demands
+from ..study.loading.dynamic_check import DynamicCheck, dynamic_check
 from ..study.loading.limit_analysis import LimitCurve, limit_curve
+from ..study.loading.mechanism_check import MechanismCheck, mechanism_check
+from ..study.loading.mechanism_curve import Checked, case_of
 from .declarations import Makers, key_named, maker_of, makers_of
 from .reading import OWN_KEYS, Reader, RefusedError, caused
 from .running import Shaking, shaking_of

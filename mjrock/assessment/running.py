@@ -15,7 +15,7 @@ from ..problem.ground.record_sets import RecordSet, records_in
 from ..problem.ground.spectrum import SpectrumOfCode
 from ..problem.wall.block import Block
 from ..quantities import OneOf
-from ..study.loading.code_check import dynamic_check
+from ..study.loading.dynamic_check import dynamic_check
 from .declarations import Key, Maker, Makers, maker_of, makers_of
 from .reading import Reader
 from .tables import Table

@@ -12,7 +12,7 @@ from ..command_line import Answer, Status, complain, parser, ruled
 from ..contacts.files import aligned
 from ..reporting.texts import FOUND, Words, languages
 from ..reporting.verdicts import Mechanism, conditions, counted, ranked, required_checks, sentence_of
-from ..study.loading.code_check import MechanismCheck
+from ..study.loading.mechanism_check import MechanismCheck
 from .opened import FILE_HELP, MENDABLE, named_checks, opened
 
 HEADS = ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")

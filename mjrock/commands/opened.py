@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..assessment.assessment import Assessment, assessment_of_text, decoded, from_toml
 from ..reporting.texts import Words
 from ..reporting.verdicts import kind_of
-from ..study.loading.code_check import MechanismCheck
+from ..study.loading.mechanism_check import MechanismCheck
 
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a check does not need
     from ..study.analysis import Analysis

@@ -19,7 +19,7 @@ from ..reporting.verdicts import Mechanism as Verdicts
 from ..study.analysis import Analysis
 from ..study.campaign.campaign import completed
 from ..study.campaign.task import Row
-from ..study.loading.code_check import DynamicCheck
+from ..study.loading.dynamic_check import DynamicCheck
 from .check import table_of as conditions_of
 from .opened import FILE_HELP, INPUT, motion_of, opened, tasks_of
 

@@ -27,7 +27,7 @@ from ..problem.wall.effect import Effect, ReportItem
 from ..problem.wall.effects import constant_forces_of, named_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import GRAVITY, Array, declared
-from ..study.loading.code_check import Demand
+from ..study.loading.demand import Demand
 from ..study.loading.limit_analysis import LimitCurve
 from .pictures import Run, by_variant
 from .texts import BY_HAND, DASH, FOUND, GIVEN, LENGTH_DECIMALS, Words, effect_name, texts

@@ -25,9 +25,10 @@ from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from ..study.loading.code import code_of
-from ..study.loading.code_check import case_of, signals_of
 from ..study.loading.design import Design
+from ..study.loading.dynamic_check import signals_of
 from ..study.loading.load_check import Borne
+from ..study.loading.mechanism_curve import case_of
 from . import inputs, subject, verdicts
 from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf

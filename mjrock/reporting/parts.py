@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 from ..problem.masonry.case import AnyCase
-from ..study.loading.code_check import case_of
+from ..study.loading.mechanism_curve import case_of
 from . import verdicts
 from .drawings import OTHERS, drawn
 from .inputs import masonry_in

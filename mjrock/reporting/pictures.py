@@ -24,10 +24,10 @@ from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array
 from ..result.bodies import Moving
 from ..result.response import Response
-from ..study.loading.code_check import MechanismCheck
 from ..study.loading.design import Design
 from ..study.loading.limit_analysis import LimitCurve
 from ..study.loading.load_check import Borne
+from ..study.loading.mechanism_check import MechanismCheck
 from ..study.loading.pushover import PushoverCurve
 from .texts import DASH, Words, effect_name
 from .verdicts import Mechanism, condition, told_name

@@ -30,9 +30,10 @@ from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
 from ..study.intensity.fragility import Fragility
-from ..study.loading.code_check import case_of, d_0_of, displaced
+from ..study.loading.dynamic_check import d_0_of, displaced
 from ..study.loading.limit_analysis import LimitCurve
 from ..study.loading.load_check import Borne
+from ..study.loading.mechanism_curve import case_of
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from .inputs import of_header

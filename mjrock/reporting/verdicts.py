@@ -14,9 +14,11 @@ from ..problem.wall.effects import link_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import require_kind, require_text, shown
 from ..study.loading.code import OF_MECHANISM, Code
-from ..study.loading.code_check import METHODS, DynamicCheck, MechanismCheck, Step, Verdict
 from ..study.loading.design import Condition, Design
+from ..study.loading.dynamic_check import DynamicCheck
 from ..study.loading.load_check import Borne, LoadCheck, load_check
+from ..study.loading.mechanism_check import METHODS, MechanismCheck
+from ..study.loading.verdict import Step, Verdict
 from .markup import Markup, element, formula, table
 from .texts import DASH, FOUND, GIVEN, Words, effect_name
 

@@ -20,7 +20,9 @@ import mjrock as mr
 from mjrock.quantities import ratio_text, share_text
 from mjrock.reporting.markup import formula
 from mjrock.reporting.texts import DASH, FOUND, Words, languages, texts
-from mjrock.study.loading.code_check import LimitState, RunMaximum, Verdict, verdict_rows
+from mjrock.study.loading.dynamic_check import RunMaximum
+from mjrock.study.loading.mechanism_check import LimitState
+from mjrock.study.loading.verdict import Verdict, verdict_rows
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)])
 E = mr.Restitution.from_geometry(WALL)

@@ -11,9 +11,14 @@ import numpy as np
 from ...contacts.files import aligned
 from ...notebook import NotebookPicture
 from ...quantities import OneOf, is_iterable, listed, ratio_text, require_one_of, shown
-from .code_check import METHODS as KINEMATIC
-from .code_check import Checked, Demand, DynamicCheck, MechanismCheck, Verdict, mechanism_check, required_demands
+from .code import USUAL_CODE
+from .demand import Demand, required_demands
+from .dynamic_check import DynamicCheck
 from .load_check import Borne, LoadCheck, load_check
+from .mechanism_check import METHODS as KINEMATIC
+from .mechanism_check import MechanismCheck, mechanism_check
+from .mechanism_curve import Checked
+from .verdict import Verdict
 
 METHODS = *KINEMATIC, "dynamic"
 """The methods of a code whose conditions may count alone."""
@@ -210,7 +215,7 @@ def design(
     if not given:
         raise ValueError("values is empty; at least one is needed")
     if demand is not None and (isinstance(demand, bool) or not isinstance(demand, int | float)):
-        required_demands(demand, options.get("code"))
+        required_demands(demand, options.get("code", USUAL_CODE))
     if method is not None:
         require_one_of("method", method, METHODS)
     trials = tuple(replace(_tried(build, value, demand, options), method=method) for value in given)

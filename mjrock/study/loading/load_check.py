@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from ...problem.masonry.case import AnyCase
 from ...problem.masonry.limit.collapse import Collapse
 from ...quantities import require_kind, require_within
-from .code_check import Verdict, verdicts_of, warn_of_inner_edge
 from .limit_analysis import LimitCurve
+from .mechanism_curve import warn_of_inner_edge
 from .push import Push
 from .pushover import PushoverCurve
+from .verdict import Verdict, verdicts_of
 
 Borne = Collapse | LimitCurve | Push | PushoverCurve
 """What has a load that is borne."""

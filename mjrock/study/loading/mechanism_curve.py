@@ -1,0 +1,257 @@
+"""The curve of a mechanism that the kinematic check needs: of a wall that overturns or bends, or of masonry."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
+from ...problem.masonry.masonry import Masonry
+from ...problem.wall.bending import HorizontalBending, VerticalBending
+from ...problem.wall.case import Case
+from ...problem.wall.effect import Anchored
+from ...problem.wall.effects import link_effects
+from ...problem.wall.restoring_moment import moment_at_strength
+from ...problem.wall.wedge import Corner
+from ...quantities import GRAVITY, Array, Implausible, Message, warn_of
+from .code import Code
+from .limit_analysis import MOVED, WEAKER, LimitCurve, collapse_multiplier
+from .moving_part import MovingPart, multiplier_of
+from .pushover import falls_to_zero, pushover
+
+Checked = Case | Corner | VerticalBending | HorizontalBending | LimitCurve
+"""What a kinematic check takes."""
+
+
+def case_of(problem: Checked | AnyCase) -> AnyCase:
+    """The case that stands for a mechanism where it is run: of a corner its wall and masses, of a wall that bends the
+    wall, of a limit curve its masonry and effects."""
+    if isinstance(problem, Corner):
+        return problem.case
+    if isinstance(problem, VerticalBending | HorizontalBending):
+        return Case(problem.wall)
+    if isinstance(problem, LimitCurve):
+        assert problem.start.masonry is not None
+        return MasonryCase(problem.start.masonry, 1.0, effects=problem.effects)
+    return problem
+
+
+class MechanismCurve(NamedTuple):
+    """The spectral displacements of a mechanism with what it bears at each.
+
+    Args:
+        multiplier: along the curve [-], shape (n,).
+        d: spectral displacements [m], shape (n,), C8.7.1.4.
+        participation: e* [-], C8.7.1.5.
+        tied: multiplier that starts it with the ties at their strength [-]; None without ties.
+        yielding, breaking: displacement at which each tie yields and breaks [m], by name.
+        slack: multiplier that starts it with the ties slack [-], where it is not the first of the curve.
+        moving: names of the blocks that move.
+        ended: why the curve ends where something is borne; empty where nothing is.
+    """
+
+    multiplier: Array
+    d: Array
+    participation: float
+    tied: float | None = None
+    yielding: Mapping[str, float] = MappingProxyType({})
+    breaking: Mapping[str, float] = MappingProxyType({})
+    slack: float | None = None
+    moving: tuple[str, ...] = ()
+    ended: str = ""
+
+
+def curve_of(case: Checked, code: Code) -> MechanismCurve:
+    """The curve of the mechanism of a case, a corner, a bending or a limit curve."""
+    if isinstance(case, VerticalBending | HorizontalBending):
+        return _of_bending(case)
+    if isinstance(case, LimitCurve):
+        return _of_blocks(case, code)
+    return _of_wall(cast(Case, case_of(case)), code)
+
+
+def _of_bending(bending: VerticalBending | HorizontalBending) -> MechanismCurve:
+    """A wall between floors or side walls. The curve is that of the common centroid, and d is its displacement over e*
+    then, by C8.7.1.4 and C8.7.1.5."""
+    curve, participation = bending.curve, bending.participation
+    return MechanismCurve(curve.multiplier, curve.displacement / participation, participation)
+
+
+class PartCurve(NamedTuple):
+    """The curve of the part of masonry that moves, up to where nothing is borne or the curve ends.
+
+    Args:
+        part: what moves.
+        masonry: it and the rest.
+        displacement: of its centroid [m], shape (n,).
+        multiplier: [-], shape (n,), zero at the last where nothing is borne.
+        along: displacement of the limit curve at each [m], shape (n,).
+    """
+
+    part: MovingPart
+    masonry: Masonry
+    displacement: Array
+    multiplier: Array
+    along: Array
+
+    @classmethod
+    def of(cls, name: str, curve: LimitCurve) -> PartCurve:
+        """That of a limit curve; a ValueError with its name says if it bears nothing or has been ended."""
+        masonry, borne = curve.start.masonry, curve.multiplier
+        if curve.start.loads:
+            raise ValueError(f"{name} = {curve!r} has loads; the check is of a horizontal force: give them as effects")
+        if masonry is None or not curve.start.moving or not borne[0] > 0:
+            raise ValueError(f"{name} = {curve!r} has no mechanism: nothing gives way, or nothing is borne")
+        part = MovingPart.of(curve.start, masonry, curve.effects)
+        moved, along = part.displacement(masonry, curve.pose), curve.displacement
+        if borne[-1] > 0:
+            return cls(part, masonry, moved, borne, along)
+        last = int(np.flatnonzero(borne <= 0)[0])
+        ends = (falls_to_zero(path[: last + 1], borne[: last + 1]) for path in (moved, along))
+        moved, along = (np.append(path[:last], end) for path, end in zip((moved, along), ends, strict=True))
+        return cls(part, masonry, moved, np.append(borne[:last], 0.0), along)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it goes on until nothing is borne."""
+        return bool(self.multiplier[-1] == 0)
+
+
+def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
+    """Masonry of blocks, up to where nothing is borne, or where the mechanism cannot go on."""
+    found = PartCurve.of("case", curve)
+    part, d = found.part, found.displacement / found.part.participation
+    alpha_0 = multiplier_of(curve.start, found.masonry, curve.effects)
+    if not found.is_whole:
+        _require_some(curve, float(d[-1]), alpha_0, part.participation)
+    pulled = any(link.law.holds for link in link_effects(curve.effects).values())
+    yielding, breaking = (
+        {tie: float(np.interp(at, found.along, d)) for tie, at in of.items() if at <= found.along[-1]}
+        for of in curve.ties
+    )
+    last, rule = list(code.states.items())[-1]
+    capacity = rule.share * float(d[-1])
+    if _stands_by_ties(curve, found.masonry, int(np.searchsorted(d, capacity))):
+        _warn_of_ties(link_effects(curve.effects), f"d_{last}", capacity, None, breaking)
+    return MechanismCurve(
+        found.multiplier,
+        d,
+        part.participation,
+        float(found.multiplier[0]) if pulled else None,
+        yielding,
+        breaking,
+        alpha_0,
+        part.names,
+        "" if found.is_whole else curve.ended,
+    )
+
+
+def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: float) -> None:
+    """Warn of a curve that ends at d [m] while something is borne; a ValueError says if that is where it begins."""
+    if curve.ended.startswith(MOVED):
+        raise ValueError(Message("case = {curve!r} was ended where something is borne; leave out to", curve=curve))
+    if d <= 0:
+        raise ValueError(
+            Message(
+                "case = {curve!r} ends as it begins. Of it the linear check alone can be made, with alpha_0 = "
+                "{alpha_0:.4g} and e* = {participation:.4g}; check the limit states by runs, "
+                "dynamic_check(runs, curve=push(masonry, direction, to))",
+                curve=curve,
+                alpha_0=alpha_0,
+                participation=participation,
+            )
+        )
+    warn_of(
+        Message(
+            "case ends at d = {d:.4g} m, where {multiplier:.4g} of the weight is borne: {ended}; the check "
+            "takes that for d_0, and counts nothing beyond",
+            d=d,
+            multiplier=curve.multiplier[-1],
+            ended=curve.ended,
+        ),
+        Implausible,
+    )
+
+
+def _of_wall(case: Case, code: Code) -> MechanismCurve:
+    """A wall that overturns, with its ties; ValueError if they hold it for good."""
+    require_wall("case", case, "mr.limit_curve(masonry, direction)")
+    curve = pushover(case)
+    if not math.isfinite(curve.end):
+        raise ValueError(
+            Message("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
+        )
+    warn_of_inner_edge(case, float(curve.multiplier[0]))
+    wall = case.wall
+    weights, heights = _masses(case)
+    first, second = float(weights @ heights), float(weights @ heights**2)
+    moved = wall.pose(curve.rotation)[:, 0]  # of the control point, the centroid
+    d = moved * second / (wall.centroid_height * first)
+    alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
+    yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
+    last, rule = list(code.states.items())[-1]
+    _warn_of_ties(case.springs, f"d_{last}", rule.share * float(d[-1]), alone, breaking)
+    tied = None
+    if case.pulls:
+        tied = float(curve.multiplier[0]) + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
+    return MechanismCurve(curve.multiplier, d, first**2 / (float(weights.sum()) * second), tied, yielding, breaking)
+
+
+def warn_of_inner_edge(case: Case, outwards: float) -> None:
+    """Warn of a wall that is free both ways and starts inwards at a lower multiplier than it bears outwards [-]."""
+    inner = case.restoring.inner.P / (case.wall.weight * case.wall.centroid_height)
+    if case.lopsided and inner < (1 - WEAKER) * outwards:
+        warn_of(
+            Message(
+                "case has side_stop=False, and the check is of the way outwards, with {outwards:.4g} g; inwards "
+                "the wall starts at {inner:.4g} g: check that way too, with the mirrored wall: the other plumb, "
+                "offsets and forces with the other sign",
+                outwards=outwards,
+                inner=inner,
+            ),
+            Implausible,
+        )
+
+
+def _warn_of_ties(
+    springs: Mapping[str, Anchored], name: str, capacity: float, alone: float | None, breaking: Mapping[str, float]
+) -> None:
+    """Warn of ties that still hold at the largest capacity [m], d_SLC of NTC 2018, where they raise it above the
+    displacement `alone` at which the curve without ties ends [m]; None where that is known to be less. `breaking` has
+    the displacement at which ties break [m]."""
+    holding = [
+        f"{name} (ultimate = {f'{tie.law.ultimate:g} m' if tie.law.ultimate < math.inf else None})"
+        for name, tie in springs.items()
+        if breaking.get(name, math.inf) > capacity
+    ]
+    if holding and (alone is None or capacity > alone):
+        still = "{holding} would still hold there; say by `ultimate` how far a tie can be drawn out [m]"
+        beyond = "{name} = {capacity:.3g} m is more than {alone:.3g} m, at which the curve without ties ends: {still}"
+        ended = "{name} = {capacity:.3g} m lies where the curve without ties has ended: {still}"
+        values = {"name": name, "capacity": capacity, "still": Message(still, holding=", ".join(holding))}
+        warn_of(Message(ended, **values) if alone is None else Message(beyond, alone=alone, **values), Implausible)
+
+
+def _stands_by_ties(curve: LimitCurve, masonry: Masonry, at: int) -> bool:
+    """Whether masonry in a pose of its limit curve bears nothing without its ties."""
+    if not (springs := link_effects(curve.effects)):
+        return False
+    others = [effect for effect in curve.effects if effect not in springs.values()]
+    push = curve.start.direction
+    way = push[:2] if masonry.in_space else float(push[0])
+    try:
+        return collapse_multiplier(masonry, way, effects=others, pose=curve.pose[at]).multiplier <= 0
+    except ValueError:
+        return False
+
+
+def _masses(case: Case) -> tuple[Array, Array]:
+    """Weights [N] and heights [m] of the wall and of the masses that the case adds to it."""
+    added = [effect for effect in case.effects if effect.mass_added]
+    weights = [case.block.mass, *(effect.mass_added for effect in added)]
+    heights = [case.block.centroid_height, *(effect.height for effect in added)]
+    return GRAVITY * np.array(weights), np.array(heights)
