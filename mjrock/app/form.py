@@ -127,14 +127,14 @@ class Plan:
         if not control or (control == "table" and types - {"boolean"}):
             control = self._control(key, plain, types, bool(choices))
         number = next((one for one in plain if "unit" in one or "minimum" in one), {})
-        said = _without_range(str(node.get("description", "")), number)
-        help = said if self.words.language == WRITTEN_IN else self._help(key, place)
+        text = _without_range(str(node.get("description", "")), number)
+        help = text if self.words.language == WRITTEN_IN else self._help(key, place)
         return Field(
             key,
             self._label(key, place),
             help,
             control,
-            english="" if help else said,
+            english="" if help else text,
             unit=_unit(number),
             range=self._range(number),
             default=self._default(node),
@@ -254,8 +254,8 @@ class Plan:
 
     def _variant_label(self, title: str, names: Mapping[str, str]) -> str:
         kind, make = names.get("solver") or names.get("kind", title.partition(".")[0]), names.get("make", "")
-        said = self.words.or_else(f"table_{kind}", kind)
-        return f"{said}: {self.words.or_else(f'make_{make}', make.replace('_', ' '))}" if make else said
+        label = self.words.or_else(f"table_{kind}", kind)
+        return f"{label}: {self.words.or_else(f'make_{make}', make.replace('_', ' '))}" if make else label
 
     def field(self, fields: list[Field], key: str) -> Field | None:
         """The field of a key; None where there is none."""
@@ -358,13 +358,13 @@ def _unit(node: Schema) -> str:
     return unit.replace("m3", "m\u00b3").replace("m2", "m\u00b2").replace("s2", "s\u00b2").replace(" ", "\u00b7")
 
 
-def _without_range(said: str, node: Schema) -> str:
+def _without_range(text: str, node: Schema) -> str:
     """A description without the range that the schema has too."""
 
     def repeats(found: re.Match[str]) -> bool:
         return float(found[1]) == node.get("minimum") and node.get("maximum", float(found[2])) == float(found[2])
 
-    return ENDS.sub(lambda found: (", " if found["and"] else "") if repeats(found) else found[0], said)
+    return ENDS.sub(lambda found: (", " if found["and"] else "") if repeats(found) else found[0], text)
 
 
 def _is_number(value: object) -> bool:

@@ -188,8 +188,8 @@ class Handler(BaseHTTPRequestHandler):
         if not (length.isascii() and length.isdigit()) or not kind.startswith("application/json"):
             self._refuse(HTTPStatus.BAD_REQUEST, "the request is not JSON with a Content-Length")
         elif int(length) > LARGEST:
-            said = f"the request has {int(length) / 2**20:.0f} MB; at most {LARGEST / 2**20:.0f} MB are read"
-            self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, said)
+            message = f"the request has {int(length) / 2**20:.0f} MB; at most {LARGEST / 2**20:.0f} MB are read"
+            self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, message)
         else:
             with contextlib.suppress(ValueError, RecursionError):
                 request = json.loads(self.rfile.read(int(length)))

@@ -33,7 +33,7 @@ from ..plotting.browser import view
 from ..quantities import Message, brief, reason, require_kind, shown
 from ..reporting.drawings import drawn
 from ..reporting.markup import Markup, element
-from ..reporting.page import Asked, every_run, outcomes, required_runs
+from ..reporting.page import Request, every_run, outcomes, required_runs
 from ..reporting.parts import parts_of
 from ..reporting.subject import reported
 from ..reporting.texts import FOUND, Words, languages
@@ -166,8 +166,8 @@ class Sender:
         self.last = now
         part = progress.done / progress.total if progress.total else 0.0
         run = self.words("form_run_of", number=self.before + 1, count=self.count)
-        said = f"{run}: {self.words.number(progress.done, FOUND)} / {self.words.number(progress.total or 0.0, FOUND)} s"
-        self.send({"share": (self.before + part) / self.count, "what": said if progress.total else run})
+        text = f"{run}: {self.words.number(progress.done, FOUND)} / {self.words.number(progress.total or 0.0, FOUND)} s"
+        self.send({"share": (self.before + part) / self.count, "what": text if progress.total else run})
 
 
 def run(request: Mapping[str, Any], send: Send) -> None:
@@ -204,7 +204,7 @@ def dynamic(assessment: Assessment, responses: Mapping[str, Sequence[Response]],
 def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Markup]:
     """How many of the runs of a mechanism overturn, and a table of them."""
     case = responses[0].case
-    runs = required_runs(Asked(case, responses), words)
+    runs = required_runs(Request(case, responses), words)
     heading = [element("h3", name)] if name else []
     return [*heading, element("p", outcomes(runs, words)), *every_run(parts_of("", case, [], runs), words)]
 

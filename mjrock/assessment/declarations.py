@@ -160,14 +160,14 @@ def maker_of(call: Callable[..., Any], owner: type | None = None) -> Maker:
     parameters = inspect.signature(call).parameters.values()
     hints = hints_of(call)
     own: dict[str, Key] = {}
-    said = described(call)
+    docs = described(call)
     of_owner = {} if owner is None or call is owner else maker_of(owner).keys
     for one in parameters:
         if one.kind is one.VAR_KEYWORD:
             own |= {name: key for name, key in _options(hints.get(one.name), of_owner).items() if name not in own}
         elif one.kind is not one.VAR_POSITIONAL:
             default = REQUIRED if one.default is one.empty else one.default
-            doc = said.get(one.name, "")
+            doc = docs.get(one.name, "")
             if owner is not None and ((shared := AS_OF.search(doc)) or not doc):
                 doc = _as_of(owner, shared[1] if shared else "", one.name) or doc
             key = Key(one.name, hints.get(one.name, Any), default, doc)

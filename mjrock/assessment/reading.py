@@ -107,8 +107,8 @@ class Reader:
                 continue
         for key in maker.missing({*arguments, *(keys[name].name for name in keys.keys() & table.values.keys())}):
             values = {"name": key_named(key), "due": spelt_kinds(key.kinds, key.within)}
-            said = Message("{place} has no {name}; it takes {due}", place=spelt_place(table.place), **values)
-            self.refuse(table.place, said)
+            message = Message("{place} has no {name}; it takes {due}", place=spelt_place(table.place), **values)
+            self.refuse(table.place, message)
         if len(self.faults) > before:
             raise RefusedError
         return arguments | self._expanded(table, arguments)
@@ -198,8 +198,8 @@ class Reader:
         if not is_path(kinds):
             return value
         if self.folder is None:
-            said = "{place} = {value} is the path of a file, and these tables are in none"
-            raise self.refusal(place, said, value=brief(value))
+            message = "{place} = {value} is the path of a file, and these tables are in none"
+            raise self.refusal(place, message, value=brief(value))
         path = self.folder / value
         if self.confined and not path.resolve().is_relative_to(self.folder.resolve()):
             raise self.refusal(place, "{place} = {value} leads out of the folder of the files", value=brief(value))

@@ -26,8 +26,8 @@ def table_of(mechanisms: Sequence[Mechanism], words: Words) -> str:
     for mechanism in order:
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([mechanism.name * (i == 0), *conditions(verdict, words)])
-    said = sentence_of(order[0], "lead_governs" if order[1:] else "lead_alone", words)
-    return "\n".join([*ruled(rows, "<<<>>><<"), "", " ".join([said.start, said.end, *counted(order, words)])])
+    sentence = sentence_of(order[0], "lead_governs" if order[1:] else "lead_alone", words)
+    return "\n".join([*ruled(rows, "<<<>>><<"), "", " ".join([sentence.start, sentence.end, *counted(order, words)])])
 
 
 def steps_of(check: MechanismCheck, words: Words) -> list[str]:

@@ -47,8 +47,8 @@ def drawn(case: Case, responses: Sequence[Response], title: str) -> Figure:
     for impact in theory.impacts:
         if impact.energy_before > LEAST * theory.energy[0]:
             at = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
-            said = f"$|e|$ = {abs(impact.restitution):.2f}"
-            below.annotate(said, at, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6)
+            text = f"$|e|$ = {abs(impact.restitution):.2f}"
+            below.annotate(text, at, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6)
     inset = above.inset_axes((0.72, 0.16, 0.28, 0.82))
     section(inset, case)
     inset.axis("off")

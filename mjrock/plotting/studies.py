@@ -447,7 +447,7 @@ def design(ax: Axes, found: Design) -> Axes:
     lines = dict[str, list[tuple[float, float]]]()
     for place, trial in zip(places, found.trials, strict=True):
         for condition in trial.conditions:
-            lines.setdefault(condition.said, []).append((place, condition.verdict.ratio))
+            lines.setdefault(condition.label, []).append((place, condition.verdict.ratio))
     for number, (said, points) in enumerate(lines.items()):
         marker = "osD^vP*X"[number % 8]
         ax.plot(*np.transpose(points), marker=marker, markersize=5, linewidth=1.3, label=said)

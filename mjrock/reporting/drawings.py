@@ -141,8 +141,8 @@ def _between_floors(ax: Axes, bending: VerticalBending, words: Words) -> None:
     bears = left + (bending.lever if bending.bearing is not None else 0.5 * (right - left))
     _arrow(ax, (bears, h), (0, -1), 0.15 * h)
     _note(ax, f"{words('in_load')} {words.quantity(bending.load, 'N', FOUND)}", (bears, 1.1 * h))
-    said = f"{words('in_crack_height')} {words.quantity(crack, 'm', FOUND)}"
-    _note(ax, said, (right + SWAY * h, crack))
+    text = f"{words('in_crack_height')} {words.quantity(crack, 'm', FOUND)}"
+    _note(ax, text, (right + SWAY * h, crack))
     for z in (0.0, h):
         ax.plot([left - 0.1 * h, right], [z, z], color="0.3", linewidth=2.0, zorder=1)
     ax.set_title(words("section"), fontsize=SMALL, loc="left")
@@ -160,6 +160,6 @@ def _between_sides(ax: Axes, bending: HorizontalBending, words: Words) -> None:
         _arrow(ax, (x, -0.5 * t), (sign, 0), 0.12 * length)
         ax.plot([x, x], [1.5 * t, -1.5 * t], color="0.3", linewidth=2.0, zorder=1)
     _note(ax, words.quantity(bending.thrust, "N", FOUND), (-0.12 * length, -0.5 * t), (0, 10))
-    said = f"{words('in_crack')} {words.quantity(crack, 'm', FOUND)}"
-    _note(ax, said, (crack, -t - SWAY * length), (0, -8))
+    text = f"{words('in_crack')} {words.quantity(crack, 'm', FOUND)}"
+    _note(ax, text, (crack, -t - SWAY * length), (0, -8))
     ax.set_title(words("plan"), fontsize=SMALL, loc="left")

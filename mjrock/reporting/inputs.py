@@ -31,7 +31,7 @@ from ..study.loading.demand import Demand
 from ..study.loading.limit_analysis import LimitCurve
 from .pictures import Run, by_variant
 from .texts import BY_HAND, DASH, FOUND, GIVEN, LENGTH_DECIMALS, Words, effect_name, texts
-from .verdicts import REVERSED, Mechanism, told_name
+from .verdicts import REVERSED, Mechanism, effect_label
 
 LISTED = 60
 """Most blocks, and most joints, that stand in a table of the report. More of them stand in a file beside it."""
@@ -178,15 +178,15 @@ def of_corner(corner: Corner, words: Words) -> list[Input]:
     sizes = ((key, getattr(corner, key), one.within.unit) for key, one in declared(Corner).items())
     effects = of_effects(corner.effects, words)
     ties = {f"tie_{i}" for i in range(len(corner.effects))}
-    said = [one._replace(name=words("rods", name=one.name)) if one.key in ties else one for one in effects]
-    return [*_rows(sizes, words), *said]
+    named = [one._replace(name=words("rods", name=one.name)) if one.key in ties else one for one in effects]
+    return [*_rows(sizes, words), *named]
 
 
 def _rows(values: Iterable[tuple[str, float, str]], words: Words, *, computed: bool = False) -> list[Input]:
     """Numbers with their keys and units as inputs; those that are computed have fewer digits."""
     digits, rests = (FOUND, "computed") if computed else (GIVEN, "not_given")
-    said = ((key, words.quantity(value, unit, digits)) for key, value, unit in values)
-    return [Input(key, words(f"in_{key}"), value, rests) for key, value in said]
+    quantities = ((key, words.quantity(value, unit, digits)) for key, value, unit in values)
+    return [Input(key, words(f"in_{key}"), value, rests) for key, value in quantities]
 
 
 def of_block(block: Block, words: Words) -> list[Input]:
@@ -210,10 +210,10 @@ def of_block(block: Block, words: Words) -> list[Input]:
     for opening, count in Counter(block.openings).items():
         name = "round_opening" if opening.round else "opening"
         given = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}
-        said = [words("opening", **given)]
-        said += [words("opening_at", at=words.quantity(opening.at, "m"))] if opening.at is not None else []
-        said += [words("field_number", value=count)] if count > 1 else []
-        rows.append(Input(name, words(f"in_{name}"), ", ".join(said)))
+        parts = [words("opening", **given)]
+        parts += [words("opening_at", at=words.quantity(opening.at, "m"))] if opening.at is not None else []
+        parts += [words("field_number", value=count)] if count > 1 else []
+        rows.append(Input(name, words(f"in_{name}"), ", ".join(parts)))
     rows += [Input("mass", words("effect_mass"), described(mass, words)) for mass in block.masses]
     return rows
 
@@ -240,8 +240,8 @@ def of_masonry(masonry: Masonry, words: Words) -> list[Input]:
     free, fixed = len(masonry.free), len(masonry.blocks) - len(masonry.free)
     points = _span(masonry.table.points.astype(float), "", words)
     return [
-        Input("blocks", words("in_blocks"), words("blocks_said", free=free, fixed=fixed)),
-        Input("joints", words("in_joints"), words("joints_said", count=len(masonry.joints), points=points)),
+        Input("blocks", words("in_blocks"), words("blocks_value", free=free, fixed=fixed)),
+        Input("joints", words("in_joints"), words("joints_value", count=len(masonry.joints), points=points)),
         Input("mass", words("in_mass"), words.quantity(mass, "kg", FOUND), "computed"),
         Input("k_n", words("in_k_n"), _span(masonry.joint_stiffness, "N/m3", words)),
         Input("k_s", words("in_k_s"), _span(masonry.joint_shear, "N/m3", words)),
@@ -256,7 +256,7 @@ def _of_pairs(masonry: Masonry, words: Words) -> str:
     dry = masonry.pairs
     if not isinstance(dry, Dry):
         return words("pairs_listed")
-    return words("pairs_said", friction=words.number(dry.friction), xi=words.share(dry.xi))
+    return words("pairs_value", friction=words.number(dry.friction), xi=words.share(dry.xi))
 
 
 def of_masonry_case(case: MasonryCase, words: Words) -> list[Input]:
@@ -295,8 +295,8 @@ def _growing(found: Collapse, words: Words) -> list[Input]:
     rows = []
     for block, load in found.loads.items():
         units = ["N"] * len(found.direction) + ["N m"] * len(load)
-        said = "; ".join(words.quantity(value, unit) for value, unit in zip(load, units, strict=False))
-        rows.append(Input(f"load_{block}", words("in_growing", block=block), said))
+        text = "; ".join(words.quantity(value, unit) for value, unit in zip(load, units, strict=False))
+        rows.append(Input(f"load_{block}", words("in_growing", block=block), text))
     return rows
 
 
@@ -312,8 +312,8 @@ def _span(values: Array, unit: str, words: Words, digits: int = GIVEN) -> str:
     low, high = (float(end) for end in (values.min(), values.max()))
     if np.isinf(low):
         return words("sticks")
-    said = [words.quantity(value, unit, digits) for value in (low, high)]
-    return said[0] if low == high else words("range", low=said[0], high=said[1])
+    ends = [words.quantity(value, unit, digits) for value in (low, high)]
+    return ends[0] if low == high else words("range", low=ends[0], high=ends[1])
 
 
 def listings(subject: Any, words: Words, written: Callable[[float], str]) -> list[Listing]:
@@ -383,7 +383,7 @@ def loads_in(subjects: Sequence[object], words: Words) -> list[str]:
     """The names of the loads on what a report is of, whose weight acts without mass."""
     found = [constant_forces_of(getattr(one, "effects", ())) for one in subjects]
     loads = {
-        told_name(name, effect, words): None
+        effect_label(name, effect, words): None
         for named in found
         for name, (effect, force) in named.items()
         if not any(force[:2]) and force[2] < 0 and effect.report_item is not None
@@ -396,8 +396,11 @@ def of_effects(effects: Sequence[Effect], words: Words, masonry: Masonry | None 
     named = named_effects(effects)
     others = [effect for effect in effects if effect not in named.values()]
     named |= {f"{effect.label}_{i}": effect for i, effect in enumerate(others)}
-    told = [(name, one.report_item, told_name(name, one, words)) for name, one in named.items()]
-    return [Input(name, said, described(effect, words, masonry)) for name, effect, said in told if effect is not None]
+    return [
+        Input(name, effect_label(name, one, words), described(one.report_item, words, masonry))
+        for name, one in named.items()
+        if one.report_item is not None
+    ]
 
 
 def described(effect: ReportItem, words: Words, masonry: Masonry | None = None) -> str:
@@ -408,7 +411,7 @@ def described(effect: ReportItem, words: Words, masonry: Masonry | None = None) 
     units = {name: "" if one.within.whole else one.within.unit for name, one in declared(kind).items()} | UNITS
     left_out = [name for name in ("prestress", "damping") if not getattr(effect, name, 1.0)]
     left_out += ["height", "offset"] if getattr(effect, "at", None) is not None else []
-    said = []
+    parts = []
     for field in dataclasses.fields(kind):
         value, names = getattr(effect, field.name), [f"field_{effect.label}_{field.name}", f"field_{field.name}"]
         names = [f"field_masonry_{field.name}"] * (masonry is not None) + names
@@ -416,14 +419,14 @@ def described(effect: ReportItem, words: Words, masonry: Masonry | None = None) 
         if not key or value is None or value == math.inf or field.name in left_out:
             continue
         if field.name in OF_BLOCKS:
-            said += [] if masonry is None else [words(key, value=masonry.names[value])]
+            parts += [] if masonry is None else [words(key, value=masonry.names[value])]
         elif isinstance(value, str):
-            said.append(words(key, value=words(f"word_{value}".replace(" ", "_"))))
+            parts.append(words(key, value=words(f"word_{value}".replace(" ", "_"))))
         elif isinstance(value, tuple):
-            said.append(words(key, value="; ".join(words.number(x) for x in value)))
+            parts.append(words(key, value="; ".join(words.number(x) for x in value)))
         else:
-            said.append(words(key, value=words.quantity(value, units.get(field.name, ""))))
-    return ", ".join(said)
+            parts.append(words(key, value=words.quantity(value, units.get(field.name, ""))))
+    return ", ".join(parts)
 
 
 def of_contacts(e: Restitution | None, contacts: Contacts | None, words: Words) -> list[Input]:
@@ -479,9 +482,9 @@ def of_demand(demand: Demand, words: Words) -> list[Input]:
         return _of_code(demand, words)
     if isinstance(demand, PointSpectrum):
         points = zip(demand.period.tolist(), demand.acceleration.tolist(), strict=True)
-        said = "; ".join(f"{words.quantity(T, 's')}: {words.quantity(a, 'm/s2')}" for T, a in points)
+        text = "; ".join(f"{words.quantity(T, 's')}: {words.quantity(a, 'm/s2')}" for T, a in points)
         return [
-            Input("points", words("in_points"), said),
+            Input("points", words("in_points"), text),
             Input("spectrum_damping", words("in_spectrum_damping"), words.share(demand.damping)),
         ]
     if isinstance(demand, GroundMotion):
@@ -502,25 +505,25 @@ def _of_code(spectrum: CodeSpectrum, words: Words) -> list[Input]:
     if spectrum.Tc is not None:
         rows += _rows((("Tc", spectrum.Tc, "s"),), words)
     for key in ("soil", "topography"):
-        if said := getattr(spectrum, key):
-            rows.append(Input(key, words(f"in_{key}"), said))
+        if value := getattr(spectrum, key):
+            rows.append(Input(key, words(f"in_{key}"), value))
     digits, rests = (GIVEN, "not_given") if spectrum.Tc is None else (BY_HAND, "computed")
     rows.append(Input("S", words("in_S"), words.number(spectrum.S, digits), rests))
     corners = (spectrum.TB, spectrum.TC, spectrum.TD, spectrum.TE)
-    said = "; ".join(words.quantity(T, "s", digits) for T in corners)
-    rows.append(Input("corners", words("in_corners"), said, rests))
+    text = "; ".join(words.quantity(T, "s", digits) for T in corners)
+    rows.append(Input("corners", words("in_corners"), text, rests))
     return [*rows, Input("spectrum_damping", words("in_spectrum_damping"), words.share(spectrum.damping))]
 
 
 def of_header(motion: GroundMotion, words: Words) -> list[Input]:
     """Where a motion comes from and what was made of it, as its header has it."""
-    said = [motion.header[key].replace("_", "") for key in MADE if motion.header.get(key)]
+    parts = [motion.header[key].replace("_", "") for key in MADE if motion.header.get(key)]
     if scaled := SCALED.fullmatch(motion.header.get("SCALED_TO", "")):
-        said.append(_scaled(scaled, words))
+        parts.append(_scaled(scaled, words))
     if modes := motion.header.get("FLOOR"):
         shorter = re.sub(r"\d+\.\d+", lambda found: words.number(float(found[0])), modes)
-        said.append(shorter.replace("_", ""))
-    return [Input("origin", words("in_origin"), "; ".join(said))] if said else []
+        parts.append(shorter.replace("_", ""))
+    return [Input("origin", words("in_origin"), "; ".join(parts))] if parts else []
 
 
 def _scaled(scaled: re.Match[str], words: Words) -> str:
@@ -530,9 +533,9 @@ def _scaled(scaled: re.Match[str], words: Words) -> str:
     if len(periods) <= ABREAST:
         over = ("; " if words.mark == "," else ", ").join(periods) + " s"
     target = scaled["target"].removesuffix(ON_A_FLOOR)
-    said = words("points_spectrum") if target == "spectrum of points" else words.marked(target.replace("m/s2", "m/s²"))
-    said = words("on_a_floor", name=said) if target != scaled["target"] else said
-    return words("scaled_to", target=said, factor=words.number(float(scaled["factor"])), periods=over)
+    text = words("points_spectrum") if target == "spectrum of points" else words.marked(target.replace("m/s2", "m/s²"))
+    text = words("on_a_floor", name=text) if target != scaled["target"] else text
+    return words("scaled_to", target=text, factor=words.number(float(scaled["factor"])), periods=over)
 
 
 def record_name(motion: GroundMotion, words: Words) -> str:

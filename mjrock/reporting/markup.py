@@ -96,8 +96,8 @@ def escaped(text: str) -> Markup:
 
 def element(tag: str, *parts: str, **attributes: str) -> Markup:
     """An element with its parts, which are escaped unless they are markup; `kind` is its class."""
-    said = "".join(f' {name.replace("kind", "class")}="{html.escape(value)}"' for name, value in attributes.items())
-    return Markup(f"<{tag}{said}>{''.join(escaped(part) for part in parts)}</{tag}>")
+    given = "".join(f' {name.replace("kind", "class")}="{html.escape(value)}"' for name, value in attributes.items())
+    return Markup(f"<{tag}{given}>{''.join(escaped(part) for part in parts)}</{tag}>")
 
 
 def listed(texts: Sequence[str]) -> Markup:
@@ -163,15 +163,15 @@ def picture(figure: Figure, caption: str, words: Words, *, own: bool = False) ->
     decimal mark. One of the user, `own`, keeps its points, its texts beside, and is left as it was."""
     texts = figure.findobj(Text)
     was = [text.get_text() for text in texts]
-    for text, said in zip(texts, was, strict=True):
-        text.set_text(words.drawn(said))
+    for text, content in zip(texts, was, strict=True):
+        text.set_text(words.drawn(content))
     if words.mark != "." and not own:
         _marked(figure, words)
     file = BytesIO()
     figure.savefig(file, format="png", dpi=170, metadata={"Software": None})
     if own:
-        for text, said in zip(texts, was, strict=True):
-            text.set_text(said)
+        for text, content in zip(texts, was, strict=True):
+            text.set_text(content)
     data = base64.b64encode(file.getvalue()).decode("ascii")
     image = Markup(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{data}">')
     return element("figure", image, element("figcaption", caption))
@@ -191,9 +191,9 @@ def _mark_ticks(axis: Axis, words: Words) -> None:
     """The same of the ticks of an axis that are numbers."""
     low, high = sorted(axis.get_view_interval())
     ticks = [tick for tick in axis.get_majorticklocs() if low <= tick <= high]
-    said = axis.get_major_formatter().format_ticks(ticks)
-    if any("." in one for one in said) and all(re.fullmatch(rf"[\d.{MINUS}]*", one) for one in said):
-        axis.set_ticks(ticks, labels=[words.marked(one) for one in said])
+    labels = axis.get_major_formatter().format_ticks(ticks)
+    if any("." in one for one in labels) and all(re.fullmatch(rf"[\d.{MINUS}]*", one) for one in labels):
+        axis.set_ticks(ticks, labels=[words.marked(one) for one in labels])
 
 
 def page(words: Words, title: str, project: str, version: str, parts: Sequence[Markup]) -> str:

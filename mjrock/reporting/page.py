@@ -84,7 +84,7 @@ def report(
         language: "en" or "it". Texts of yours stay as they are. `mjrock/reporting/texts.toml` has all others.
         basis: what inputs rest on, by their names in the program, such as {"density": "3 cores, 2024", "k_base": "E of
             the mortar 800 MPa, 30 mm"}.
-        notes: the question, the building, who asked.
+        notes: the question, the building, who request.
         sections: further sections, by their headings: each a text, a figure, a result of `collapse_multiplier`,
             `limit_curve`, `push`, `pushover` or `design`, one that has a table, as those of `sensitivity` and
             `compare`, a mapping of names to `Fragility` curves, or some of these.
@@ -107,7 +107,7 @@ def report(
     require_text("notes", notes, 100_000)
     own = words(f"kind_{verdicts.kind_of(case)}")
     mechanisms = required_checks(checks, own)
-    runs = required_runs(Asked(case, responses, labels, mechanisms, not (checks or sections)), words)
+    runs = required_runs(Request(case, responses, labels, mechanisms, not (checks or sections)), words)
     parts = parts_of(own, case, mechanisms, runs)
     kind = "several" if parts[1:] else verdicts.kind_of(parts[0].subjects[0].subject)
     head = words(f"title_{kind}") if title is None else require_text("title", title)
@@ -145,8 +145,8 @@ def report(
     return path
 
 
-class Asked(NamedTuple):
-    """What a report is asked for beside its checks.
+class Request(NamedTuple):
+    """What a report is request for beside its checks.
 
     Args:
         case: the wall or masonry.
@@ -162,10 +162,10 @@ class Asked(NamedTuple):
     bare: bool = False
 
 
-def required_runs(asked: Asked, words: Words) -> list[Run]:
+def required_runs(request: Request, words: Words) -> list[Run]:
     """The runs of the responses, each of what the case or a mechanism is of; TypeError or ValueError for others, or for
     none in a report without checks."""
-    _, responses, labels, _, bare = asked
+    _, responses, labels, _, bare = request
     if isinstance(responses, Mapping) and labels is not None:
         raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
     given: list[tuple[str, Response]] = []
@@ -177,7 +177,7 @@ def required_runs(asked: Asked, words: Words) -> list[Run]:
             raise TypeError(f"{name} = {shown(of)} is neither a Response nor a sequence of them")
         for i, response in enumerate(several):
             require_kind(f"{name}[{i}]", response, Response)
-            require_same(f"{name}[{i}]", response, asked)
+            require_same(f"{name}[{i}]", response, request)
         given += [(variant, response) for response in several]
     if not given and bare:
         raise ValueError("responses is empty; give responses, or checks or sections, of which a report may be alone")
@@ -212,11 +212,11 @@ def in_words(name: str, solver: str, words: Words) -> str:
     return known + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
 
 
-def require_same(name: str, response: Response, asked: Asked) -> None:
+def require_same(name: str, response: Response, request: Request) -> None:
     """Raise a ValueError for a response of another wall or of other masonry than the case and what is checked."""
-    subjects = [asked.case, *(one for mechanism in asked.mechanisms for one in mechanism.subjects)]
+    subjects = [request.case, *(one for mechanism in request.mechanisms for one in mechanism.subjects)]
     if not any(is_of(response.case, subject) for subject in subjects):
-        own, due = response.case.description, case_of(asked.case).description
+        own, due = response.case.description, case_of(request.case).description
         other = "other " if own == due else ""
         raise ValueError(f"{name} is of {own}, and the case of {other}{due}")
 
@@ -253,18 +253,18 @@ def answered(parts: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Me
     borne = any(mechanism.loads for mechanism in mechanisms)
     methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
     methods += [words("borne")] * borne
-    said = [*methods, *([outcomes(runs, words)] if runs else [])]
+    texts = [*methods, *([outcomes(runs, words)] if runs else [])]
     drawing = sketches(parts[0], parts, words)[:1] if len(parts) == 1 else []
-    return [element("h2", words("answer")), *found[:-1], *drawing, *found[-1:], *(element("p", one) for one in said)]
+    return [element("h2", words("answer")), *found[:-1], *drawing, *found[-1:], *(element("p", one) for one in texts)]
 
 
 def outcomes(runs: Sequence[Run], words: Words) -> str:
     """How many runs of each variant overturn."""
-    said = []
+    counts = []
     for variant, own in by_variant(runs).items():
         count = sum(run.largest == math.inf for run in own)
-        said.append(words("runs_overturn", name=variant or words("all_runs"), count=count, of=len(own)))
-    return f"{words('falls')} {'; '.join(said)}."
+        counts.append(words("runs_overturn", name=variant or words("all_runs"), count=count, of=len(own)))
+    return f"{words('falls')} {'; '.join(counts)}."
 
 
 def checked(wholes: Sequence[Part], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
@@ -275,7 +275,7 @@ def checked(wholes: Sequence[Part], mechanisms: Sequence[Mechanism], words: Word
     if any(drawings) or kinematic:
         codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
         parts += [element("h2", words("checks" if kinematic else "drawings"))]
-        parts += [element("p", said) for said in verdicts.sentences(codes, "kinematic", words)]
+        parts += [element("p", text) for text in verdicts.sentences(codes, "kinematic", words)]
     for one, drawing in zip(wholes, drawings, strict=True):
         parts += [*[element("h3", one.names)] * several, *drawing, *stepped(one.mechanisms, words)]
     if loaded := [(one.name, check.result) for one in mechanisms for check in one.loads]:
@@ -283,8 +283,8 @@ def checked(wholes: Sequence[Part], mechanisms: Sequence[Mechanism], words: Word
         parts += [part for name, result in loaded for part in of_borne(name, result, words)]
     if dynamic := verdicts.dynamic_steps(mechanisms, words):
         codes = verdicts.codes_of([one._replace(kinematic=None) for one in mechanisms], words.language)
-        said = verdicts.sentences(codes, "dynamic", words)
-        parts += [element("h2", words("dynamic")), *(element("p", one) for one in said), *dynamic]
+        texts = verdicts.sentences(codes, "dynamic", words)
+        parts += [element("h2", words("dynamic")), *(element("p", one) for one in texts), *dynamic]
     return parts
 
 
@@ -294,8 +294,8 @@ def stepped(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     if figure is None:
         return []
     cut = [(one.name, one.kinematic.d_0) for one in mechanisms if one.kinematic and one.kinematic.ended]
-    said = [element("p", words("curve_cut", name=name, d=words.quantity(d, "m", FOUND))) for name, d in cut]
-    return [picture(figure, words("curves_said"), words), *said, *verdicts.kinematic_steps(mechanisms, words)]
+    notes = [element("p", words("curve_cut", name=name, d=words.quantity(d, "m", FOUND))) for name, d in cut]
+    return [picture(figure, words("curves_caption"), words), *notes, *verdicts.kinematic_steps(mechanisms, words)]
 
 
 def shaken(parts: Sequence[Part], words: Words) -> list[Markup]:
@@ -316,15 +316,15 @@ def shaken_part(part: Part, words: Words) -> list[Markup]:
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     solved = subject.solved_with([run.response for run in runs], words)
-    found = [element("p", said) for said in solved]
+    found = [element("p", text) for text in solved]
     drawings = strips(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
     found += [picture(drawing, words(f"strip_{whole.KIND}"), words) for drawing in drawings]
     drawings = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
     count = len({run.record for run in runs})
-    said = words("histories_said", count=min(count, PANELS), of=count)
-    found += [picture(drawing, said, words) for drawing in drawings]
+    caption = words("histories_caption", count=min(count, PANELS), of=count)
+    found += [picture(drawing, caption, words) for drawing in drawings]
     end = whole.at_end(runs, words)
-    return found if end is None else [*found, picture(end, words("ends_said"), words)]
+    return found if end is None else [*found, picture(end, words("ends_caption"), words)]
 
 
 def judged(
@@ -339,7 +339,7 @@ def judged(
     if broken := subject.broken_ties(runs, words):
         parts.append(listed(broken))
     limits = [*verdicts.limits(mechanisms, words)]
-    limits += dict.fromkeys(said for part in wholes for said in part.whole.limits(part.runs, words))
+    limits += dict.fromkeys(text for part in wholes for text in part.whole.limits(part.runs, words))
     limits += [words("limit_load", names=words.named(loads))] if loads else []
     parts += [element("h2", words("limits")), listed(limits)]
     solvers = list(dict.fromkeys(run.response.solver for run in runs))
@@ -389,7 +389,7 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
             parts.append(element("p", piece))
         elif isinstance(piece, Design):
             parts += [
-                picture(design_drawn(piece, words), words("design_said"), words),
+                picture(design_drawn(piece, words), words("design_caption"), words),
                 *verdicts.designed(piece, words),
             ]
         elif isinstance(piece, Borne):

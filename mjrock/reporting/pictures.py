@@ -30,7 +30,7 @@ from ..study.loading.load_check import Borne
 from ..study.loading.mechanism_check import MechanismCheck
 from ..study.loading.pushover import PushoverCurve
 from .texts import DASH, Words, effect_name
-from .verdicts import Mechanism, condition, told_name
+from .verdicts import Mechanism, condition, effect_label
 
 WIDE = 7.0
 """Width of a picture [inch]."""
@@ -184,11 +184,11 @@ def _names(case: Case, words: Words) -> list[Name]:
     for name, effect in case.named.items():
         if effect.report_item is None:
             continue
-        said, z = words.marked(f"{told_name(name, effect, words)}, {effect.height:.4g} m"), effect.height
+        text, z = words.marked(f"{effect_label(name, effect, words)}, {effect.height:.4g} m"), effect.height
         inside = effect.on_face or len(effect.outline) > 0
         if len(effect.outline):  # below the crack of wedges there is room
-            z, said = 0.15 * z, fill(said, 12)
-        found.append(Name(said, (case.block.inner_face(z), z), inside, width_of(figure, said, SMALL)))
+            z, text = 0.15 * z, fill(text, 12)
+        found.append(Name(text, (case.block.inner_face(z), z), inside, width_of(figure, text, SMALL)))
     return found
 
 
@@ -221,16 +221,16 @@ def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | N
         ({"marker": "D", "linestyle": "", "color": FAILS}, words("demand_fails")),
     ]
     handles = [Line2D([], [], **look) for look, _ in marks]
-    legend_below(figure, handles, [said for _, said in marks], 4, fontsize=SMALL)
+    legend_below(figure, handles, [label for _, label in marks], 4, fontsize=SMALL)
     return figure
 
 
 def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
     """A capacity curve, the period of each limit state, its capacity on the curve, and the demand at its period."""
     ax.plot(check.d, check.a, color="#12406b", linewidth=1.8)
-    asked = [(2 * math.pi / state.period) ** 2 * state.demand for state in check.states.values()]
-    top = 1.15 * max(float(check.a.max()), *asked)
-    said: list[tuple[str, float, float]] = []
+    demands = [(2 * math.pi / state.period) ** 2 * state.demand for state in check.states.values()]
+    top = 1.15 * max(float(check.a.max()), *demands)
+    points: list[tuple[str, float, float]] = []
     for name, state in check.states.items():
         held = float(np.interp(state.capacity, check.d, check.a))
         stiff = (2 * math.pi / state.period) ** 2
@@ -239,10 +239,10 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
         colour = HOLDS if state.ratio >= 1 else FAILS
         ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
         ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
-        said += [(name, state.capacity, held), (name, state.demand, stiff * state.demand)]
+        points += [(name, state.capacity, held), (name, state.demand, stiff * state.demand)]
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
     ax.set(xlim=(0, 1.1 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
-    _write_beside(ax, [*said, ("d₀", check.d_0, 0.0)])
+    _write_beside(ax, [*points, ("d₀", check.d_0, 0.0)])
     small(ax)
 
 
@@ -296,8 +296,8 @@ def borne_drawn(result: Borne, words: Words) -> Figure | None:
             for tie, at in of.items():
                 held = float(np.interp(scale * at, x, y))
                 ax.plot(scale * at, held, marker, color=TIE, markersize=6, zorder=5)
-                said = words(key, name=effect_name(tie, words))
-                ax.annotate(said, (scale * at, held), (6, 4), **LABEL)
+                text = words(key, name=effect_name(tie, words))
+                ax.annotate(text, (scale * at, held), (6, 4), **LABEL)
     ax.set(xlabel=words(labels[0]), ylabel=words(labels[1]), ylim=(min(0.0, float(y.min())), 1.15 * float(y.max())))
     small(ax)
     return figure
@@ -307,7 +307,7 @@ def design_drawn(found: Design, words: Words) -> Figure:
     """Capacity over demand of every condition for each value that was tried."""
     figure = Figure(figsize=(WIDE, 3.0), layout="constrained")
     ax = design(figure.subplots(), found)
-    named = {one.said: condition(one, words) for trial in found.trials for one in trial.conditions}
+    named = {one.label: condition(one, words) for trial in found.trials for one in trial.conditions}
     for line in ax.get_lines():
         line.set_label(named.get(str(line.get_label()), line.get_label()))
     ax.set_xticks(ax.get_xticks(), [words.marked(label.get_text()) for label in ax.get_xticklabels()])
@@ -356,10 +356,10 @@ def _strip(
     ax.axvspan(1e3 * top, 1.12e3 * top, color="0.93", zorder=0)
     above: Look = {"transform": ax.get_xaxis_transform(), "fontsize": SMALL, "ha": "center", "va": "bottom"}
     ax.text(1.06e3 * top, 1.01, beyond, **above)
-    for said, limit in limits:
+    for label, limit in limits:
         ax.axvline(1e3 * limit, color="0.35", linewidth=0.9, linestyle="--", zorder=1)
         side = "right" if limit == max(one for _, one in limits) else "center"
-        ax.text(1e3 * limit, 1.01, said, **(above | {"ha": side}))
+        ax.text(1e3 * limit, 1.01, label, **(above | {"ha": side}))
     ax.set_yticks(range(len(rows)), labels=rows)
     ax.set(xlim=(0, 1.12e3 * top), ylim=(len(rows) - 0.4, -0.6), xlabel=words("axis_largest"))
     ax.grid(axis="y", color="0.92")
@@ -398,7 +398,7 @@ def _histories(
 ) -> Figure:
     """The panels of some records, in the scale of all runs."""
     lines = list(dict.fromkeys(run.line for run in runs))
-    told = len(lines) <= NAMED
+    few = len(lines) <= NAMED
     figure, axes = several(
         len(records), min(2, len(records)), (WIDE / min(2, len(records)), 1.32 if len(records) > 4 else 1.8)
     )
@@ -409,7 +409,7 @@ def _histories(
     for ax, record in zip(axes.flat, records, strict=False):
         for run, path in zip(runs, moved, strict=True):
             if run.record == record:
-                style = OWN[lines.index(run.line) % len(OWN)] if told else {"color": "0.4"}
+                style = OWN[lines.index(run.line) % len(OWN)] if few else {"color": "0.4"}
                 dash = ":" if run.turned else "-"
                 ax.plot(run.response.t, 1e3 * path, color=style["color"], linestyle=dash, linewidth=0.9)
                 name = run.line if run.motion == DASH else run.motion
@@ -422,7 +422,7 @@ def _histories(
     for ax in axes[-1]:
         ax.set_xlabel(words("axis_t"), fontsize=SMALL)
     figure.supylabel(words("axis_moved"), fontsize=SMALL)
-    if told:
+    if few:
         handles = [Line2D([], [], color=OWN[i % len(OWN)]["color"]) for i in range(len(lines))]
         legend_below(figure, handles, lines, 4, fontsize=SMALL)
     return figure

@@ -48,8 +48,14 @@ TALLEST_BLOCKS, OVER_BLOCKS = 3.6, 0.6
 """Most height of a picture of blocks, and that of its title and its axis [inch]."""
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
-ASKED = {"accuracy": ("", GIVEN), "timestep": ("s", FOUND), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
-"""Statistics of runs that a report names, with their units and their digits."""
+SETTINGS = {
+    "accuracy": ("", GIVEN),
+    "timestep": ("s", FOUND),
+    "rtol": ("", GIVEN),
+    "atol": ("", GIVEN),
+    "steps": ("", 9),
+}
+"""Statistics of runs that a report names, with their units and numbers of digits."""
 
 
 class Reported(Protocol):
@@ -119,8 +125,8 @@ class ReportedWall(Reported):
             return [words("outcome_overturned"), DASH, DASH, str(len(response.impacts))]
         limit = self.limit()
         share = words.number(largest / limit, FOUND) if limit else DASH
-        said = words.quantity(largest, "m", FOUND), share, str(len(response.impacts))
-        return [words(f"outcome_{response.outcome.name.lower()}"), *said]
+        cells = words.quantity(largest, "m", FOUND), share, str(len(response.impacts))
+        return [words(f"outcome_{response.outcome.name.lower()}"), *cells]
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
@@ -133,18 +139,18 @@ class ReportedWall(Reported):
             "limit_release": bool(runs) and not shaken,
             "limit_theory": {run.response.solver for run in runs} == {"analytical"},
         }
-        said = [words(key) for key, holds in applies.items() if holds]
+        found = [words(key) for key, holds in applies.items() if holds]
         still = [run for run in runs if run.response.outcome is Outcome.TIME_ENDED]
         if still:
-            said.append(words("limit_still_moves", count=len(still), of=len(runs)))
+            found.append(words("limit_still_moves", count=len(still), of=len(runs)))
         for run in runs:
             for tie, drawn in run.response.plastic.items():
                 effect = run.response.case.links[tie]
                 if overdrawn(effect, drawn):
                     name, d = effect_name(tie, words), words.quantity(drawn.elongation, "m", FOUND)
                     share = words.share(round(100 * drawn.elongation / effect.span) / 100)
-                    said.append(words("limit_overdrawn", run=run.label, tie=name, d=d, share=share))
-        return said
+                    found.append(words("limit_overdrawn", run=run.label, tie=name, d=d, share=share))
+        return found
 
     def by_hand(self, words: Words) -> list[tuple[str, ...]]:
         """Moments about the toe by which alpha_0 can be checked by hand: what they are, in kN m."""
@@ -207,12 +213,12 @@ class ReportedMasonry(Reported):
 
     def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
-        said = [words("limit_rigid_blocks"), *([words("limit_margin")] if runs else [])]
+        found = [words("limit_rigid_blocks"), *([words("limit_margin")] if runs else [])]
         if len({run.record for run in runs if run.response.case.motion is not None}) == 1:
-            said.append(words("limit_one_record"))
+            found.append(words("limit_one_record"))
         if runs and "explicit" not in {run.response.solver for run in runs}:
-            said.append(words("limit_faces"))
-        return said
+            found.append(words("limit_faces"))
+        return found
 
     def by_hand(self, words: Words) -> list[tuple[str, ...]]:
         """None."""
@@ -234,8 +240,8 @@ class ReportedMasonry(Reported):
         """The blocks as the runs with the largest motion end."""
         worst = sorted(runs, key=lambda run: -run.largest)[:ENDS]
         ends = [words.quantity(float(run.response.t[-1]), "s", FOUND) for run in worst]
-        said = [words("at_time", run=_polar(run, words), t=t) for run, t in zip(worst, ends, strict=True)]
-        return self._drawn([(run.response, text) for run, text in zip(worst, said, strict=True)])
+        titles = [words("at_time", run=_polar(run, words), t=t) for run, t in zip(worst, ends, strict=True)]
+        return self._drawn([(run.response, text) for run, text in zip(worst, titles, strict=True)])
 
     def _drawn(self, pieces: Sequence[tuple[Masonry | Response | Collapse, str]]) -> Figure:
         """Masonry at rest, in its mechanism, or as responses of it end, in panels with titles."""
@@ -289,20 +295,20 @@ def tied(response: Response, words: Words) -> list[str]:
     force = max(tie.largest_force for tie in ties.values())
     out = max(drawn.get(name, Plastic(0.0, 0.0)).elongation for name in ties)
     broke = min(tie.broken for tie in ties.values())
-    said = [words.quantity(force, "N", FOUND), words.quantity(out, "m", FOUND)]
-    return [*said, DASH if math.isinf(broke) else words.quantity(broke, "s", FOUND)]
+    cells = [words.quantity(force, "N", FOUND), words.quantity(out, "m", FOUND)]
+    return [*cells, DASH if math.isinf(broke) else words.quantity(broke, "s", FOUND)]
 
 
 def broken_ties(runs: Sequence[Run], words: Words) -> list[str]:
     """In how many runs ties broke, by variant."""
-    said = []
+    found = []
     for variant, own in by_variant(runs).items():
         broke = [min(tie.broken for tie in run.response.ties.values()) for run in own if run.response.ties]
         count = sum(math.isfinite(t) for t in broke)
         if count:
             name, first = variant or words("all_runs"), words.quantity(min(broke), "s", FOUND)
-            said.append(words("ties_broke", name=name, count=count, of=len(broke), t=first))
-    return said
+            found.append(words("ties_broke", name=name, count=count, of=len(broke), t=first))
+    return found
 
 
 def forces_kept(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
@@ -312,8 +318,8 @@ def forces_kept(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
         if run.response.kept_forces is not None:
             forces, normal = run.response.forces, run.response.forces.normal.max(axis=0)
             joint = int(normal.argmax())
-            said = [words.quantity(float(force), "N", FOUND) for force in (forces.largest_reaction, normal[joint])]
-            rows.append((_polar(run, words), *said, forces.joints[joint]))
+            cells = [words.quantity(float(force), "N", FOUND) for force in (forces.largest_reaction, normal[joint])]
+            rows.append((_polar(run, words), *cells, forces.joints[joint]))
     return rows
 
 
@@ -356,19 +362,19 @@ def of_motions(
 
 def solved_with(responses: Sequence[Response], words: Words) -> list[str]:
     """How the responses were solved, a sentence for each solver."""
-    said = []
+    found = []
     for solver in dict.fromkeys(response.solver for response in responses):
         own = [response for response in responses if response.solver == solver]
         given = [("duration", [response.case.duration for response in own], ("s", GIVEN))]
         given += [
-            (name, [run.stats[name] for run in own if run.stats.get(name)], shown) for name, shown in ASKED.items()
+            (name, [run.stats[name] for run in own if run.stats.get(name)], shown) for name, shown in SETTINGS.items()
         ]
-        asked = [
+        parts = [
             words(f"solved_{name}", value=_range(values, *shown, words)) for name, values, shown in given if values
         ]
         solved = words.or_else(f"solver_{solver}", solver)
-        said.append(words("solved", solver=solved, count=len(own), how=", ".join(asked)))
-    return said
+        found.append(words("solved", solver=solved, count=len(own), how=", ".join(parts)))
+    return found
 
 
 def _range(values: Sequence[float], unit: str, digits: int, words: Words) -> str:
@@ -402,6 +408,6 @@ def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
         "Python": platform.python_version(),
     }
     keys = "origin", "basis", "field", "validation", "results"
-    said = [(words(f"ntc_{key}"), words(f"ntc_{key}_said", version=__version__)) for key in keys]
+    rows = [(words(f"ntc_{key}"), words(f"ntc_{key}_text", version=__version__)) for key in keys]
     versions = words("versions"), ", ".join(f"{name} {version}" for name, version in made.items())
-    return [(words("ntc_kind"), "; ".join(used)), *said, versions, (words("seed"), words("seed_said"))]
+    return [(words("ntc_kind"), "; ".join(used)), *rows, versions, (words("seed"), words("seed_text"))]

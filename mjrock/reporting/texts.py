@@ -63,8 +63,8 @@ def drawn_patterns() -> list[tuple[re.Pattern[str], str]]:
     begins with `drawn_`, and the names of solvers."""
     found = []
     for key in (key for key in texts() if key.startswith(("drawn_", "short_"))):
-        parts = ((re.escape(said), name) for said, name, *_ in string.Formatter().parse(texts()[key]["en"]))
-        pattern = "".join(said if name is None else f"{said}(?P<{name}>.+?)" for said, name in parts)
+        parts = ((re.escape(literal), name) for literal, name, *_ in string.Formatter().parse(texts()[key]["en"]))
+        pattern = "".join(literal if name is None else f"{literal}(?P<{name}>.+?)" for literal, name in parts)
         found.append((re.compile(pattern), key))
     return found
 
@@ -147,10 +147,10 @@ class Words:
         if 0 < abs(value) < SMALL:
             power = math.floor(math.log10(abs(value)) + 1e-12)
             return f"{self.number(value / 10**power, digits)}\u00b710{str(power).translate(POWERS)}"
-        said = format(Decimal(f"{value:#.{digits}g}"), "f")
-        if digits != FOUND and "." in said:
-            said = said.rstrip("0").rstrip(".")
-        return self.marked(said).replace("-", MINUS)
+        text = format(Decimal(f"{value:#.{digits}g}"), "f")
+        if digits != FOUND and "." in text:
+            text = text.rstrip("0").rstrip(".")
+        return self.marked(text).replace("-", MINUS)
 
     def ratio(self, value: float) -> str:
         """A ratio of capacity over demand, see `ratio_text`."""
@@ -166,8 +166,8 @@ class Words:
 
     def named(self, names: Sequence[str]) -> str:
         """Names, not too many."""
-        said = ", ".join(names[:NAMED])
-        return self("and_more", names=said, count=len(names) - NAMED) if names[NAMED:] else said
+        text = ", ".join(names[:NAMED])
+        return self("and_more", names=text, count=len(names) - NAMED) if names[NAMED:] else text
 
     def share(self, value: float) -> str:
         """A share in per cent."""

@@ -141,8 +141,8 @@ def answers(mechanisms: Sequence[Mechanism], others: Sequence[object], words: Wo
     bases = [*others, *(one for mechanism in mechanisms for one in mechanism.subjects)]
     proposals = [one for one in order if any(_adds(subject, base) for subject in one.subjects for base in bases)]
     present = [one for one in order if one not in proposals]
-    said = [(present[0], "governs" if present[1:] else "alone", bool(proposals))] if present else []
-    lines = [_sentence(one, f"lead_{kind}", words, now) for one, kind, now in said]
+    leads = [(present[0], "governs" if present[1:] else "alone", bool(proposals))] if present else []
+    lines = [_sentence(one, f"lead_{kind}", words, now) for one, kind, now in leads]
     lines += [_sentence(one, "lead_proposed", words, False) for one in proposals]
     lines += [element("p", one) for one in counted(order, words)]
     return [*lines, verdict_table(order, words)]
@@ -172,8 +172,8 @@ def verdict_table(order: Sequence[Mechanism], words: Words) -> Markup:
     rows = []
     for mechanism in order:
         held, count = mechanism.held, len(mechanism.verdicts)
-        conditions = words("conditions_held", held=held, count=count)
-        name = element("td", element("b", mechanism.name), Markup("<br>"), conditions, rowspan=str(count))
+        count_text = words("conditions_held", held=held, count=count)
+        name = element("td", element("b", mechanism.name), Markup("<br>"), count_text, rowspan=str(count))
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
     return table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))
@@ -336,11 +336,11 @@ def governing(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words
 def limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
     """What the kinematic checks do not cover."""
     codes = codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
-    said = sentences(codes, "limit_seat", words)
+    found = sentences(codes, "limit_seat", words)
     for name, check, *_ in mechanisms:
         if check and (gone := [state for state in check.states if check.broken_before(state)]):
-            said.append(words("limit_broken", name=name, states=", ".join(gone)))
-    return said
+            found.append(words("limit_broken", name=name, states=", ".join(gone)))
+    return found
 
 
 def kinematic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
@@ -396,10 +396,10 @@ def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
     return element("td", words.ratio(step.value), kind=kind)
 
 
-def told_name(name: str, effect: Effect, words: Words) -> str:
+def effect_label(name: str, effect: Effect, words: Words) -> str:
     """The name of an effect in a report: its own, or that of what several effects stand for."""
-    told = effect.report_item
-    return effect_name(name, words) if told is None or told is effect else words(f"effect_{told.label}")
+    whole = effect.report_item
+    return effect_name(name, words) if whole is None or whole is effect else words(f"effect_{whole.label}")
 
 
 def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
@@ -408,8 +408,8 @@ def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]
     made = []
     for start in range(0, len(given), ABREAST):
         columns = [dynamic_found(check, words) for _, check in given[start : start + ABREAST]]
-        told = [key for key in columns[0] if any(column[key] != DASH for column in columns)]
-        rows = [[words(f"dynamic_{key}"), *(column[key] for column in columns)] for key in told]
+        keys = [key for key in columns[0] if any(column[key] != DASH for column in columns)]
+        rows = [[words(f"dynamic_{key}"), *(column[key] for column in columns)] for key in keys]
         heads = [words("step"), *(name for name, _ in given[start : start + ABREAST])]
         made.append(table(heads, rows))
     return made

@@ -115,7 +115,7 @@ def test_checks_are_tables_with_colours(check):
     html = check._repr_html_()
     assert html.count("<table>") == 2
     for verdict in check.verdicts:
-        assert f'font-weight: bold">{verdict.said}<' in html
+        assert f'font-weight: bold">{verdict.label}<' in html
     fails = mr.mechanism_check(RELEASED, mr.code_spectrum("EC8 type 1", ag=5.0, soil="D"))._repr_html_()
     assert "#b5402a" in fails
     for line in check.table().splitlines():

@@ -274,7 +274,7 @@ def test_what_fails_never_reads_as_if_it_held(share):
     verdict = Verdict("nonlinear kinematic", "SLV", 1.0, share, "m", "C8.7.1.2.1.8")
     (cells,) = verdict_rows([verdict])[1:]
     assert cells[5] == ratio_text(share) == Words("en").ratio(share)
-    assert f"ratio {cells[5]} {verdict.said}" in repr(verdict)
+    assert f"ratio {cells[5]} {verdict.label}" in repr(verdict)
     assert (float(cells[5]) >= 1) == verdict.holds
     assert (float(share_text(1 / share)) <= 1) == (1 / share <= 1)
 

@@ -8,7 +8,7 @@ import pytest
 import mjrock as mr
 from mjrock.assessment.assessment import assessment_of
 from mjrock.commands import check
-from mjrock.reporting.page import Asked, required_runs
+from mjrock.reporting.page import Request, required_runs
 from mjrock.reporting.pictures import histories, strips
 from mjrock.reporting.texts import Words
 
@@ -102,7 +102,7 @@ def test_each_mechanism_has_its_drawing_its_curve_and_its_clauses_in_one_place(p
     for name, caption in captions.items():
         drawing, curve = re.findall(r"<figcaption>(.*?)</figcaption>", found[name])
         assert drawing == f"{name}: {caption[0].lower()}{caption[1:]}"
-        assert curve == words("curves_said")
+        assert curve == words("curves_caption")
         assert "C8.7.1.2.1.6" in found[name]
     both = re.findall(r"<figcaption>(.*?)</figcaption>", found["front; tied"])
     assert sorted(both[:2])[0].startswith("front: ")
@@ -244,7 +244,7 @@ def test_no_picture_of_many_records_fills_a_page():
     motions = [mr.GroundMotion.half_sine(2.0 + 0.01 * i, 0.4) for i in range(14)]
     runs = [mr.solve_analytical(mr.Case(wall, 0.0, 0.5, motion=motion), e) for motion in motions]
     words = Words("en")
-    found = required_runs(Asked(runs[0].case, runs), words)
+    found = required_runs(Request(runs[0].case, runs), words)
     for figures in (strips(found, [], "", words), histories(found, [run.theta for run in runs], None, words)):
         assert len(figures) == 2
         assert all(figure.get_figheight() < 5.2 for figure in figures)

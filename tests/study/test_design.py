@@ -68,7 +68,7 @@ def test_several_mechanisms_all_hold():
     found = mr.design(build, [None, 30e3, 90e3], SLV, method="linear")
     names = {condition.mechanism for condition in found.trials[0].conditions}
     assert names == {"whole", "above"}
-    assert found.trials[0].governs.said == "whole: linear kinematic, SLV"
+    assert found.trials[0].governs.label == "whole: linear kinematic, SLV"
 
 
 def test_a_value_that_cannot_be_is_a_row_with_its_reason():

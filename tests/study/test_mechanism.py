@@ -156,7 +156,7 @@ def test_an_element_that_vibrates_freely_meets_the_spectrum_at_its_period():
     assert any(line.startswith("S_eZ(T_0)") and line.endswith("C8.7.1.9") for line in lines)
     assert not any(line.startswith("peak of the demand") for line in lines)
     (row,) = (line for line in lines if line.startswith("capacity over demand SLD"))
-    assert row.endswith(free.verdicts[-1].said)
+    assert row.endswith(free.verdicts[-1].label)
 
 
 def test_the_same_of_records_and_displacement_spectra():

@@ -121,8 +121,8 @@ def campaign(
             ) from None
         finally:
             progress.close()
-        if total is not None and run.asked != total:
-            raise RuntimeError(f"the tasks ended after {run.asked} of {total}; the same call carries on from there")
+        if total is not None and run.seen != total:
+            raise RuntimeError(f"the tasks ended after {run.seen} of {total}; the same call carries on from there")
     return path
 
 
@@ -211,7 +211,7 @@ class Runner:
     ) -> None:
         self.file, self.progress, self.folder, self.retry, self.limit = file, progress, folder, retry, limit
         self.seconds = 0.0
-        self.asked = 0
+        self.seen = 0
 
     def pending(self, tasks: Iterable[Task]) -> Iterator[Job]:
         """The tasks that have no row yet, each once. One that cannot be run gets its row here."""
@@ -219,9 +219,9 @@ class Runner:
         partial = self._partial_histories()
         columns: tuple[str, ...] = ()
         labels: dict[str, dict[str, object]] = {}
-        for position, asked in enumerate(tasks):
-            self.asked += 1
-            key, task = keyed(asked)
+        for position, given in enumerate(tasks):
+            self.seen += 1
+            key, task = keyed(given)
             if (first := labels.setdefault(key, dict(task.labels))) != task.labels:
                 same = f"the case labelled {dict(task.labels)} is that labelled {first}"
                 self.progress.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")

@@ -84,8 +84,8 @@ class _Worker(SpawnProcess):
 
     def is_alive(self) -> bool:
         """Whether it runs: False from the second call after a death, when `pebble` has read which task it ended."""
-        told, self.dead = self.dead, not super().is_alive()
-        return not (told and self.dead)
+        was_dead, self.dead = self.dead, not super().is_alive()
+        return not (was_dead and self.dead)
 
     @property
     def exitcode(self) -> int | None:

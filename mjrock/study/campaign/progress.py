@@ -42,7 +42,7 @@ ERRORS = 3
 """Most different errors that are shown."""
 
 
-def counts_told(outcomes: Mapping[str, int]) -> str:
+def counts_text(outcomes: Mapping[str, int]) -> str:
     """How many cases ended in each way, the most frequent first."""
     ordered = sorted(outcomes.items(), key=lambda pair: (-pair[1], pair[0]))
     return ", ".join(f"{number} {name}" for name, number in ordered)
@@ -60,7 +60,7 @@ def closing(
     of = "" if total is None else f" of {total}"
     left = "" if total is None or rows >= total else f", {total - rows} left; the same call carries on"
     done = f"{statuses.get('done', 0)} done, {statuses.get('failed', 0)} failed"
-    ended = f" ({counts_told(outcomes)})" if outcomes else ""
+    ended = f" ({counts_text(outcomes)})" if outcomes else ""
     before = f", {kept} had a row before" if kept else ""
     return f"{rows}{of} tasks have a row: {done}{ended} in {seconds:.3g} s{before}{left}"
 
@@ -80,16 +80,16 @@ def status(path: str | Path) -> str:
     lines = [f"{path}: {len(rows)} rows, {len(done)} done, {len(failed)} failed"]
     outcomes = Counter(str(row["outcome"]) for row in done if row.get("outcome") is not None)
     if outcomes:
-        lines.append(f"outcomes: {counts_told(outcomes)}")
+        lines.append(f"outcomes: {counts_text(outcomes)}")
     seconds = sum(row["seconds"] or 0.0 for row in rows)
     lines.append(f"time of all cases together: {seconds:.3g} s, {seconds / max(len(rows), 1):.3g} s a case")
     lines.append(
-        f"made by: {counts_told(Counter(str(row['version']) for row in rows))}" if rows else "made by: nobody yet"
+        f"made by: {counts_text(Counter(str(row['version']) for row in rows))}" if rows else "made by: nobody yet"
     )
     errors = WarningCounter()
     for row in failed:
-        said = str(row["error"]).splitlines()[0]
-        errors.add(said[:160], NUMBER_IN_TEXT.sub("#", said.partition(" (at ")[0]))  # a grid says at which point
+        line = str(row["error"]).splitlines()[0]
+        errors.add(line[:160], NUMBER_IN_TEXT.sub("#", line.partition(" (at ")[0]))  # a grid says at which point
     return "\n".join([*lines, *errors.lines("failed", ERRORS)])
 
 

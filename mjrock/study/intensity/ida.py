@@ -372,11 +372,11 @@ class Capacity:
         above = max((scale for scale, fell in tried.items() if scale > high and not fell), default=None)
         values = (
             self.solver, self.analysis.law, high * peak, high, low * peak, least * peak,
-            None if above is None else above * peak, len(tried), self._said(low, high, least, above),
+            None if above is None else above * peak, len(tried), self._message(low, high, least, above),
         )  # fmt: skip
         return dict(zip(self.COLUMNS, values, strict=True))
 
-    def _said(self, low: float, high: float, least: float, above: float | None) -> str:
+    def _message(self, low: float, high: float, least: float, above: float | None) -> str:
         """What is known, in words: the scales between which the outcome changes, and what was tried beside them."""
         falls = subject_of(self.analysis.case).FALLS
         message = f"The {falls} at {high * self.peak:.4g} g and stands at {low * self.peak:.4g} g"

@@ -74,9 +74,9 @@ class Thresholds(NotebookPicture):
     @property
     def sentences(self) -> tuple[str, ...]:
         """What each record does, in words."""
-        return tuple(self._said(own) for own in self.islands)
+        return tuple(self._sentence(own) for own in self.islands)
 
-    def _said(self, own: Sequence[Island]) -> str:
+    def _sentence(self, own: Sequence[Island]) -> str:
         if not own:
             return f"stands at all {len(self.scales)} scales that were tried, up to {self.scales[-1]:.4g}"
         lower = int((self.scales < own[0].falls_from).sum())
@@ -152,12 +152,12 @@ def thresholds(
     levels = require_increasing("scales", scales, "scale", math.inf, "0 and above")
     moved = (0.0, *(require_within(f"nudges[{i}]", nudge, -0.01, 0.01) for i, nudge in enumerate(nudges)))
     fell: dict[tuple[str, float], dict[float, bool]] = {(name, nudge): {} for name in builds for nudge in moved}
-    asked = [(repeat, scale) for repeat in fell for scale in levels.tolist()]
-    while asked:
-        tasks = [_task(builds[name], name, nudge, scale) for (name, nudge), scale in asked]
-        for (repeat, scale), task, row in zip(asked, tasks, completed(tasks, store, **options), strict=True):
+    pending = [(repeat, scale) for repeat in fell for scale in levels.tolist()]
+    while pending:
+        tasks = [_task(builds[name], name, nudge, scale) for (name, nudge), scale in pending]
+        for (repeat, scale), task, row in zip(pending, tasks, completed(tasks, store, **options), strict=True):
             fell[repeat][scale] = row[task.PEAK] == math.inf
-        asked = [
+        pending = [
             (repeat, 0.5 * (low + high))
             for repeat, tried in fell.items()
             for low, high in _edges(tried)

@@ -270,11 +270,11 @@ class Code:
         places = numbers | (asdict(self.states[of]) if of in self.states else {})
         try:
             filled = (one.format(**places) for one in (step.plain, step.clause, *step.text.values()))
-            plain, clause, *said = filled
+            plain, clause, *texts = filled
         except (KeyError, IndexError) as error:
             known = ", ".join(f"{{{place}}}" for place in places)
             raise ValueError(f"steps.{key} has a place for {error}; the places are {known}") from None
-        return replace(step, plain=plain, clause=clause, text=dict(zip(step.text, said, strict=True)))
+        return replace(step, plain=plain, clause=clause, text=dict(zip(step.text, texts, strict=True)))
 
     def formula(self, key: str, of: str, written: Callable[[float], str]) -> str:
         """The formula of a step, with its numbers as `written` writes them.
@@ -329,8 +329,8 @@ def _parts_of(given: dict[str, Any]) -> dict[str, Any]:
     require_kind("texts", parts["texts"], dict)
     for name, text in [*parts["texts"].items(), *((f"steps.{key}", step.text) for key, step in parts["steps"].items())]:
         require_kind(name, text, dict)
-        for language, said in text.items():
-            require_text(f"{name}.{language}", said, 100_000)
+        for language, sentence in text.items():
+            require_text(f"{name}.{language}", sentence, 100_000)
     return parts
 
 

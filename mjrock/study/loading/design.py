@@ -36,7 +36,7 @@ class Condition(NamedTuple):
     verdict: Verdict
 
     @property
-    def said(self) -> str:
+    def label(self) -> str:
         """Which it is, in words."""
         what = ", ".join(filter(None, (self.verdict.what, self.verdict.limit_state)))
         return ": ".join(filter(None, (self.mechanism, what)))
@@ -86,7 +86,7 @@ class Trial:
     def __repr__(self) -> str:
         if self.governs is None:
             return f"<Trial {self.label}: {self.refused}>"
-        return f"<Trial {self.label}: {ratio_text(self.ratio)} {_word(self)}, {self.governs.said}>"
+        return f"<Trial {self.label}: {ratio_text(self.ratio)} {_word(self)}, {self.governs.label}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -143,7 +143,7 @@ class Design(NotebookPicture):
             if trial.governs is None:
                 rows.append((trial.label, "-", "-", trial.refused, ""))
             else:
-                last = trial.governs.said, trial.governs.verdict.clause
+                last = trial.governs.label, trial.governs.verdict.clause
                 rows.append((trial.label, ratio_text(trial.ratio), _word(trial), *last))
         return "\n".join(line.rstrip() for line in [*aligned(rows, "<><<<"), self.sentence])
 

@@ -128,8 +128,8 @@ class DynamicCheck:
             "origin": (self.natural is None, count),
         }
         lacks = {key: number for key, (holds, number) in applies.items() if holds}
-        said = (self.code.text(f"lacks_{key}", language, count=n, least=least) for key, n in lacks.items())
-        return tuple(filter(None, said))
+        texts = (self.code.text(f"lacks_{key}", language, count=n, least=least) for key, n in lacks.items())
+        return tuple(filter(None, texts))
 
     @property
     def worse(self) -> tuple[float, ...]:
@@ -177,8 +177,8 @@ class DynamicCheck:
         lines.append(f"d_0 of the centroid: {self.d_0:.4f} m; over e* it is that of the curve a(d)")
         if self.restitution:
             low, middle, high = np.percentile(self.restitution, [5, 50, 95])
-            said = f"{middle:.3f} in the median, {low:.3f} to {high:.3f} in nine of ten"
-            lines.append(f"restitution |e| of {len(self.restitution)} impacts: {said}")
+            spread = f"{middle:.3f} in the median, {low:.3f} to {high:.3f} in nine of ten"
+            lines.append(f"restitution |e| of {len(self.restitution)} impacts: {spread}")
         lines += [f"judged: {self.judged}"] if self.judged else []
         lines += [f"lacking: {what}" for what in self.lacking]
         before = () if kinematic is None else kinematic.verdicts
@@ -190,9 +190,9 @@ class DynamicCheck:
         return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
 
     def __repr__(self) -> str:
-        said = f"{self.limit_state} {'HOLDS' if self.holds else 'FAILS'}{f', {self.judged}' if self.judged else ''}"
+        verdict = f"{self.limit_state} {'HOLDS' if self.holds else 'FAILS'}{f', {self.judged}' if self.judged else ''}"
         return (
-            f"<DynamicCheck {said}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
+            f"<DynamicCheck {verdict}: mean {self.mean:.4g} m of {self.capacity:.4g} m, "
             f"{len(self.exceeded)} of {len(self.runs)} runs beyond d_0 = {self.d_0:.4g} m of the centroid>"
         )
 

@@ -72,7 +72,7 @@ class LoadCheck:
 
     def __repr__(self) -> str:
         (one,) = self.verdicts
-        return f"<LoadCheck {one.said}: {self.capacity:.4g} for {self.demand:.4g}{' N' * bool(self.unit)}, {one.what}>"
+        return f"<LoadCheck {one.label}: {self.capacity:.4g} for {self.demand:.4g}{' N' * bool(self.unit)}, {one.what}>"
 
 
 def load_check(result: Borne, demand: float | None = None) -> LoadCheck:

@@ -229,17 +229,17 @@ class MechanismCheck:
         for step in self.steps:
             what, note = self.code.step(step.key, step.of).plain, step.clause
             if step.key.endswith("linear_ratio") and self._linear is not None:
-                note = self._linear.said if self.counts("linear") else NOT_COUNTED
+                note = self._linear.label if self.counts("linear") else NOT_COUNTED
             elif step.key == "damage_ratio":
-                note = self.verdicts[-1].said
+                note = self.verdicts[-1].label
             elif step.key == "ratio" and not self.counts("nonlinear"):
                 note = NOT_COUNTED
             elif step.key == "ratio":
-                note = "see below" if self.is_of_start(step.of) else self._nonlinear(step.of).said
+                note = "see below" if self.is_of_start(step.of) else self._nonlinear(step.of).label
                 if gone := self.broken_before(step.of):
                     note += f", without {', '.join(gone)}, broken"
             elif step.key == "ground_ratio" and self.counts("nonlinear"):
-                note = f"{self._nonlinear(step.of).said}, {note}"
+                note = f"{self._nonlinear(step.of).label}, {note}"
             value = (
                 ratio_text(step.value)
                 if step.key.endswith("ratio")
@@ -250,7 +250,7 @@ class MechanismCheck:
 
     def __repr__(self) -> str:
         ratios = ", ".join(
-            f"{one.limit_state} {ratio_text(one.ratio)} {one.said}" for one in map(self._nonlinear, self.states)
+            f"{one.limit_state} {ratio_text(one.ratio)} {one.label}" for one in map(self._nonlinear, self.states)
         )
         of = f" of {named(self.moving)}" if self.moving else ""
         return f"<MechanismCheck{of}: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"

@@ -197,21 +197,21 @@ def pushover(
     case.require_for("push-over")
     require_kind("contacts", contacts, Contacts, type(None))
     points = require_whole("points", points, 20, 100_000)
-    asked = np.zeros(0)
+    requested = np.zeros(0)
     if rotations is not None:
-        asked = require_increasing("rotations", rotations, "rotation [rad]", ON_ITS_FACE, "0 to pi/2 rad")
+        requested = require_increasing("rotations", rotations, "rotation [rad]", ON_ITS_FACE, "0 to pi/2 rad")
     if contacts is None:
-        path = np.unique(np.concatenate([_path(case, 0.0, 0.0, points), asked]))
+        path = np.unique(np.concatenate([_path(case, 0.0, 0.0, points), requested]))
         multiplier, moment = _rigid(case, path)
         start = float(multiplier[0])
     else:
         scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts).rotation
         rest = float(scene.at_rest[0, 2])
-        path = np.unique(np.concatenate([_path(case, rest, uplift, points), asked]))
+        path = np.unique(np.concatenate([_path(case, rest, uplift, points), requested]))
         held = tilted(scene, path)
-        if asked.size and len(held.pose) < len(path) and asked[-1] > path[len(held.pose) - 1]:
+        if requested.size and len(held.pose) < len(path) and requested[-1] > path[len(held.pose) - 1]:
             raise ValueError(
-                f"rotations reach {asked[-1]:g} rad, and the ties lift the wall off its base at "
+                f"rotations reach {requested[-1]:g} rad, and the ties lift the wall off its base at "
                 f"{path[len(held.pose)]:.4g} rad; the valid range ends there"
             )
         path = path[: len(held.pose)]
@@ -219,7 +219,7 @@ def pushover(
         moment = held.force * held.height
         start = float(multiplier[held.lifted.argmax()]) if held.lifted.any() else math.nan
     end = falls_to_zero(path, multiplier, math.inf)
-    wanted = np.isin(path, asked) if rotations is not None else path < end
+    wanted = np.isin(path, requested) if rotations is not None else path < end
     peak = float(multiplier[path < end].max())
     path, multiplier, moment = path[wanted], multiplier[wanted], moment[wanted]
     if rotations is None and end < math.inf:

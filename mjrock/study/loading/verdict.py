@@ -49,7 +49,7 @@ class Verdict(NamedTuple):
     def __repr__(self) -> str:
         return (
             f"<{self.what}, {self.limit_state}: {self.capacity:.4g} for {self.demand:.4g} {self.unit}, "
-            f"ratio {ratio_text(self.ratio)} {self.said}, {self.clause}>"
+            f"ratio {ratio_text(self.ratio)} {self.label}, {self.clause}>"
         )
 
     @property
@@ -63,7 +63,7 @@ class Verdict(NamedTuple):
         return self.ratio >= 1
 
     @property
-    def said(self) -> str:
+    def label(self) -> str:
         """HOLDS or FAILS."""
         return "HOLDS" if self.holds else "FAILS"
 
@@ -73,7 +73,7 @@ def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
     for one in verdicts:
         numbers = f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_text(one.ratio)
-        rows.append((one.what, one.limit_state, *numbers, one.said, one.clause))
+        rows.append((one.what, one.limit_state, *numbers, one.label, one.clause))
     return rows
 
 
