@@ -35,7 +35,7 @@ from ..reporting.drawings import drawn
 from ..reporting.markup import Markup, element
 from ..reporting.page import Request, every_run, outcomes, required_runs
 from ..reporting.parts import parts_of
-from ..reporting.subject import reported
+from ..reporting.subject import content_of
 from ..reporting.texts import FOUND, Words, languages
 from ..reporting.verdicts import Mechanism, answers, kinematic_steps, ranked, required_checks
 from ..result.response import Response
@@ -211,7 +211,7 @@ def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Mark
 
 def farthest(responses: Sequence[Response]) -> Response:
     """The response with the largest displacement."""
-    return max(responses, key=lambda one: reported(one.case).largest(one))
+    return max(responses, key=lambda one: content_of(one.case).largest(one))
 
 
 def report(request: Mapping[str, Any], send: Send) -> None:

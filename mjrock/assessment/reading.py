@@ -265,7 +265,7 @@ class Reader:
         return self.refusal(place, "{place} is {value}; it takes {due}", **values)
 
     def _unknown(self, place: Place, name: str, known: Sequence[str]) -> Message:
-        """What is said of a key that a table does not take."""
+        """The message about a key that a table does not take."""
         near = difflib.get_close_matches(name, known, 2)
         others = Message("the valid ones are {known}", known=", ".join(known) or "none")
         remedy = Message("did you mean {near}?", near=alternatively(near)) if near else others

@@ -18,7 +18,7 @@ from ..problem.wall.wedge import Corner
 from ..quantities import Array
 from ..study.loading.load_check import Borne
 from .pictures import FAILS, SMALL, TALL, WIDE
-from .subject import reported
+from .subject import content_of
 from .texts import FOUND, Words
 
 SWAY = 0.08
@@ -39,7 +39,7 @@ def drawn(problem: Any, words: Words, borne: Sequence[Borne] = ()) -> tuple[Figu
         borne: of masonry, results whose loads are drawn.
     """
     if not isinstance(problem, OTHERS):
-        return reported(problem).at_rest(words, borne)
+        return content_of(problem).at_rest(words, borne)
     figure = Figure(figsize=(WIDE, TALL), layout="constrained")
     if isinstance(problem, Corner):
         _corner(figure.subplots(1, 2), problem, words)

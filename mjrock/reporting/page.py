@@ -34,7 +34,7 @@ from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .parts import Part, is_of, parts_of, sketches
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strips
-from .subject import Reported, reported
+from .subject import Content, content_of
 from .texts import DASH, FOUND, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, required_checks
 
@@ -191,7 +191,7 @@ def required_runs(request: Request, words: Words) -> list[Run]:
         own = names or [response.solver for response in answers]
         names = [in_words(name, response.solver, words) for name, response in zip(own, answers, strict=True)]
     signals = signals_of([response.case for response in answers])
-    largest = [reported(response.case).largest(response) for response in answers]
+    largest = [content_of(response.case).largest(response) for response in answers]
     turned = [motion.endswith(REVERSED) for motion in motions]
     return [
         Run(response, variant, names[i], signals[i][0], records[i], turned[i], largest[i])
@@ -330,7 +330,7 @@ def shaken_part(part: Part, words: Words) -> list[Markup]:
 def judged(
     wholes: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, loads: Sequence[str]
 ) -> list[Markup]:
-    """What governs, what the results do not say, also of the loads, and what the code asks to be said of a program."""
+    """What governs, the limits of the results and of the loads, and the chapter of the code on programs."""
     parts = []
     if mechanisms:
         motions = [(run.response.case.motion, run.motion) for run in runs]
@@ -359,7 +359,7 @@ def by_hand(parts: Sequence[Part], words: Words) -> list[Markup]:
     walls = [one for part in parts for one in part.subjects if verdicts.kind_of(one.subject) == "wall"]
     found: list[tuple[list[str], list[tuple[str, ...]]]] = []
     for names, wall in walls:
-        rows = reported(wall).by_hand(words)
+        rows = content_of(wall).by_hand(words)
         same = next((called for called, other in found if other == rows), None)
         found += [(list(names), rows)] * (same is None)
         (same or []).extend(names)
@@ -437,16 +437,16 @@ def of_impacts(case: Any, e: object, contacts: object, runs: Sequence[Run], word
     return sections
 
 
-class Listed(NamedTuple):
+class InputTable(NamedTuple):
     """A table of inputs, and the file beside the page that has it where it is long."""
 
     listing: inputs.Listing
     file: Path | None
 
 
-def lists_of(subjects: Sequence[object], path: Path, words: Words) -> list[Listed]:
+def lists_of(subjects: Sequence[object], path: Path, words: Words) -> list[InputTable]:
     """The tables of what a report is of, each once, in the page or in a file beside it."""
-    found: list[Listed] = []
+    found: list[InputTable] = []
     for one_of in subjects:
         both = (inputs.listings(one_of, words, written) for written in (words.number, "{:.12g}".format))
         for short, exact in zip(*both, strict=True):
@@ -455,11 +455,11 @@ def lists_of(subjects: Sequence[object], path: Path, words: Words) -> list[Liste
                 continue
             number = 1 + sum(other.listing.key == one.key for other in found)
             name = f"{path.stem}_{one.key}{f'_{number}' if number > 1 else ''}.csv"
-            found.append(Listed(one, path.with_name(name) if one is exact else None))
+            found.append(InputTable(one, path.with_name(name) if one is exact else None))
     return found
 
 
-def listed_blocks(one: Listed, words: Words) -> list[Markup]:
+def listed_blocks(one: InputTable, words: Words) -> list[Markup]:
     """A table of inputs, or the name of the file that has it."""
     heading = element("p", element("b", one.listing.heading), kind="head")
     if one.file is not None:
@@ -520,7 +520,7 @@ def records_called(runs: Sequence[Run], words: Words) -> dict[str, str]:
     return dict(zip(own, named_records(motions, words), strict=True))
 
 
-def runs_of(whole: Reported, runs: Sequence[Run], called: Mapping[str, str], words: Words) -> list[Markup]:
+def runs_of(whole: Content, runs: Sequence[Run], called: Mapping[str, str], words: Words) -> list[Markup]:
     """The table of the runs of a wall or masonry, with what their records are called."""
     grounds = [run.response.case.grounds for run in runs]
     beside = [name for name in ("vertical", "transverse") if any(name in ground for ground in grounds)]

@@ -13,12 +13,12 @@ from .drawings import OTHERS, drawn
 from .inputs import masonry_in
 from .markup import Markup, picture
 from .pictures import Run, by_variant
-from .subject import Reported, reported
+from .subject import Content, content_of
 from .texts import Words
 from .verdicts import Mechanism
 
 
-class Named(NamedTuple):
+class NamedSubject(NamedTuple):
     """What is checked or run, such as a case, with the names of its mechanisms and variants."""
 
     names: list[str]
@@ -37,7 +37,7 @@ class Part:
     """
 
     body: object
-    subjects: list[Named] = field(default_factory=list)
+    subjects: list[NamedSubject] = field(default_factory=list)
     mechanisms: list[Mechanism] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
 
@@ -47,7 +47,7 @@ class Part:
             if _looks(one.subject) == _looks(subject):
                 one.names.extend([name] * (name not in one.names))
                 return
-        self.subjects.append(Named([name], subject))
+        self.subjects.append(NamedSubject([name], subject))
 
     def is_of(self, subject: object) -> bool:
         """Whether a subject is of it."""
@@ -65,9 +65,9 @@ class Part:
         return "; ".join(filter(None, by_variant(self.runs))) or self.names
 
     @property
-    def whole(self) -> Reported:
+    def whole(self) -> Content:
         """It as the report sees it, by the first of its subjects."""
-        return reported(self.subjects[0].subject)
+        return content_of(self.subjects[0].subject)
 
 
 def parts_of(own: str, case: Any, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[Part]:
@@ -94,7 +94,7 @@ def parts_of(own: str, case: Any, mechanisms: Sequence[Mechanism], runs: Sequenc
         part.add(variant or own, part.body if isinstance(part.body, OTHERS) else shaken)
     for part in [part for part in parts if part.is_of(case)] if parts else [_of(case, parts)]:
         if all(_looks(one.subject) != _looks(case) for one in part.subjects):
-            part.subjects.insert(0, Named([own], case))
+            part.subjects.insert(0, NamedSubject([own], case))
     return parts
 
 

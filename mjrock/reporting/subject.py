@@ -58,7 +58,7 @@ SETTINGS = {
 """Statistics of runs that a report names, with their units and numbers of digits."""
 
 
-class Reported(Protocol):
+class Content(Protocol):
     """A wall or masonry as a report sees it.
 
     Attributes:
@@ -98,8 +98,8 @@ class Reported(Protocol):
 
 
 @dataclass(frozen=True)
-class ReportedWall(Reported):
-    """A wall, see `Reported`."""
+class WallContent(Content):
+    """A wall, see `Content`."""
 
     case: Case
     KIND = "wall"
@@ -175,12 +175,12 @@ class ReportedWall(Reported):
         return drawn.figure, words("drawing_wall" if drawn.one_scale else "drawing_wall_scales")
 
     def at_end(self, runs: Sequence[Run], words: Words) -> None:
-        """Nothing: the histories show it."""
+        """None: the histories show how the runs of a wall end."""
 
 
 @dataclass(frozen=True)
-class ReportedMasonry(Reported):
-    """Masonry, see `Reported`.
+class MasonryContent(Content):
+    """Masonry, see `Content`.
 
     Args:
         curve: of its mechanism, where it is checked by one.
@@ -328,14 +328,14 @@ def _polar(run: Run, words: Words) -> str:
     return f"{run.label} ({words('reversed')})" if run.turned else run.label
 
 
-def reported(subject: Any) -> Reported:
+def content_of(subject: Any) -> Content:
     """What is checked or run as a report sees it."""
     curve = subject if isinstance(subject, LimitCurve) else None
     if isinstance(subject, Collapse):
         masonry = subject.masonry
         subject = subject.case if masonry is None else MasonryCase(masonry, 1.0, effects=subject.effects)
     case = case_of(subject)
-    return ReportedMasonry(case, curve) if isinstance(case, MasonryCase) else ReportedWall(case)
+    return MasonryContent(case, curve) if isinstance(case, MasonryCase) else WallContent(case)
 
 
 def of_motions(
@@ -397,8 +397,8 @@ def of_fragility(fits: dict[str, Fragility], words: Words) -> Markup:
 
 
 def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
-    """The chapter of NTC 2018, 10.2: what the clause asks to be said, and the answer, with the analyses used, versions
-    of what has computed this, and what was drawn by chance."""
+    """The chapter after NTC 2018, 10.2: each item of the clause and its answer, with the analyses used, the versions of
+    the programs, and the random seeds."""
     made = {
         "mjrock": __version__,
         "MuJoCo": importlib.metadata.version("mujoco"),

@@ -141,7 +141,7 @@ class Words:
         return text.replace(".", self.mark)
 
     def number(self, value: float, digits: int = GIVEN) -> str:
-        """A number with so many digits that count; what was found keeps its last zeros."""
+        """A number with a given number of significant digits; results keep their last zeros."""
         if not math.isfinite(value):
             return "∞" if value > 0 else DASH
         if 0 < abs(value) < SMALL:

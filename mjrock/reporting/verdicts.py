@@ -223,7 +223,7 @@ def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
 
 
 def _sentence(mechanism: Mechanism, key: str, words: Words, now: bool) -> Markup:
-    """The sentence on a mechanism, as it is now where that is said, as a paragraph."""
+    """The sentence on a mechanism as a paragraph; `now` calls it the present state."""
     now = now and words("as_it_is") not in mechanism.name.casefold()
     kind, start, end = sentence_of(mechanism, f"{key}_now" if now else key, words)
     return element("p", element("span", words(kind), kind=kind), " ", element("b", start), f" {end}")

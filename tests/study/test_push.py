@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
-from mjrock.study.loading.push import BLOWS, Forced, Piece, warn_if_fast
+from mjrock.study.loading.push import BLOWS, ForceRun, Piece, warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 
@@ -74,7 +74,7 @@ def test_a_blow_is_no_strength(turned):
 def test_what_blows_bear_is_nothing_to_compare_inertia_with():
     """Five pieces in a row that are blows end a push; their own forces do not hide that they are."""
     case, still = mr.MasonryCase(panel(0.9), 1.0), np.zeros(4)
-    load = Forced(case, None, 0.0, 0.0, mr.Actuator(None, None, 1, None, 1e6), 0.1)
+    load = ForceRun(case, None, 0.0, 0.0, mr.Actuator(None, None, 1, None, 1e6), 0.1)
     blow = Piece(still + 0.01, still + 2.0, still + 1.0, still, SimpleNamespace(t=[1.0], end=None), 0.0, 0.0, 0.0)
     load.accept(blow._replace(force=still + 0.3, inertia=still))
     for _ in range(BLOWS):

@@ -24,7 +24,7 @@ from ...quantities import is_iterable, require_flag, require_path, require_real,
 from .pool import CHUNK_SECONDS, QUIT, Workers
 from .progress import CampaignProgress
 from .store import Store
-from .task import Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed, programs
+from .task import RefusedTask, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed, programs
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
@@ -239,7 +239,7 @@ class Runner:
             for path in partial.pop(key, ()):
                 path.unlink(missing_ok=True)
             job = Job(task, key, position, history)
-            if isinstance(task, Refused):
+            if isinstance(task, RefusedTask):
                 self.write([job], [{"status": "failed", "error": task.error, "seconds": 0.0}])
             else:
                 yield job

@@ -127,7 +127,7 @@ class Task(Protocol):
 
 
 @dataclass(frozen=True)
-class Refused:
+class RefusedTask:
     """A task that cannot be run. The campaign gives it a failed row with its error."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = ()
@@ -136,7 +136,7 @@ class Refused:
     labels: Mapping[str, object]
 
     @classmethod
-    def because(cls, error: BaseException, labels: Mapping[str, object]) -> Refused:
+    def because(cls, error: BaseException, labels: Mapping[str, object]) -> RefusedTask:
         """The task of these labels, that cannot be run because of the error. Labels that no table holds become text."""
         held: dict[str, object] = {}
         for name, value in labels.items():
@@ -158,7 +158,7 @@ def programs() -> str:
 
 
 def keyed(task: Task) -> tuple[str, Task]:
-    """The key of a task, and the task. One that has no key, or labels that no table holds, becomes a `Refused`."""
+    """The key of a task, and the task. One that has no key, or labels that no table holds, becomes a `RefusedTask`."""
     labels = getattr(task, "labels", {})
     try:
         if not (callable(task) and hasattr(task, "labels") and hasattr(task, "COLUMNS")):
@@ -167,7 +167,7 @@ def keyed(task: Task) -> tuple[str, Task]:
             _named(f"the label {name}", value)
         return fingerprint(programs(), task), task
     except Exception as error:
-        refused = Refused.because(error, labels)
+        refused = RefusedTask.because(error, labels)
         return fingerprint(programs(), refused), refused
 
 
@@ -216,7 +216,7 @@ def carry_out_all(tasks: Sequence[tuple[Task, Path | None]]) -> list[Row]:
 
 
 class Grid(Sequence[Task]):
-    """Every combination of the axes as a task. Each is built only when it is asked for, and labelled with its axes.
+    """Every combination of the axes as a task. Each is built only when it is needed, and labelled with its axes.
 
     A label is the value itself if that is text, a number or None; a NumPy number counts as the Python number. For any
     other value it is its `name`, or its `repr`.
@@ -250,7 +250,7 @@ class Grid(Sequence[Task]):
             try:
                 yield self[i]
             except (Exception, SystemExit) as error:
-                yield Refused.because(error, self._labels(self._point(i)))
+                yield RefusedTask.because(error, self._labels(self._point(i)))
 
     @overload
     def __getitem__(self, index: int) -> Task: ...

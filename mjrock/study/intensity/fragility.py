@@ -315,8 +315,8 @@ def drawn(groups: int, resamples: int, seed: int) -> Integers:
 
 
 def labels_for(groups: ArrayLike | None, count: int) -> NDArray[np.generic]:
-    """The group of each of so many values; None takes each as a group of its own. TypeError or ValueError unless they
-    are all text or all numbers, without NaN."""
+    """The group of each of a number of values; None takes each as a group of its own. TypeError or ValueError unless
+    they are all text or all numbers, without NaN."""
     if groups is None:
         return np.arange(count)
     takes = "the name or the number of the group of each run"
@@ -331,7 +331,7 @@ def labels_for(groups: ArrayLike | None, count: int) -> NDArray[np.generic]:
 
 
 def _intensities(intensity: ArrayLike) -> Array:
-    """Intensities at which a curve is asked for."""
+    """Intensities at which a curve is evaluated."""
     takes = "one or more intensities that are not negative"
     x = require_reals("intensity", intensity, takes)
     bad = x[~(x >= 0)]

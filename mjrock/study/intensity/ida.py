@@ -150,7 +150,7 @@ def overturning_intensity(
 ) -> float:
     """A scale at which a record overturns a wall, while at a scale that is hardly lower it does not.
 
-    The interval from `low` to `high` is halved until it is as narrow as asked. Without them the scale goes up from
+    The interval from `low` to `high` is halved down to the tolerance. Without them the scale goes up from
     `start` by a quarter at a time until the wall falls, or down until it stands. A wall may overturn at a scale and
     stand at a higher one. There may then be several such scales, and this is one of them; `ida` shows all.
 
@@ -251,7 +251,7 @@ def halved(falls: Callable[[float], bool], low: float, high: float, tolerance: f
 
 
 def lowest(falls: Callable[[float], bool], low: float, high: float, below: int, spacing: float) -> tuple[float, float]:
-    """Two neighbouring scales, as those given, below which the wall has stood at so many weaker ones in a row.
+    """Two neighbouring scales, as those given, below which the wall has stood at `below` weaker ones in a row.
 
     From `low` the scale goes down by `spacing` [-] at a time. Where the wall falls, that scale is the upper one of the
     two, and the count begins again. ValueError if it falls at LEAST_SCALE times `low` or less.

@@ -192,13 +192,13 @@ def push(
     case = _required(masonry, effects, start)
     pushed = case, start, mass_damping, local_damping
     if isinstance(driver, Actuator) and angle is None:
-        return _pushed(Driven(*pushed, _damped(driver, _driven_mass(driver, case)), turns), allowed, falls_to)
+        return _pushed(ActuatorRun(*pushed, _damped(driver, _driven_mass(driver, case)), turns), allowed, falls_to)
     if isinstance(driver, Actuator):
         raise ValueError(f"angle = {shown(angle)} is for a direction; an Actuator has one of its own")
     actuator = _of_all(case, horizontal(masonry, driver, angle, "driver"))
     if len(turns) != 1 or turns[0] <= 0:
         raise ValueError(f"to = {shown(to)}: a direction goes with one displacement above 0, an Actuator with others")
-    return _pushed(Forced(*pushed, actuator, float(turns[0])), allowed, falls_to)
+    return _pushed(ForceRun(*pushed, actuator, float(turns[0])), allowed, falls_to)
 
 
 def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> MasonryCase:
@@ -262,7 +262,7 @@ def of_centroid(case: MasonryCase, motion: Array, way: Array, blocks: Sequence[s
 
 
 @dataclass
-class Pushing:
+class PushRun:
     """An actuator that goes on slowly.
 
     Args:
@@ -286,7 +286,7 @@ class Pushing:
         raise NotImplementedError
 
     def piece(self, duration: float) -> Piece:
-        """The actuator goes on, in about so much time [s]."""
+        """The next piece, in about this duration [s]."""
         t, path = self.path(duration)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Implausible)  # the motion is that of a piece
@@ -294,7 +294,7 @@ class Pushing:
             case = replace(self.case, duration=t[-1], effects=(*self.case.effects, driven))
             warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
             warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
-            warnings.filterwarnings("ignore", ".* was drawn out by")  # said at the end
+            warnings.filterwarnings("ignore", ".* was drawn out by")  # the push warns at its end
             answer = self._answer(case)
         *_, force = answer.actuators.values()  # effects may have others
         gone = np.interp(answer.t, t, path)
@@ -374,7 +374,7 @@ class Pushing:
 
 
 @dataclass
-class Driven(Pushing):
+class ActuatorRun(PushRun):
     """An actuator that goes from one displacement to the next.
 
     Args:
@@ -415,7 +415,7 @@ class Driven(Pushing):
 
 
 @dataclass
-class Forced(Pushing):
+class ForceRun(PushRun):
     """A horizontal force on every block in proportion to its weight, which drives their common centroid.
 
     Args:
@@ -438,7 +438,7 @@ class Forced(Pushing):
         return max(RISE * self.largest, LEAST)
 
     def path(self, duration: float) -> tuple[Array, Array]:
-        """Further by a step, from the speed that there is to that of a step in so much time, evenly."""
+        """Further by a step; the speed changes evenly from the present one to that of a step in this duration."""
         speed = self.step / duration
         t = np.linspace(0.0, 2 * self.step / (self.speed + speed), POINTS * SAMPLES + 1)
         return t, (self.speed + 0.5 * (speed - self.speed) * t / t[-1]) * t
@@ -507,7 +507,7 @@ class Forced(Pushing):
         return f"nothing gives way to {HIGHEST:g}" if piece.force[-1] >= HIGHEST else ""
 
 
-def _pushed(load: Pushing, allowed: float, falls_to: float) -> Push:
+def _pushed(load: PushRun, allowed: float, falls_to: float) -> Push:
     """The pieces of a push until one ends it."""
     points, ended, duration = list[tuple[Array, ...]](), "", FIRST
     with Bar("push", "pieces") as bar:

@@ -30,7 +30,7 @@ MARGIN = 1.1
 softest base that carries a wall moves that rotation by some hundredths."""
 
 
-class Tilted(NamedTuple):
+class HeldPoses(NamedTuple):
     """What holds a wall at its rotations.
 
     Args:
@@ -47,7 +47,7 @@ class Tilted(NamedTuple):
     lifted: Flags
 
 
-def tilted(scene: Scene, rotations: Array) -> Tilted:
+def tilted(scene: Scene, rotations: Array) -> HeldPoses:
     """The wall of a scene at rotations that follow each other, its ties yielding and breaking on the way.
 
     The vertical equilibrium gives the compression of the base. The condition that the held point of the outer edge does
@@ -83,9 +83,9 @@ def tilted(scene: Scene, rotations: Array) -> Tilted:
     return _tilted(scene, base, rows)
 
 
-def _tilted(scene: Scene, base: Integers, rows: Array) -> Tilted:
+def _tilted(scene: Scene, base: Integers, rows: Array) -> HeldPoses:
     lifted: Flags = np.any(gaps(scene.places, rows[:, :3])[:, base] >= 0, axis=1)
-    return Tilted(rows[:, :3], rows[:, 3], rows[:, 4], lifted)
+    return HeldPoses(rows[:, :3], rows[:, 3], rows[:, 4], lifted)
 
 
 def _lever(scene: Scene, toe: int, pose: Array) -> float:

@@ -1,6 +1,6 @@
 """Calibration of a damping law in the engine: the flowchart of the paper's Figure 2.
 
-For each combination of wall, stiffness and release, and for each restitution that is asked for, a `Match` finds the
+For each combination of wall, stiffness and release, and for each required restitution, a `Match` finds the
 damping ratio: first two-sided for the base, then one-sided for the side with the damping of the base presumed. The
 matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.law`, see `regress`.
 """

@@ -36,7 +36,7 @@ SCAN = 3.0
 XI_TOLERANCE = 1e-3
 """Relative tolerance of a matched damping ratio [-]."""
 E_TOLERANCE = 5e-3
-"""Relative difference to the restitution asked for at which a search has missed it [-]."""
+"""Relative difference to the required restitution from which on a search has missed it [-]."""
 MEASURES = ("restitution", "rms")
 
 

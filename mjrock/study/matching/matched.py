@@ -1,4 +1,4 @@
-"""Damping matched to one wall or to one stack, found by simulating it: it gives the restitution that is asked for.
+"""Damping matched to one wall or to one stack, found by simulating it: it gives a required restitution.
 
 A law predicts the damping of any wall in no time, for a base that holds and a smooth side. A match finds it for one
 wall and any layout, friction, stiffness and amplitude, in some twenty simulations that take a fraction of a second. A
@@ -85,7 +85,7 @@ def matched_contacts(
     of the paper's Figure 2. Of several damping ratios the highest is taken.
 
     Args:
-        wall, e: the wall, and the restitution that is asked for.
+        wall, e: the wall, and the required restitution.
         k_base, k_side: interface stiffness of base and side [N/m3], 1e4 to 1e14; no side stop without `k_side`.
         points: contact lines a face, 2 to 1000.
         amplitude: rotation theta_0/alpha that the wall is released from [-], 0.01 to 0.95.
@@ -97,7 +97,7 @@ def matched_contacts(
         ValueError: for a value outside its range.
 
     Warns:
-        UserWarning: where no damping gives what is asked for. The damping that comes closest is returned, and the
+        UserWarning: where no damping gives it. The damping that comes closest is returned, and the
             message says what it gives.
     """
     require_kind("wall", wall, Block)
@@ -203,7 +203,7 @@ def matched_masonry(
 
     Args:
         masonry: a stack, with a side stop or without one. Its friction takes part: what sliding takes is matched too.
-        e: the restitution that is asked for; None takes that of rocking theory, `rigid_impact` for the base and the
+        e: the required restitution; None takes that of rocking theory, `rigid_impact` for the base and the
             angular momentum about the top of the side stop (Eq. 3 of the paper) for the side.
         amplitude: rotation over that which overturns the stack, from which it falls to the first impact [-], 0.01 to
             0.95. On soft joints small rotations lose more.
@@ -214,7 +214,7 @@ def matched_masonry(
             rebound.
 
     Warns:
-        UserWarning: where no damping gives what is asked for. The damping that comes closest is returned, and the
+        UserWarning: where no damping gives it. The damping that comes closest is returned, and the
             message says what it gives.
     """
     require_kind("masonry", masonry, Masonry)
@@ -286,7 +286,7 @@ def excess(obtained: float, target: float) -> float:
 
 
 def _found(face: str, closest: Closest, target: float) -> float:
-    """The damping ratio that is found, with a warning where it loses another energy than that asked for."""
+    """The damping ratio that is found, with a warning where it loses another energy than required."""
     more = excess(closest.found, target)
     if abs(more) > MISSED:
         warn_of(f"{missed(face, closest, target)} and loses {1 + more:.3g} of the energy that is to be lost")
