@@ -551,7 +551,7 @@ def _called(name: str, header: Mapping[str, str], words: Words) -> str:
         factor = words.number(float(scaled[2]), FOUND)
         return words("scaled_record", name=_called(scaled[1], header, words), factor=factor)
     if header.get("STATION_CODE") and header.get("STREAM"):
-        return words("station", code=header["STATION_CODE"], stream=header["STREAM"])
+        return words("station", code=header["STATION_CODE"], component=header["STREAM"][-1])
     if drawn := re.fullmatch(r"synthetic ([\d.e+-]+) m/s2, seed (\d+)", name):
         return words("artificial", peak=words.quantity(float(drawn[1]), "m/s2"), seed=drawn[2])
     return name

@@ -55,6 +55,8 @@ h2 + p, p.head { break-after: avoid }
 td.short { white-space: nowrap } td.all { text-align: center }
 table.block td:nth-child(odd) { width: 8em; color: #666 }
 table.inputs th:first-child { width: 30% } table.inputs th:last-child { width: 26% }
+table.beside { table-layout: fixed; min-width: 40em }
+table.beside th:first-child { width: 26% } table.beside th:last-child { width: 16% }
 table.block td { height: 1.3em }
 .holds { color: #0b5d3b; background: #e3f2ea; font-weight: 700; white-space: nowrap }
 .fails { color: #8f1d14; background: #fbe6e3; font-weight: 700; white-space: nowrap }
@@ -159,8 +161,21 @@ def _item(tokens: list[str]) -> Markup:
 
 
 def picture(figure: Figure, caption: str, words: Words, *, own: bool = False) -> Markup:
-    """A figure inside the page, with what plot functions have printed in the language of the report, and with its
-    decimal mark. One of the user, `own`, keeps its points, its texts beside, and is left as it was."""
+    """A figure inside the page, see `image_of`."""
+    return framed(image_of(figure, words, own=own), caption)
+
+
+def framed(image: str, caption: str) -> Markup:
+    """An image of `image_of` inside the page."""
+    shown = Markup(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{image}">')
+    return element("figure", shown, element("figcaption", caption))
+
+
+def image_of(figure: Figure, words: Words, *, own: bool = False) -> str:
+    """A figure as PNG in base 64, its texts in the language of the report with its decimal mark.
+
+    One of the user, `own`, keeps its decimal points and is left as it was.
+    """
     texts = figure.findobj(Text)
     was = [text.get_text() for text in texts]
     for text, content in zip(texts, was, strict=True):
@@ -172,9 +187,7 @@ def picture(figure: Figure, caption: str, words: Words, *, own: bool = False) ->
     if own:
         for text, content in zip(texts, was, strict=True):
             text.set_text(content)
-    data = base64.b64encode(file.getvalue()).decode("ascii")
-    image = Markup(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{data}">')
-    return element("figure", image, element("figcaption", caption))
+    return base64.b64encode(file.getvalue()).decode("ascii")
 
 
 def _marked(figure: Figure, words: Words) -> None:

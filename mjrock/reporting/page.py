@@ -32,7 +32,7 @@ from ..study.loading.mechanism_curve import case_of
 from . import inputs, subject, verdicts
 from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf
-from .parts import Part, is_of, parts_of, sketches
+from .parts import Part, drawings_of, is_of, parts_of
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strips
 from .subject import Content, content_of
 from .texts import DASH, FOUND, MINUS, Words
@@ -119,14 +119,16 @@ def report(
     }
     keys = [row.key for sections in given.values() for section in sections for row in section.rows]
     rests = required_texts("basis", basis, keys)
+    drawings = [drawings_of(part, parts, words) for part in parts]
+    first = drawings[0][:1] if len(parts) == 1 else []
     lists = lists_of([one for _, one in subjects], path, words)
     block = required_texts("project", project, HEADS)
     pieces = [
         element("h1", head),
         title_block(block, words),
         *([element("p", element("b", words("question")), " ", notes)] if notes else []),
-        *answered(parts, runs, mechanisms, words),
-        *checked(parts, mechanisms, words),
+        *answered(parts, runs, mechanisms, words, first),
+        *checked(parts, [some[len(first) :] for some in drawings], mechanisms, words),
         *shaken(parts, words),
         *[piece for name, some in required_sections(sections).items() for piece in section(name, some, words)],
         *judged(parts, runs, mechanisms, words, inputs.loads_in([one for _, one in subjects], words)),
@@ -245,8 +247,14 @@ def title_block(block: Mapping[str, str], words: Words) -> Markup:
     return table((), [cells[i : i + 4] for i in range(0, len(cells), 4)], kind="block")
 
 
-def answered(parts: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
-    """The answer, and the first drawing of a report of one wall; several walls are drawn with their checks."""
+def answered(
+    parts: Sequence[Part],
+    runs: Sequence[Run],
+    mechanisms: Sequence[Mechanism],
+    words: Words,
+    drawing: Sequence[Markup],
+) -> list[Markup]:
+    """The answer, with the first drawing of a report of one wall; several walls are drawn with their checks."""
     others = [one.subject for part in parts for one in part.subjects]
     found = verdicts.answers(mechanisms, others, words) if mechanisms else []
     codes = verdicts.codes_of(mechanisms, words.language)
@@ -254,7 +262,6 @@ def answered(parts: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Me
     methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
     methods += [words("borne")] * borne
     texts = [*methods, *([outcomes(runs, words)] if runs else [])]
-    drawing = sketches(parts[0], parts, words)[:1] if len(parts) == 1 else []
     return [element("h2", words("answer")), *found[:-1], *drawing, *found[-1:], *(element("p", one) for one in texts)]
 
 
@@ -267,11 +274,12 @@ def outcomes(runs: Sequence[Run], words: Words) -> str:
     return f"{words('falls')} {'; '.join(counts)}."
 
 
-def checked(wholes: Sequence[Part], mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+def checked(
+    wholes: Sequence[Part], drawings: Sequence[Sequence[Markup]], mechanisms: Sequence[Mechanism], words: Words
+) -> list[Markup]:
     """The checks, of each wall with its drawings, its curves and its steps."""
     parts: list[Markup] = []
     several, kinematic = len(wholes) > 1, any(one.kinematic for one in mechanisms)
-    drawings = [sketches(one, wholes, words)[not several :] for one in wholes]
     if any(drawings) or kinematic:
         codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
         parts += [element("h2", words("checks" if kinematic else "drawings"))]
@@ -478,7 +486,7 @@ def appendix(given: Mapping[str, Sequence[inputs.Section]], rests: Mapping[str, 
                 rest = rests[one.key] if one.key in rests else element("td", words(one.rests), kind="short")
                 cells.append((one.name, *alike([DASH if cell is None else cell.value for cell in row]), rest))
             names = some.names if any(some.names) else [words("input_value")]
-            kind = "inputs" if len(names) == 1 else ""
+            kind = "inputs" if len(names) == 1 else "beside"
             parts.append(element("p", element("b", heading), kind="head"))
             parts.append(table([words("input_name"), *names, words("input_basis")], cells, kind=kind))
     return parts

@@ -11,7 +11,7 @@ from ..study.loading.mechanism_curve import case_of
 from . import verdicts
 from .drawings import OTHERS, drawn
 from .inputs import masonry_in
-from .markup import Markup, picture
+from .markup import Markup, framed, image_of
 from .pictures import Run, by_variant
 from .subject import Content, content_of
 from .texts import Words
@@ -125,13 +125,16 @@ def _looks(subject: Any) -> tuple[object, ...]:
     return body_of(one), getattr(one, "effects", ()), getattr(one, "side_stop", None)
 
 
-def sketches(part: Part, parts: Sequence[Part], words: Words) -> list[Markup]:
-    """The drawings of a part, each with its mechanism or variant in the caption where there are several."""
-    several = len(parts) > 1 or len(part.subjects) > 1
+def drawings_of(part: Part, parts: Sequence[Part], words: Words) -> list[Markup]:
+    """The drawings of a part, each once, with its mechanisms or variants in the caption where there are several."""
     borne = [one.result for mechanism in part.mechanisms for one in mechanism.loads]
-    found = []
+    found: dict[tuple[str, str], list[str]] = {}
     for names, subject in part.subjects:
         figure, caption = drawn(subject, words, borne)
-        named = f"{'; '.join(names)}: {caption[0].lower()}{caption[1:]}" if several else caption
-        found.append(picture(figure, named, words))
-    return found
+        found.setdefault((image_of(figure, words), caption), []).extend(names)
+    if len(parts) == len(found) == 1:
+        return [framed(image, caption) for image, caption in found]
+    return [
+        framed(image, f"{'; '.join(names)}: {caption[0].lower()}{caption[1:]}")
+        for (image, caption), names in found.items()
+    ]

@@ -36,7 +36,7 @@ WIDE = 7.0
 """Width of a picture [inch]."""
 SMALL = 8.0
 """Size of the least type [pt]."""
-TALL = 2.9
+TALL = 2.5
 """Most height of the drawing of a wall [inch]."""
 BELOW, ABOVE, BEFORE, AWAY, LEAST = 0.36, 0.36, 0.45, 0.36, 1.05
 """Room below, above and before a drawing, from a wall to names outside, and least height of a wall in it [inch]."""
@@ -52,7 +52,15 @@ FAR = 2.0
 """A limit that is farther than the motion by this factor would flatten it."""
 NAMED = 5
 """Most runs of one record whose lines differ."""
-PLACES = (((4, 4), "left"), ((-4, -11), "right"), ((-4, 4), "right"), ((4, -11), "left"), ((0, 14), "center"))
+PLACES = (
+    ((4, 4), "left"),
+    ((-4, -11), "right"),
+    ((-4, 4), "right"),
+    ((4, -11), "left"),
+    ((7, -4), "left"),
+    ((0, 14), "center"),
+    ((0, 22), "center"),
+)
 """Where a name may stand beside its point [pt], and how it is aligned."""
 DOT = 5.0
 """Half of the room that a point takes in a diagram [pixels]."""
@@ -210,8 +218,10 @@ def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | N
     given = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
     if not given:
         return None
-    figure, axes = several(len(given), min(2, len(given)), (WIDE / min(2, len(given)), 2.25))
+    columns = min(3 if len(given) % 2 else 2, len(given))
+    figure, axes = several(len(given), columns, (WIDE / columns, 2.25))
     for ax, (name, check) in zip(axes.flat, given, strict=False):
+        ax.locator_params(nbins=5 if columns > 2 else "auto")
         _curve(ax, check, words)
         ax.set_title(name, fontsize=9)
     marks: list[tuple[Look, str]] = [

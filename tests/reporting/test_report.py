@@ -377,6 +377,28 @@ def test_masonry_has_blocks_at_rest_and_as_they_end(tmp_path, language):
     assert words("no_check") in html.unescape(text)
 
 
+def test_what_looks_alike_is_drawn_once_with_all_of_its_names(tmp_path):
+    bars = {f"{ultimate:g} m": mr.Tie(2.0, 1e6, strength=1e4, ultimate=ultimate) for ultimate in (0.03, 0.1)}
+    walls = {name: mr.Case(WALL, 0.0, 1.0, effects=[bar]) for name, bar in bars.items()}
+    checks = {name: mr.mechanism_check(wall, SITE) for name, wall in walls.items()}
+    text = page_of(tmp_path, walls["0.1 m"], (), checks=checks)
+    captions = [caption for caption in re.findall("<figcaption>(.*?)</figcaption>", text) if "at rest" in caption]
+    assert captions == [Words("en")("drawing_wall")]  # of both bars
+    slack = mr.Case(WALL, 0.0, 1.0, effects=[mr.Tie(1.0, 1e6, strength=1e4, ultimate=0.1)])
+    checks["low"] = mr.mechanism_check(slack, SITE)
+    captions = re.findall("<figcaption>(.*?)</figcaption>", page_of(tmp_path, walls["0.1 m"], (), checks=checks))
+    assert sum(caption.startswith("0.03 m; 0.1 m: ") for caption in captions) == 1
+    assert sum(caption.startswith("low: ") for caption in captions) == 1
+
+
+def test_masonry_whose_runs_have_further_effects_is_drawn_once(tmp_path):
+    masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 0.5)] * 2, k_n=1e8)
+    mass = mr.AddedMass(mass=10.0, at=(0.0, 1.0), block="block_1")
+    loaded = mr.solve_explicit(mr.MasonryCase(masonry, 1e-3, effects=[mass]))
+    text = page_of(tmp_path, mr.MasonryCase(masonry, 1e-3), [loaded])
+    assert text.count(Words("en")("drawing_masonry")) + text.count(": the blocks at rest") == 2  # picture and caption
+
+
 def test_the_dynamic_verdict_of_masonry_stands_on_its_first_page(tmp_path):
     """d_0 is that of the common centroid, and the strip is of the farthest block: it has no line for it."""
     masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 0.5)] * 2, k_n=1e8)
