@@ -120,7 +120,7 @@ def test_a_code_of_the_package_has_every_step_in_both_languages(path):
         ('name = "Museum"', "", "the file has no name"),
         ("[states.stays]", "[linear]\nstate = 'x'\nbehaviour = 2\n[states.stays]", "linear.state = 'x' is not one of"),
         ("[states.stays]", "[confidence]\nlow = 1.3\n[states.stays]", "do not increase"),
-        ('text.en = "demand"', "text.en = 3", "steps.demand.en = 3"),
+        ('text.en = "demand, xi = {damping:.0%}"', "text.en = 3", "steps.demand.en = 3"),
     ],
 )
 def test_what_is_no_code(old, new, complaint, tmp_path):

@@ -113,14 +113,14 @@ class CodeStep:
 
     Args:
         text: what it is, by language, in a report.
-        plain: the same in English with its formula, in a table of plain text.
+        plain: the same in English with its formula, in a table of plain text. Empty is the English text.
         formula: in a report, see `mjrock.reporting.markup.formula`. OF, SHARE, PERIOD, DAMPING [%] and BEHAVIOUR stand
             for the limit state, its numbers, and q.
         clause: where it stands in the code.
     """
 
     text: Texts
-    plain: str
+    plain: str = ""
     formula: str = ""
     clause: str = ""
 
@@ -269,7 +269,8 @@ class Code:
         step, numbers = self.steps[key], {"of": of}
         places = numbers | (asdict(self.states[of]) if of in self.states else {})
         try:
-            filled = (one.format(**places) for one in (step.plain, step.clause, *step.text.values()))
+            plain = step.plain or step.text.get("en", key)
+            filled = (one.format(**places) for one in (plain, step.clause, *step.text.values()))
             plain, clause, *texts = filled
         except (KeyError, IndexError) as error:
             known = ", ".join(f"{{{place}}}" for place in places)
