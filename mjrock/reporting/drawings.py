@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,6 +19,7 @@ from ..study.loading.load_check import Borne
 from .pictures import FAILS, SMALL, TALL, WIDE
 from .subject import content_of
 from .texts import FOUND, Words
+from .verdicts import Subject
 
 SWAY = 0.08
 """How far a crack is drawn open, over the length between the supports [-]."""
@@ -30,7 +30,7 @@ OTHERS = Corner, VerticalBending, HorizontalBending
 Colour = str | tuple[float, float, float]
 
 
-def drawn(problem: Any, words: Words, borne: Sequence[Borne] = ()) -> tuple[Figure, str]:
+def drawn(problem: Subject, words: Words, borne: Sequence[Borne] = ()) -> tuple[Figure, str]:
     """The drawing of what is checked or run, with the mechanism in it, and its caption.
 
     Args:

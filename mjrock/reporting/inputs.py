@@ -29,9 +29,10 @@ from ..problem.wall.wedge import Corner
 from ..quantities import GRAVITY, Array, declared
 from ..study.loading.demand import Demand
 from ..study.loading.limit_analysis import LimitCurve
+from ..study.loading.mechanism_curve import case_of
 from .pictures import Run, by_variant
 from .texts import BY_HAND, DASH, FOUND, GIVEN, LENGTH_DECIMALS, Words, effect_name, texts
-from .verdicts import REVERSED, Mechanism, effect_label
+from .verdicts import REVERSED, Mechanism, Subject, effect_label
 
 LISTED = 60
 """Most blocks, and most joints, that stand in a table of the report. More of them stand in a file beside it."""
@@ -134,7 +135,9 @@ class Listing(NamedTuple):
     rows: list[tuple[str, ...]]
 
 
-def subjects(own: str, case: object, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[tuple[str, object]]:
+def subjects(
+    own: str, case: Subject, mechanisms: Sequence[Mechanism], runs: Sequence[Run]
+) -> list[tuple[str, Subject]]:
     """What a report is of, each with its name: what its checks are of, what its runs are of but for the wall that
     stands for a corner in them, and the case, whose own name is given."""
     called = [(mechanism.name, subject) for mechanism in mechanisms for subject in mechanism.subjects]
@@ -300,13 +303,6 @@ def _growing(found: Collapse, words: Words) -> list[Input]:
     return rows
 
 
-def masonry_in(subject: Any) -> Masonry | None:
-    """The masonry of a subject, if it has one."""
-    start = getattr(subject, "start", subject)
-    found = getattr(start, "masonry", start)
-    return found if hasattr(found, "joint_stiffness") else None
-
-
 def _span(values: Array, unit: str, words: Words, digits: int = GIVEN) -> str:
     """The lowest and the highest of values."""
     low, high = (float(end) for end in (values.min(), values.max()))
@@ -316,11 +312,11 @@ def _span(values: Array, unit: str, words: Words, digits: int = GIVEN) -> str:
     return ends[0] if low == high else words("range", low=ends[0], high=ends[1])
 
 
-def listings(subject: Any, words: Words, written: Callable[[float], str]) -> list[Listing]:
+def listings(subject: Subject, words: Words, written: Callable[[float], str]) -> list[Listing]:
     """What takes a table of its own, in SI units, as `written` writes them: of masonry its blocks with their vertices,
     its joints with what each has, and pairs of blocks that have something of their own where they meet; of a case what
     is driven, over time."""
-    masonry, found = masonry_in(subject), dict[str, list[tuple[str, ...]]]()
+    masonry, found = getattr(case_of(subject), "masonry", None), dict[str, list[tuple[str, ...]]]()
     if masonry is not None:
         found = {"blocks": _block_rows(masonry, words, written), "joints": _joint_rows(masonry, written)}
         if callable(masonry.pairs):
@@ -367,7 +363,7 @@ def _pair_rows(masonry: Masonry, written: Callable[[float], str]) -> list[tuple[
     ]
 
 
-def _history_rows(subject: Any, words: Words, written: Callable[[float], str]) -> list[tuple[str, ...]]:
+def _history_rows(subject: Subject, words: Words, written: Callable[[float], str]) -> list[tuple[str, ...]]:
     """A row for each time of what is driven: supports, actuators and a table that tilts."""
     rows = []
     for support in getattr(subject, "supports", ()):

@@ -36,7 +36,7 @@ from .parts import Part, drawings_of, is_of, parts_of
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strips
 from .subject import Content, content_of
 from .texts import DASH, FOUND, MINUS, Words
-from .verdicts import REVERSED, Check, Mechanism, required_checks
+from .verdicts import REVERSED, Check, Mechanism, Subject, required_checks
 
 HEADS = ("project", "client", "author", "date", "place")
 """What the title block has a place for."""
@@ -117,18 +117,16 @@ def report(
         words("what_stands"): inputs.of_subjects(subjects, own, words),
         words("contacts"): of_impacts(case, e, contacts, runs, words),
     }
-    keys = [row.key for sections in given.values() for section in sections for row in section.rows]
-    rests = required_texts("basis", basis, keys)
+    rests = required_texts("basis", basis, [row.key for some in given.values() for one in some for row in one.rows])
     drawings = [drawings_of(part, parts, words) for part in parts]
-    first = drawings[0][:1] if len(parts) == 1 else []
     lists = lists_of([one for _, one in subjects], path, words)
     block = required_texts("project", project, HEADS)
     pieces = [
         element("h1", head),
         title_block(block, words),
         *([element("p", element("b", words("question")), " ", notes)] if notes else []),
-        *answered(parts, runs, mechanisms, words, first),
-        *checked(parts, [some[len(first) :] for some in drawings], mechanisms, words),
+        *answered(parts, drawings, runs, mechanisms, words),
+        *checked(parts, drawings, mechanisms, words),
         *shaken(parts, words),
         *[piece for name, some in required_sections(sections).items() for piece in section(name, some, words)],
         *judged(parts, runs, mechanisms, words, inputs.loads_in([one for _, one in subjects], words)),
@@ -157,7 +155,7 @@ class Request(NamedTuple):
         bare: whether neither checks nor sections are given, so that responses have to be.
     """
 
-    case: Any
+    case: Subject
     responses: object
     labels: object = None
     mechanisms: Sequence[Mechanism] = ()
@@ -249,12 +247,12 @@ def title_block(block: Mapping[str, str], words: Words) -> Markup:
 
 def answered(
     parts: Sequence[Part],
+    drawings: Sequence[Sequence[Markup]],
     runs: Sequence[Run],
     mechanisms: Sequence[Mechanism],
     words: Words,
-    drawing: Sequence[Markup],
 ) -> list[Markup]:
-    """The answer, with the first drawing of a report of one wall; several walls are drawn with their checks."""
+    """The answer, and the first drawing of a report of one wall; several walls are drawn with their checks."""
     others = [one.subject for part in parts for one in part.subjects]
     found = verdicts.answers(mechanisms, others, words) if mechanisms else []
     codes = verdicts.codes_of(mechanisms, words.language)
@@ -262,6 +260,7 @@ def answered(
     methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
     methods += [words("borne")] * borne
     texts = [*methods, *([outcomes(runs, words)] if runs else [])]
+    drawing = drawings[0][:1] if len(parts) == 1 else []
     return [element("h2", words("answer")), *found[:-1], *drawing, *found[-1:], *(element("p", one) for one in texts)]
 
 
@@ -280,6 +279,7 @@ def checked(
     """The checks, of each wall with its drawings, its curves and its steps."""
     parts: list[Markup] = []
     several, kinematic = len(wholes) > 1, any(one.kinematic for one in mechanisms)
+    drawings = [some[not several :] for some in drawings]
     if any(drawings) or kinematic:
         codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
         parts += [element("h2", words("checks" if kinematic else "drawings"))]
@@ -428,7 +428,7 @@ def tables(text: str) -> list[Markup]:
     return parts
 
 
-def of_impacts(case: Any, e: object, contacts: object, runs: Sequence[Run], words: Words) -> list[inputs.Section]:
+def of_impacts(case: Subject, e: object, contacts: object, runs: Sequence[Run], words: Words) -> list[inputs.Section]:
     """Restitution and contacts, of all responses or of each variant; TypeError for anything else."""
     cases = {run.variant: run.response.case for run in runs}
     given = {"e": (e, Restitution), "contacts": (contacts, Contacts)}
@@ -452,7 +452,7 @@ class InputTable(NamedTuple):
     file: Path | None
 
 
-def lists_of(subjects: Sequence[object], path: Path, words: Words) -> list[InputTable]:
+def lists_of(subjects: Sequence[Subject], path: Path, words: Words) -> list[InputTable]:
     """The tables of what a report is of, each once, in the page or in a file beside it."""
     found: list[InputTable] = []
     for one_of in subjects:

@@ -10,19 +10,18 @@ from ..problem.masonry.case import AnyCase
 from ..study.loading.mechanism_curve import case_of
 from . import verdicts
 from .drawings import OTHERS, drawn
-from .inputs import masonry_in
 from .markup import Markup, framed, image_of
 from .pictures import Run, by_variant
 from .subject import Content, content_of
 from .texts import Words
-from .verdicts import Mechanism
+from .verdicts import Mechanism, Subject
 
 
 class NamedSubject(NamedTuple):
     """What is checked or run, such as a case, with the names of its mechanisms and variants."""
 
     names: list[str]
-    subject: Any
+    subject: Subject
 
 
 @dataclass
@@ -41,7 +40,7 @@ class Part:
     mechanisms: list[Mechanism] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
 
-    def add(self, name: str, subject: object) -> None:
+    def add(self, name: str, subject: Subject) -> None:
         """Add a subject, or a further name of one that is drawn alike."""
         for one in self.subjects:
             if _looks(one.subject) == _looks(subject):
@@ -49,7 +48,7 @@ class Part:
                 return
         self.subjects.append(NamedSubject([name], subject))
 
-    def is_of(self, subject: object) -> bool:
+    def is_of(self, subject: Subject) -> bool:
         """Whether a subject is of it."""
         body = body_of(subject)
         return type(body) is type(self.body) and body == self.body
@@ -70,7 +69,7 @@ class Part:
         return content_of(self.subjects[0].subject)
 
 
-def parts_of(own: str, case: Any, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[Part]:
+def parts_of(own: str, case: Subject, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[Part]:
     """The parts of a report, that with the least ratio first.
 
     Args:
@@ -98,20 +97,20 @@ def parts_of(own: str, case: Any, mechanisms: Sequence[Mechanism], runs: Sequenc
     return parts
 
 
-def body_of(subject: Any) -> Any:
+def body_of(subject: Subject) -> object:
     """A wall, corner or masonry without its effects."""
     if isinstance(subject, OTHERS):
         none: dict[str, Any] = {one.name: () for one in fields(subject) if one.name == "effects"}
         return replace(subject, **none)
-    return masonry_in(subject) or getattr(subject, "case", subject).built
+    return case_of(subject).built
 
 
-def is_of(case: AnyCase, subject: Any) -> bool:
+def is_of(case: AnyCase, subject: Subject) -> bool:
     """Whether a case is of the wall, corner or masonry of a subject."""
-    return bool(case.built == (case_of(subject).built if isinstance(subject, OTHERS) else body_of(subject)))
+    return bool(case.built == case_of(subject).built)
 
 
-def _of(subject: object, parts: list[Part]) -> Part:
+def _of(subject: Subject, parts: list[Part]) -> Part:
     """The part of a subject, which is added where there is none."""
     found = next((part for part in parts if part.is_of(subject)), None)
     if found is None:
@@ -119,9 +118,9 @@ def _of(subject: object, parts: list[Part]) -> Part:
     return found
 
 
-def _looks(subject: Any) -> tuple[object, ...]:
+def _looks(subject: Subject) -> tuple[object, ...]:
     """What a drawing shows of a subject."""
-    one = subject if isinstance(subject, OTHERS) else getattr(subject, "case", None) or subject
+    one = subject if isinstance(subject, OTHERS) else case_of(subject)
     return body_of(one), getattr(one, "effects", ()), getattr(one, "side_stop", None)
 
 

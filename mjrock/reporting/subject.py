@@ -40,7 +40,7 @@ from .inputs import of_header
 from .markup import Markup, element, table
 from .pictures import SMALL, WIDE, Run, by_variant, small, wall_drawn
 from .texts import DASH, FOUND, GIVEN, Words, effect_name
-from .verdicts import REVERSED
+from .verdicts import REVERSED, Subject
 
 TITLE = 48
 """Longest line of a title of half a page [characters]."""
@@ -328,12 +328,9 @@ def _polar(run: Run, words: Words) -> str:
     return f"{run.label} ({words('reversed')})" if run.turned else run.label
 
 
-def content_of(subject: Any) -> Content:
+def content_of(subject: Subject) -> Content:
     """What is checked or run as a report sees it."""
     curve = subject if isinstance(subject, LimitCurve) else None
-    if isinstance(subject, Collapse):
-        masonry = subject.masonry
-        subject = subject.case if masonry is None else MasonryCase(masonry, 1.0, effects=subject.effects)
     case = case_of(subject)
     return MasonryContent(case, curve) if isinstance(case, MasonryCase) else WallContent(case)
 

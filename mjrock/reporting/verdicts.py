@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..problem.masonry.case import AnyCase
+from ..problem.masonry.limit.collapse import Collapse
 from ..problem.wall.bending import HorizontalBending, VerticalBending
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import link_effects
@@ -18,11 +20,14 @@ from ..study.loading.design import Condition, Design
 from ..study.loading.dynamic_check import DynamicCheck
 from ..study.loading.load_check import Borne, LoadCheck, load_check
 from ..study.loading.mechanism_check import METHODS, MechanismCheck
+from ..study.loading.mechanism_curve import Checked
 from ..study.loading.verdict import Step, Verdict
 from .markup import Markup, element, formula, table
 from .texts import DASH, FOUND, GIVEN, Words, effect_name
 
 Check = MechanismCheck | DynamicCheck | LoadCheck
+Subject = Checked | AnyCase | Collapse
+"""What a check or a run is of."""
 REVERSED = ", reversed"
 """How the name of a reversed motion ends."""
 ABREAST = 4
@@ -45,7 +50,7 @@ class Mechanism(NamedTuple):
     loads: tuple[LoadCheck, ...] = ()
 
     @property
-    def subjects(self) -> list[object]:
+    def subjects(self) -> list[Subject]:
         """What its checks are of, where they know it."""
         checked = [self.kinematic.mechanism] if self.kinematic else []
         shaken = [check.case for check in self.dynamic]
@@ -129,7 +134,7 @@ def sentences(codes: Sequence[Code], key: str, words: Words) -> list[str]:
     return [text for code in codes if (text := code.text(key, words.language))]
 
 
-def answers(mechanisms: Sequence[Mechanism], others: Sequence[object], words: Words) -> list[Markup]:
+def answers(mechanisms: Sequence[Mechanism], others: Sequence[Subject], words: Words) -> list[Markup]:
     """What holds: a sentence for what governs as it is, one for each proposal, and all conditions, the worst first.
 
     Args:
@@ -184,9 +189,9 @@ def ranked(mechanisms: Sequence[Mechanism]) -> list[Mechanism]:
     return sorted(mechanisms, key=lambda one: one.least.ratio)
 
 
-def _adds(subject: Any, base: Any) -> bool:
+def _adds(subject: Subject, base: Subject) -> bool:
     """Whether a case is another one of the same wall or masonry with further ties or dampers: a proposal."""
-    if type(subject) is not type(base) or not hasattr(subject, "built") or subject.built != base.built:
+    if not (isinstance(subject, AnyCase) and isinstance(base, AnyCase) and subject.built == base.built):
         return False
     further = tuple(one for one in subject.effects if one not in base.effects)
     return bool(link_effects(further)) and all(one in subject.effects for one in base.effects)

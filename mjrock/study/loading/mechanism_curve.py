@@ -10,6 +10,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from ...problem.masonry.case import AnyCase, MasonryCase, require_wall
+from ...problem.masonry.limit.collapse import Collapse
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.bending import HorizontalBending, VerticalBending
 from ...problem.wall.case import Case
@@ -27,17 +28,20 @@ Checked = Case | Corner | VerticalBending | HorizontalBending | LimitCurve
 """What a kinematic check takes."""
 
 
-def case_of(problem: Checked | AnyCase) -> AnyCase:
+def case_of(problem: Checked | AnyCase | Collapse) -> AnyCase:
     """The case that stands for a mechanism where it is run: of a corner its wall and masses, of a wall that bends the
-    wall, of a limit curve its masonry and effects."""
+    wall, of limit analysis its masonry and effects."""
     if isinstance(problem, Corner):
         return problem.case
     if isinstance(problem, VerticalBending | HorizontalBending):
         return Case(problem.wall)
-    if isinstance(problem, LimitCurve):
-        assert problem.start.masonry is not None
-        return MasonryCase(problem.start.masonry, 1.0, effects=problem.effects)
-    return problem
+    found = problem.start if isinstance(problem, LimitCurve) else problem
+    if not isinstance(found, Collapse):
+        return found
+    if found.masonry is not None:
+        return MasonryCase(found.masonry, 1.0, effects=found.effects)
+    assert found.case is not None
+    return found.case
 
 
 class MechanismCurve(NamedTuple):
