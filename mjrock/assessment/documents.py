@@ -91,7 +91,7 @@ def plain(value: Any, kinds: Sequence[Any], place: Place) -> Any:
     if isinstance(value, Sequence) and all(isinstance(one, Support) for one in value) and value:
         return {one.block: plain(one.histories, (), (*place, one.block)) for one in value}
     if isinstance(value, Sequence):
-        wholes = [getattr(one, "told", one) for one in value]  # the wedges in the place of their masses
+        wholes = [getattr(one, "report_item", one) for one in value]  # the wedges in the place of their masses
         value = [
             one if isinstance(one, CombinedEffect) else given
             for one, given in zip(wholes, value, strict=True)
