@@ -16,7 +16,7 @@ ROOT = Path(mjrock.__file__).parent
 FLOORS = (
     ("contacts",),
     ("machine", "notice"),
-    ("_version", "bars", "command_line", "background_compilation", "interrupts", "notebook"),
+    ("_version", "bars", "command_line", "background_compilation", "deprecation", "interrupts", "notebook"),
     ("loop_cache",),
     ("compiled", "compiler", "method", "quantities"),
     ("geometry", "linear"),
