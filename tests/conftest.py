@@ -1,6 +1,7 @@
 import contextlib
 import gc
 import os
+import signal
 from collections.abc import Generator
 from typing import Any
 
@@ -18,7 +19,9 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     """Each process of xdist compiles its share of the loops before any test starts, so that none is compiled twice.
 
     What is stored already is only loaded. A session without xdist compiles what its tests call. What is wrong with a
-    run, the tests say."""
+    run, the tests say. A shell starts what runs in the background with Ctrl-C ignored, which tests of it need."""
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     worker = getattr(session.config, "workerinput", None)
     if worker is not None:
         with contextlib.suppress(Exception):
