@@ -208,7 +208,7 @@ EQUIVALENT = {
     **{
         "vaults.py: corners = [at for k, at in enumerate(corners) if not np.allclose(at, corners[k - 1], "
         f"atol={least})]": "corners are one to rounding, or apart by more than the relative tolerance beside this one"
-        for least in ("1e-12 / high", "2e-12 * high")
+        for least in ("1e-12 / pier_height", "2e-12 * pier_height")
     },
     "reading.py: early = t[-1] <= case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to "
     "the duration": "no sample is half a step before the end to the last bit",

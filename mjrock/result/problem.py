@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Array, require_array, require_kind, require_within, shown
+from ..quantities import Array, declared, require_array, require_kind, require_within, shown
 from ..scene.course import Course
 from ..scene.masonry import masonry_course, masonry_scene
 from ..scene.scene import Scene
@@ -29,6 +29,8 @@ ground motion [-]."""
 UNPAID = 0.01
 """Error of the balance of masonry above which there is a warning, over the largest part of the ledger [-]."""
 
+IN_TEXT = {"k", "reach", "strength", "push", "c"}
+"""The numbers of a `LinkLaw` that the text of a model has."""
 PARTS = ("pose", "velocity")
 UNIT_ROUNDING = 1e-6
 """Largest difference of the length of a quaternion from one [-]."""
@@ -180,8 +182,12 @@ def required_start(start: object, case: AnyCase, *, remembers: bool = False) -> 
 def require_in_text(case: AnyCase) -> None:
     """Raise ValueError for a link whose law the text of a model, and so a fixed step, cannot describe."""
     for name, link in case.links.items():
-        if (ultimate := link.law.ultimate) < math.inf:
-            raise ValueError(
-                f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "
-                f"ultimate = {ultimate:g} m; leave timestep out, so that steps fit the motion, or leave ultimate out"
-            )
+        kind: Callable[..., object] = type(link)
+        for number, usual in link.law._field_defaults.items():
+            if number not in IN_TEXT and (value := getattr(link.law, number)) != usual:
+                unit = declared(kind)[number].within.unit
+                raise ValueError(
+                    f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "
+                    f"{number} = {value:g} {unit}; leave timestep out, so that steps fit the motion, or leave {number} "
+                    "out"
+                )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...compiled import inlined
 from ...problem.masonry.case import AnyCase
-from ...problem.wall.effect import resistance
+from ...problem.wall.effect import DASHPOT, resistance
 from ...scene.scene import Scene
 from ..rows import Rows
 from ..system import Books, System
@@ -17,7 +17,7 @@ class Dampers(Kind, Table):
     `rate` is that of the last step [m/s], half a step before the pose, and `lead` by how many steps they look ahead.
     """
 
-    own = ("c", "rate", "lead")
+    own = (*DASHPOT, "rate", "lead")
     booked = ("dashpots",)
 
     @classmethod

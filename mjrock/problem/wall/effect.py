@@ -153,6 +153,10 @@ class LinkLaw(NamedTuple):
         return np.array(list(slid)[1:])
 
 
+DASHPOT = ("c",)
+"""The numbers of a `LinkLaw` that `resistance` reads."""
+
+
 @inlined
 def resistance(law: LinkLaw, rate: float) -> float:
     """Force with which the dashpot of a link, or of a row, resists the rate of its length [N], for all solvers."""
