@@ -70,11 +70,6 @@ class TieMotion:
     largest_force: float
     broken: float
 
-    @property
-    def largest_elongation(self) -> float:
-        """The largest elongation beyond the slack among the samples before it broke [m]."""
-        return float(np.nanmax(np.abs(self.elongation), initial=0.0))
-
 
 def motion_of_ties(moving: Moving, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
     """The ties of a case where its bodies are."""

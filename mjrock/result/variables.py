@@ -48,7 +48,7 @@ def variables_of(answer: Any) -> dict[str, Variable]:
 
 
 def attributes_of(answer: Any) -> dict[str, str]:
-    """What a file says of a response as a whole, by name."""
+    """Attributes of a file that describe a response as a whole, by name."""
     origin, ground = answer.origin, sources(answer.case)
     attributes = {
         "title": repr(answer),
@@ -61,7 +61,7 @@ def attributes_of(answer: Any) -> dict[str, str]:
 
 
 def record_of(answer: Any) -> dict[str, Tree]:
-    """What files for other programs say of a response: what `attributes_of` gives, its case and its origin, see `tree`,
+    """Record of a response in files of other programs: what `attributes_of` gives, its case and its origin, see `tree`,
     with all their numbers."""
     writer = Writer()
     return attributes_of(answer) | {name: writer.tree(getattr(answer, name), name) for name in ("case", "origin")}
