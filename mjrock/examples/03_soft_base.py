@@ -16,6 +16,7 @@ import matplotlib
 from matplotlib.figure import Figure
 
 import mjrock as mr
+from mjrock.plotting.style import power_of_ten
 
 wall = mr.Block.from_size(thickness=0.6, height=4.2)  # m
 e = mr.Restitution.from_geometry(wall)
@@ -44,7 +45,7 @@ for i, (k_n, (sizes, values)) in enumerate(points.items()):
         values,
         "o-",
         color=colors(i / len(points)),
-        label=f"{k_n:.0e} N/m³",
+        label=f"{power_of_ten(k_n)} N/m³",
     )
 ax.axhline(abs(e.lumped), color="0.4", linestyle="--", label="theory")
 ax.set_xscale("log")

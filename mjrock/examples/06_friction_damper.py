@@ -47,7 +47,13 @@ figure = plotting.grid(panels, columns=2, top=1.0)
 
 # %%
 # The force over the slip: loops whose area is what it took.
-figure = Figure(figsize=(4.5, 3.2), layout="constrained")
+# sphinx_gallery_thumbnail_number = 3
+figure = Figure(figsize=(6.4, 3.2), layout="constrained")
 ax = figure.subplots()
-ax.plot(1e3 * anchor.elongation, 1e-3 * anchor.force, linewidth=0.8)
+ax.plot(
+    1e3 * anchor.elongation,
+    1e-3 * anchor.force,
+    linewidth=0.8,
+    color=plotting.PALETTE[0],
+)
 ax.set(xlabel="elongation [mm]", ylabel="force [kN]")

@@ -15,6 +15,7 @@ import math
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import power_of_ten
 
 pulse = mr.GroundMotion.sine(amplitude=4.0, period=0.6)  # m/s2, s
 answers = {}
@@ -41,5 +42,8 @@ def drawing(answer):
 
 
 figure = plotting.panels(
-    [(f"{k_n:.0e} N/m³", drawing(answer)) for k_n, answer in answers.items()]
+    [
+        (f"{power_of_ten(k_n)} N/m³", drawing(answer))
+        for k_n, answer in answers.items()
+    ]
 )

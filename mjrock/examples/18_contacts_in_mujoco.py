@@ -41,7 +41,9 @@ for name in ("default contact", "k = 1e5 N/m, e = 0.5"):
 # The height of the ball over its floor.
 figure = Figure(figsize=(6.4, 3.4), layout="constrained")
 ax = figure.subplots()
-for name, path in heights.items():
-    ax.plot(2e-4 * np.arange(len(path)), path, label=name)
+for (name, path), colour in zip(
+    heights.items(), mr.plotting.PALETTE, strict=False
+):
+    ax.plot(2e-4 * np.arange(len(path)), path, label=name, color=colour)
 ax.set(xlabel="time [s]", ylabel="height [m]")
 _ = ax.legend(frameon=False)

@@ -215,7 +215,7 @@ class Bodies:
     def extent(self) -> Array:
         """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2, 2).
 
-        What moves farther than one extent of the bodies at rest, or falls by a quarter of it below all of them, is
+        What moves farther than two extents of the bodies at rest, or falls by a quarter of one below all of them, is
         outside. Fixed bodies are shown up to a quarter beyond those that move. Given limits come first.
         """
         if self.limits is not None:
@@ -231,8 +231,8 @@ class Bodies:
         stays = ends_of(np.concatenate(fixed) if fixed else case.rests)
         room = float((rest[1] - rest[0]).max())
         beyond = 0.25 * room
-        low = np.minimum(np.maximum(moving[0], rest[0] - [room, beyond]), rest[1])
-        high = np.maximum(np.minimum(moving[1], rest[1] + room), rest[0])
+        low = np.minimum(np.maximum(moving[0], rest[0] - [2 * room, beyond]), rest[1])
+        high = np.maximum(np.minimum(moving[1], rest[1] + 2 * room), rest[0])
         shown = np.maximum(stays[0], low - beyond), np.minimum(stays[1], high + beyond)
         return np.array([np.minimum(low, shown[0]), np.maximum(high, shown[1])])
 

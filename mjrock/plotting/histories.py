@@ -286,15 +286,21 @@ def comparison(responses: Sequence[Response], title: str = "") -> Figure:
 
 
 @picture()
-def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top: float | None = None) -> Figure:
+def grid(
+    panels: Sequence[tuple[str, Sequence[Response]]],
+    columns: int = 2,
+    top: float | None = None,
+    labels: Sequence[str] | None = None,
+) -> Figure:
     """Rotation histories of several cases in one scale, one panel each, in the manner of the paper's Figure 4.
 
-    `top` cuts the panels off at a rotation in multiples of alpha, to show small rebounds large.
+    `top` cuts the panels off at a rotation in multiples of alpha, to show small rebounds large. `labels` are the names
+    of the responses of each panel, in place of their solvers.
     """
     figure, axes = several(len(panels), columns, (3.4, 2.2))
     drawn = list(axes.flat[: len(panels)])
     for ax, (title, responses) in zip(drawn, panels, strict=True):
-        rotation(ax, responses, top=top)
+        rotation(ax, responses, labels, top)
         ax.set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.7, 9), fontsize=9)
     limits = np.array([ax.get_ylim() for ax in drawn])
     last = max(float(response.t[-1]) for _, responses in panels for response in responses)

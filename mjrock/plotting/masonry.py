@@ -66,7 +66,7 @@ def blocks(
         camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;
             None is (18, 35), from outside.
         limits: lowest and highest coordinate that the picture shows along each axis [m], shape (2, 2), in space (3, 2);
-            None shows the blocks, but for what has gone farther than one extent of the masonry.
+            None shows the blocks, but for what has gone farther than two extents of the masonry, in space than one.
 
     Raises:
         AttributeError: for forces of a run that has kept none.

@@ -7,6 +7,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Concatenate, ParamSpec, Protocol, TypeVar, cast, overload
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
@@ -203,8 +204,22 @@ def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
 
 @picture()
 def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
-    """Several drawings, each on an Axes of its own under its title."""
+    """Several drawings, each on an Axes of its own under its title.
+
+    Drawings in the plane that are to scale, such as those of `blocks`, have one scale and level.
+    """
     figure, axes = several(len(drawings), columns, (4.4, 3.4))
-    for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
-        draw(ax).set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
+    drawn = [draw(ax) for ax, (_, draw) in zip(axes.flat, drawings, strict=False)]
+    for ax, (title, _) in zip(drawn, drawings, strict=True):
+        ax.set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
+    one_scale([ax for ax in drawn if ax.name != "3d" and ax.get_aspect() != "auto"])
     return figure
+
+
+def one_scale(axes: Sequence[Axes]) -> None:
+    """Give Axes that are drawn to scale the same limits, unless these would be twice as wide as those of each."""
+    for name in "xy":
+        own = np.reshape([getattr(ax, f"get_{name}lim")() for ax in axes], (-1, 2))
+        if len(own) and np.ptp(own) <= 2 * np.ptp(own, axis=1).max():
+            for ax in axes:
+                getattr(ax, f"set_{name}lim")(own.min(), own.max())

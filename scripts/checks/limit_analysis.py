@@ -109,10 +109,12 @@ def drawn(found: dict[int, mr.Collapse]) -> Figure:
         )
         ax.set_ylim(bottom=-GROUND)
         without_axes(ax)
-    spans = [(float(np.mean(ax.get_xlim())), np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())) for ax in used]
-    wide, high = (0.5 * max(span[1] for span in spans), max(span[2] for span in spans))
-    for ax, (middle, *_) in zip(used, spans, strict=True):  # one scale, and one level of the ground
-        ax.set(xlim=(middle - wide, middle + wide), ylim=(-GROUND, high - GROUND))
+    walls = [wall(number) for number in found]
+    ends = [np.concatenate([masonry.blocks[i].corners for i in masonry.free]) for masonry in walls]
+    wide, high = 0.6 * max(float(np.ptp(own[:, 0])) for own in ends) + 0.3, max(ax.get_ylim()[1] for ax in used)
+    for ax, own in zip(used, ends, strict=True):  # one scale, and one level of the ground
+        middle = float(own[:, 0].max() + own[:, 0].min()) / 2 + 0.1
+        ax.set(xlim=(middle - wide, middle + wide), ylim=(-GROUND, high))
     bar = AnchoredSizeBar(used[0].transData, 1.0, "1 m", "upper right", frameon=False, sep=4)
     used[0].add_artist(bar)
     return figure

@@ -22,7 +22,7 @@ from scripts.shared.labels import beside
 
 FAR = 0.01
 """Displacement to which the walls are pushed [m]."""
-BELOW = {1: 4, 2: -4}
+BELOW = {1: 4, 2: -4, 4: 2, 5: -4}
 """How far the name of a wall stands above the end of its curve [pt]."""
 INERTIA = 0.0025
 """Forces of inertia that are allowed, over the largest force [-]."""
@@ -33,7 +33,7 @@ def drawn(found: dict[int, mr.Push]) -> Figure:
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     ax = figure.subplots()
     for i, (number, push) in enumerate(found.items()):
-        colour = plotting.PALETTE[i % 4]
+        colour = (*plotting.PALETTE, "0.5")[i % 6]
         ax.plot(1e3 * push.displacement, push.force, color=colour)
         ax.axhline(PUBLISHED[number][1], color=colour, linestyle="--", linewidth=0.8)
         beside(ax, (1e3 * FAR, float(push.force[-1])), f"wall {number}", colour, (4, BELOW.get(number, 0)))

@@ -15,15 +15,16 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
 
 from mjrock import plotting
+from mjrock.plotting.bodies import FORCE, GROUND_COLOUR, STONE
+from mjrock.plotting.style import BLUE
 from scripts.shared import cli
 
 B, H = 0.7, 2.1
 """Half thickness and half height of the wall that is drawn; a stocky one shows the angles best."""
 TILT = 0.5
 """Rotation of the tilted wall over alpha."""
-WALL: dict[str, Any] = {"facecolor": "#e9dcc9", "edgecolor": "#6b5a45", "linewidth": 1.2}
-GROUND: dict[str, Any] = {"facecolor": "0.82", "edgecolor": "none"}
-RED, BLUE = "#b5442e", "#2e62a8"
+WALL: dict[str, Any] = {"facecolor": STONE, "edgecolor": "0.15", "linewidth": 1.2}
+GROUND: dict[str, Any] = {"facecolor": GROUND_COLOUR, "edgecolor": "none"}
 
 
 def turned(points: Sequence[tuple[float, float]], theta: float) -> list[tuple[float, float]]:
@@ -55,7 +56,7 @@ def surroundings(ax: Axes) -> None:
 def frame(ax: Axes, title: str) -> None:
     """Equal scales, no axes, a title."""
     ax.set_xlim(-1.95, 3.15)
-    ax.set_ylim(-1.02, 2 * H + 0.75)
+    ax.set_ylim(-1.15, 2 * H + 0.75)
     ax.set_aspect("equal")
     ax.axis("off")
     ax.set_title(title, fontsize=11)
@@ -70,16 +71,16 @@ def standing(ax: Axes) -> None:
     alpha = math.atan(B / H)
     ax.add_patch(Arc((B, 0), 2.6, 2.6, theta1=90, theta2=90 + math.degrees(alpha), color=BLUE))
     ax.text(B - 0.24, 1.48, r"$\alpha$", color=BLUE, fontsize=13, ha="center")
-    ax.text(0.18, 0.95, "$R$", color=BLUE, fontsize=12)
+    ax.text(0.12, 0.95, "$R$", color=BLUE, fontsize=12, ha="right")
     ax.plot(0, H, "o", color="0.15", markersize=5)
     ax.text(-0.12, H + 0.12, "centroid", fontsize=9, ha="center", va="bottom")
-    ax.plot([B, -B], [0, 0], "o", color=RED, markersize=7, clip_on=False)
-    ax.text(B + 0.1, 0.1, "outer toe", color=RED, fontsize=9, va="bottom")
-    ax.text(-B + 0.08, 0.1, "inner toe", color=RED, fontsize=9, va="bottom")
+    ax.plot([B, -B], [0, 0], "o", color=FORCE, markersize=7, clip_on=False)
+    ax.text(B + 0.1, 0.1, "outer toe", color=FORCE, fontsize=9, va="bottom")
+    ax.text(-B + 0.08, 0.1, "inner toe", color=FORCE, fontsize=9, va="bottom")
     ends(ax, (-B, 2 * H + 0.25), (B, 2 * H + 0.25), "$2b$", (0, 2 * H + 0.47))
     ends(ax, (2.1, 0), (2.1, 2 * H), "$2h$", (2.35, H))
     arrow(ax, (0.95, -0.45), (1.75, -0.45), "$a_g > 0$", "0.25")
-    arrow(ax, (-0.15, -0.45), (-0.95, -0.45), "$a_g < 0$ opens the wall", "0.25")
+    arrow(ax, (0.05, -0.45), (-0.75, -0.45), "$a_g < 0$\nopens the wall", "0.25")
     frame(ax, "at rest against its side stop")
 
 
@@ -98,13 +99,13 @@ def tilted(ax: Axes) -> None:
     (centre,) = turned([(0, H)], theta)
     ax.plot(*centre, "o", color="0.15", markersize=5)
     arrow(ax, centre, (centre[0], centre[1] - 0.9), "$m g$", "0.15")
-    ax.plot(B, 0, "o", color=RED, markersize=7, clip_on=False)
-    ax.text(B + 0.1, 0.1, "pivot", color=RED, fontsize=9, va="bottom")
+    ax.plot(B, 0, "o", color=FORCE, markersize=7, clip_on=False)
+    ax.text(B + 0.1, 0.1, "pivot", color=FORCE, fontsize=9, va="bottom")
     (inner,), (top,) = turned([(-B, 0)], theta), turned([(-B, 2 * H)], theta)
     places = {"1": (inner[0] + 0.2, inner[1] + 0.2), "2": (top[0] + 0.2, top[1] - 0.32), "3": (B - 0.25, 0.3)}
     for number, at in places.items():
-        ax.text(*at, number, color=RED, fontsize=11, ha="center", va="center")
-    ax.plot([inner[0], top[0]], [inner[1], top[1]], "o", color=RED, markersize=5)
+        ax.text(*at, number, color=FORCE, fontsize=11, ha="center", va="center")
+    ax.plot([inner[0], top[0]], [inner[1], top[1]], "o", color=FORCE, markersize=5)
     ax.annotate("outwards", (2.9, 2 * H + 0.3), (1.55, 2 * H + 0.3), va="center", fontsize=9,
                 arrowprops={"arrowstyle": "-|>", "color": "0.25"})  # fmt: skip
     frame(ax, "tilted outwards")

@@ -17,11 +17,19 @@ from numpy.typing import ArrayLike
 from mjrock.plotting.style import BLUE, GREEN, ORANGE, OWN, figure_of, several, titled
 from scripts.shared.labels import SMALL
 
+SYMBOLS = {
+    "R": "$R$",
+    "slenderness": "$h/b$",
+    "k_base": "$k_{n,b}$",
+    "k_side": "$k_{n,s}$",
+    "amplitude": r"$\theta_0/\alpha$",
+}
+"""The parameters of a match in figures."""
 SOFTNESS = 1e-4, 0.2
 """Ends of the scale of colours: softness of the base [-]."""
 TICKS = (0.1, 0.2, 0.5, 1, 2, 5)
 """Of damping ratios over their mean [-]."""
-ASKED = "restitution asked for $|e|$ [-]"
+REQUESTED = "restitution $|e|$ requested [-]"
 
 
 def damping_curves(
@@ -36,7 +44,7 @@ def damping_curves(
         color = colormaps["viridis"](scale(softness))
         ax.semilogy(*curve, color=color, linewidth=1.2)
         ax.semilogy(*matches, "o", markersize=4, color=color)
-    ax.set(xlabel=ASKED, ylabel=r"damping ratio $\xi$ [-]")
+    ax.set(xlabel=REQUESTED, ylabel=r"damping ratio $\xi$ [-]")
     ax.locator_params(axis="x", nbins=6)
     colours = ScalarMappable(scale, "viridis")
     figure_of(ax).colorbar(colours, ax=ax).set_label("softness of the base [-]", fontsize=SMALL)
@@ -96,6 +104,6 @@ def obtained(ax: Axes, samples: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Ax
     found = np.concatenate([row for _, row in samples.values()])
     if np.any(found == 0):
         ax.text(0.5 * sum(limits), 0.02, "0: sticks", fontsize=SMALL, color="0.3")
-    ax.set(xlabel=ASKED, ylabel="restitution obtained $|e|$ [-]")
+    ax.set(xlabel=REQUESTED, ylabel="restitution obtained $|e|$ [-]")
     ax.legend(frameon=False, fontsize=SMALL)
     return ax

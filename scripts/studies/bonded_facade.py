@@ -25,6 +25,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
+from scripts.shared.at_times import State, states
 from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, UNIT, WINDOWS, motions
 
 JOINTS: dict[str, Any] = {"k_n": 3e9, "k_s": 3e9, "friction": 0.6, "xi": 0.01, "points": 3}
@@ -67,13 +68,10 @@ def shaken(masonry: mr.Masonry, duration: float, seed: int) -> mr.Response:
 
 
 def drawn(answers: dict[str, mr.Response]) -> Figure:
-    """The façades after the motions."""
-    figure = Figure(figsize=(7.4, 2.7), layout="constrained")
-    for i, (name, answer) in enumerate(answers.items()):
-        ax = figure.add_subplot(1, len(answers), i + 1, projection="3d")
-        plotting.blocks(ax, answer.of_masonry.masonry, answer.pose[-1], camera=CAMERA)
-        ax.set_title(name, fontsize=9, y=1.0)
-    return figure
+    """A façade before the motions, and each after them."""
+    first = next(iter(answers.values()))
+    ends = [State(f"{name}, after {answer.t[-1]:g} s", answer, len(answer.t) - 1) for name, answer in answers.items()]
+    return states([State("each at rest", first, 0), *ends], CAMERA, columns=2)
 
 
 def main(argv: Sequence[str] | None = None) -> None:

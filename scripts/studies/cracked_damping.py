@@ -14,9 +14,10 @@ Without it the motions are synthetic, and there is no test to compare with. Draw
 
 from __future__ import annotations
 
+import csv
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.style import BLACK
+from mjrock.plotting.style import BLACK, BLUE
 from mjrock.quantities import Array
 from mjrock.result.response import End
 from scripts.shared import cli
@@ -243,19 +244,39 @@ def runs_of(way: Way, motions: Sequence[mr.GroundMotion], starts: int) -> Array:
     return np.column_stack([np.tile(whole, (starts, 1)), later])
 
 
-def drawn(found: dict[str, Array], runs: Sequence[int], *, tested: bool) -> Figure:
-    """Median peaks by the run with their 16 to 84 %, of 16, 50 and 84 % [m] in rows, shape (3, runs) for each way."""
+SHOWN = "calibrated law"
+"""What the figure shows in colour, with its band."""
+OTHERS = {"undamped": "-", "1.5 % of all motion": "--", "published law": "-.", "published law both bodies": ":"}
+"""Lines of the others."""
+
+
+def drawn(found: Mapping[str, Array], runs: Sequence[int], *, tested: bool) -> Figure:
+    """Median peaks by the run, of 16, 50 and 84 % [mm] in rows, shape (3, runs) for each way."""
     figure = Figure(figsize=(7.4, 4.4), layout="constrained")
     ax = figure.subplots()
     if tested:
         ax.plot(runs, [RUNS[run].test for run in runs], "o", color=BLACK, label="test US-1", markersize=5, zorder=4)
-    for (name, quantiles), colour in zip(found.items(), (*plotting.PALETTE[:4], "0.5", "0.75"), strict=False):
-        low, middle, high = 1e3 * quantiles
-        ax.fill_between(runs, low, high, color=colour, alpha=0.2, linewidth=0)
-        ax.plot(runs, middle, color=colour, marker=".", label=name)
+    for name, (low, middle, high) in found.items():
+        if name == SHOWN:
+            ax.fill_between(runs, low, high, color=BLUE, alpha=0.25, linewidth=0, label=f"{name}, 16 to 84 % of starts")
+            ax.plot(runs, middle, color=BLUE, linewidth=2.0, label=name, zorder=3)
+        else:
+            ax.plot(runs, middle, color="0.55", linestyle=OTHERS.get(name, "-"), linewidth=1.2, label=name)
     ax.set(xlabel="run of the shake table", ylabel="largest displacement at 2.06 m [mm]", yscale="log")
     ax.legend(frameon=False, fontsize=8)
     return figure
+
+
+def of_table(path: Path) -> tuple[dict[str, Array], list[int]]:
+    """The quantiles of each way in a table that has been written [mm], and its runs."""
+    with open(path, encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    names = [name for name in rows[0] if "16 50 84 %" in name]
+    found = {
+        name.partition(" [mm]")[0]: np.array([[float(cell) for cell in row[name].split("; ")] for row in rows]).T
+        for name in names
+    }
+    return found, [int(row["run"]) for row in rows]
 
 
 def synthetic(count: int) -> list[mr.GroundMotion]:
@@ -269,8 +290,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run the mechanism and the wall in every way, print the tables and draw."""
     parser = cli.parser(__doc__, "cracked_damping")
     parser.add_argument("--motions", type=Path, help="folder with the files of shaken_wall.py; else synthetic motions")
+    parser.add_argument("--draw", action="store_true", help="draw the table that is in --out, and run nothing")
     args = parser.parse_args(argv)
     out, made = cli.folder(args.out), ways()
+    if args.draw:
+        table, runs = of_table(out / "cracked_damping.csv")
+        plotting.save(drawn(table, runs, tested=True), out / "cracked_damping.png")
+        return
     if args.quick:
         made = {name: made[name] for name in ("undamped", "published law")}
     rows: list[list[object]] = [
@@ -295,7 +321,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     bar = tqdm(made.items(), disable=None, leave=False)
     peaks = {name: runs_of(way, motions, 2 if args.quick else STARTS) for name, way in bar}
     quantiles = {name: np.percentile(own, [16, 50, 84], axis=0) for name, own in peaks.items()}
-    plotting.save(drawn(quantiles, runs, tested=args.motions is not None), out / "cracked_damping.png")
+    in_mm = {name.replace(",", ""): 1e3 * own for name, own in quantiles.items()}
+    plotting.save(drawn(in_mm, runs, tested=args.motions is not None), out / "cracked_damping.png")
     if args.motions is not None:
         judgements = [[name, *judged(1e3 * own, runs)] for name, own in peaks.items()]
         text += "\n\n" + cli.table(JUDGED, judgements)

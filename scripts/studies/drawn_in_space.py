@@ -22,6 +22,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 import mujoco
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import mjrock as mr
 from mjrock import plotting
@@ -127,7 +128,9 @@ def rendered(view: View) -> Callable[[int], Array]:
             data.mocap_pos[i], data.mocap_quat[i] = body.rest + body.pose[frame, :3], body.pose[frame, 3:]
         mujoco.mj_kinematics(model, data)
         renderer.update_scene(data, camera)
-        return np.asarray(renderer.render())
+        pixels = np.array(renderer.render())
+        pixels[(pixels == 0).all(axis=-1)] = 255  # where nothing is
+        return pixels
 
     return draw
 
@@ -135,6 +138,8 @@ def rendered(view: View) -> Callable[[int], Array]:
 def filmed(view: View) -> Callable[[int], Array]:
     """What draws a frame as `plotting.animate` does."""
     figure, update = animation.scene(view.solids, [], None)
+    for text in figure.findobj(Text):
+        text.set_visible(False)
     stage = animation.Stage(figure, 100.0)
 
     def draw(frame: int) -> Array:
@@ -163,7 +168,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     if pv is None:
         raise RuntimeError("PyVista is not installed: pip install pyvista")
-    answers = {"facade": (facade_in_space.shaken(facade_in_space.facade(), 0.1 if args.quick else 7.0), (20.0, 38.0))}
+    answers = {"façade": (facade_in_space.shaken(facade_in_space.facade(), 0.1 if args.quick else 7.0), (20.0, 38.0))}
     if not args.quick:
         answers["dome"] = dome.growing(dome.dome(0.038, dome.FACETS[-1], dome.STIFFNESSES[0])), (28.0, 35.0)
     figure = Figure(figsize=(7.4, 1.75 * len(answers)), layout="constrained")

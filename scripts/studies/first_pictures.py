@@ -47,7 +47,7 @@ def of_a_record() -> list[mr.GroundMotion]:
     """A record that drifts, without its baseline, and then within a band."""
     made = mr.GroundMotion.synthetic(peak=3.0, duration=20.0, seed=1)
     drift = 0.02 + 0.001 * made.dt * np.arange(len(made.accel))
-    motion = mr.GroundMotion(made.accel + drift, made.dt, "a record")
+    motion = mr.GroundMotion(made.accel + drift, made.dt, "as recorded")
     return [motion, motion.corrected("linear"), motion.corrected("linear", (0.1, 25.0))]
 
 

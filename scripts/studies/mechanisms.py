@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 import mjrock as mr
 from mjrock import plotting
@@ -122,6 +123,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         lines.append(f"{name}: {found.multiplier:.4f} by limit analysis, {alpha_0:.4f} by the closed form")
         ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
         plotting.mechanism(ax, found, share=0.06, forces=False)
+        if angle is None:
+            ax.add_artist(AnchoredSizeBar(ax.transData, 1.0, "1 m", "upper right", frameon=False, sep=4))
         ax.axis("off")
         ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
     plotting.save(figure, out / "mechanisms.png")

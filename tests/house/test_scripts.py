@@ -117,10 +117,11 @@ WRITES = {
     "step_cost": {"step_cost.csv", "step_cost.txt"},
     "step_vectors": {f"step_vectors.{ending}" for ending in ("csv", "txt")},
     "thresholds": {"thresholds.txt"},
-    "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}
+    "damping_figures": {"damping_corners.png", "damping_figures.sqlite", "damping_figures.txt"},
+    "calibrate": {"calibrated.toml", "calibrated_residuals_base.png"}
     | {"calibrated_residuals_side.png", "calibration.csv", "calibration.sqlite", "calibration.txt"},
     "validate_contacts": {"validate_contacts.csv", "validate_contacts.txt"},
-    "validate_law": {"table2_laws.csv", "validation.csv", "validation.png", "validation.sqlite", "validation.txt"},
+    "validate_law": {f"damping_validation.{ending}" for ending in ("png", "sqlite", "txt")} | {"table2_laws.csv"},
 }
 
 
@@ -225,6 +226,7 @@ LONG = {
     "thresholds",
     "throughput",
     "calibrate",
+    "damping_figures",
     "work_precision",
     "records_accuracy",
     "validate_law",

@@ -192,14 +192,14 @@ def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
 
 
 def test_what_has_fallen_far_and_wide_ground_do_not_shrink_the_picture():
-    """Two unit squares side by side, of which one ends 100 m off and below: the picture goes one extent of both, 2 m,
-    to the side, and a quarter of it down and beyond on the ground."""
+    """Two unit squares side by side, of which one ends 100 m off and below: the picture goes two extents of both, 4 m,
+    to the side, and a quarter of one down and beyond on the ground."""
     square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
     poses = np.zeros((2, 2, 3))
     poses[1, 1, :2] = 100.0, -100.0
     ground = np.array([[-50.0, -9.0], [50.0, -9.0], [50.0, 0.0], [-50.0, 0.0]])
     bodies = Bodies.loose(np.arange(2.0), (square, square), [[0.5, 0.5], [1.5, 0.5]], poses, 1.0, (ground,))
-    np.testing.assert_allclose(bodies.extent(), [[-0.5, -1.0], [4.5, 1.0]], atol=1e-12)
+    np.testing.assert_allclose(bodies.extent(), [[-0.5, -1.0], [6.5, 1.0]], atol=1e-12)
 
 
 def test_a_tie_is_drawn_to_the_block_that_its_anchor_moves_with():

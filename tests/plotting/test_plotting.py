@@ -238,3 +238,9 @@ def test_panels_that_are_compared_have_one_scale():
         assert len({ax.get_ylim() for ax in figure.axes}) == 1
         figure.draw_without_rendering()
         assert list(covered(figure)) == []
+
+
+def test_drawings_of_blocks_beside_each_other_have_one_scale():
+    walls = [mr.Masonry.running_bond(length, 1.0, (0.4, 0.2), k_n=1e9) for length in (1.2, 2.4)]
+    figure = plotting.panels([("a", lambda ax, wall=wall: plotting.blocks(ax, wall)) for wall in walls])
+    assert len({(ax.get_xlim(), ax.get_ylim()) for ax in figure.axes}) == 1
