@@ -105,7 +105,7 @@ OWN = {
     "result/ties.py": ("ties", "ties_that_break", "friction_damper", "masonry_effects"),
     "engine/run.py": ("marks", "end_of_run", "ledger", "books_of_masonry"),
     "engine/sliding.py": ("slipping", "sliding"),
-    "problem/masonry/pile.py": ("pile",),
+    "problem/masonry/rigid_stack.py": ("rigid_stack",),
     "problem/masonry/blocks/polygon.py": ("polygon",),
     "problem/masonry/builders/vaults.py": ("vaults",),
     "problem/masonry/fill.py": ("fill",),

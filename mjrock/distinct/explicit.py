@@ -10,7 +10,7 @@ import numpy as np
 from ..background_compilation import first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
-from ..problem.wall.plausible import warn_if_still
+from ..problem.wall.plausibility import warn_if_still
 from ..quantities import Within, require_flag, require_size, require_within, within_ranges
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room

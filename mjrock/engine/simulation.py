@@ -8,7 +8,7 @@ from ..background_compilation import expect, first_answer
 from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
-from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
+from ..problem.wall.plausibility import warn_if_still, warn_of_low_stop
 from ..quantities import require_flag
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room

@@ -20,7 +20,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
-from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
+from ..problem.wall.plausibility import warn_if_still, warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, Within, require_kind, require_size, within_ranges
 from ..result.ending import Stopwatch
 from ..result.motion import OutputStep, RelativeError, SampledMotion, intervals, required_spacing, thinned

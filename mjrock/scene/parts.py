@@ -18,7 +18,7 @@ from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
-from ..problem.masonry.laws.dry import Meets
+from ..problem.masonry.laws.dry import PairProperties
 from ..problem.masonry.laws.joint_law import LawRows, law_rows
 from ..problem.masonry.laws.own_law import Own
 from ..problem.wall.effect import Effect, LinkLaw
@@ -424,9 +424,9 @@ class JointSprings(NamedTuple):
     friction: Array
     residual: Array
     points: Integers
-    pairs: Meets | Callable[[int, int], Meets | None] | None = None
+    pairs: PairProperties | Callable[[int, int], PairProperties | None] | None = None
 
-    def of_pair(self, one: int, other: int) -> Meets | None:
+    def of_pair(self, one: int, other: int) -> PairProperties | None:
         """What two blocks without a joint have where they meet, by their numbers, or None where nothing is given."""
         return self.pairs(one, other) if callable(self.pairs) else self.pairs
 

@@ -16,7 +16,7 @@ from ..background_compilation import first_answer
 from ..problem.damping.restitution import AnyRestitution, Restitution, ScatteredRestitution, impacts_of
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
-from ..problem.wall.plausible import warn_if_still
+from ..problem.wall.plausibility import warn_if_still
 from ..problem.wall.restoring_moment import broken_energy, tie_energy
 from ..quantities import GRAVITY, Array, Implausible, Within, require_kind, require_size, warn_of, within_ranges
 from ..result.ending import Outcome, Stopwatch, describe

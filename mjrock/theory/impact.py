@@ -23,7 +23,7 @@ from scipy.linalg import null_space
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.lines import lines_of, rates
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.pile import Pile
+from ..problem.masonry.rigid_stack import RigidStack
 from ..quantities import Array, Flags, frozen, require_array, require_kind
 
 NOTHING = 1e-9
@@ -102,7 +102,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     )
 
 
-def as_one(pile: Pile) -> Restitution:
+def as_one(pile: RigidStack) -> Restitution:
     """The restitution of a stack that rocks as one.
 
     That of the base is of the rigid impact. That of the side stop conserves the angular momentum about its top (Eq. 3

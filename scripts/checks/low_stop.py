@@ -16,7 +16,7 @@ import numpy as np
 from tqdm import tqdm
 
 import mjrock as mr
-from mjrock.problem.wall.plausible import rebound_height
+from mjrock.problem.wall.plausibility import rebound_height
 from scripts.shared import cli
 
 SHARES = (1.2, 1.05, 1.0, 0.975, 0.95, 0.925, 0.9, 0.85, 0.75, 0.5, 0.25)

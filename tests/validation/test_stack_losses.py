@@ -15,7 +15,7 @@ from explicit_blocks import explicit
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.problem.masonry.pile import Pile
+from mjrock.problem.masonry.rigid_stack import RigidStack
 from mjrock.scene.masonry import masonry_course
 from mjrock.theory.impact import as_one
 
@@ -42,7 +42,7 @@ def test_two_solvers_agree_on_what_a_stack_loses(blocks, matched, expected):
         masonry = mr.Masonry.stack([mr.Block(0.3, 2.1 / blocks)] * blocks, 1e9, friction=10.0, law="CALIBRATED")
     if matched:
         masonry = mr.matched_masonry(masonry)
-    pile = Pile.of(masonry)
+    pile = RigidStack.of(masonry)
     velocity, swing = pile.rising(0.5)
     case = mr.MasonryCase(masonry, 1.75 * swing, velocity=velocity)
     answer = mr.simulate(case, accuracy=1e-5)

@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...geometry.hull import Side, area_vector
-from ...problem.masonry.laws.dry import Meets
+from ...problem.masonry.laws.dry import PairProperties
 from ...problem.masonry.laws.joint_law import INTENSIVE, Law, largest_stiffness
 from ...problem.wall.standing import Solid
 from ...quantities import Array, Flags, Integers
@@ -192,14 +192,14 @@ class GivenPairs:
 
     def __init__(self, springs: JointSprings, blocks: int) -> None:
         self.springs, self.blocks = springs, blocks
-        self.known: dict[int, Meets | None] = {}
+        self.known: dict[int, PairProperties | None] = {}
 
     @property
     def slowest(self) -> float:
         """The largest dashpot over its spring of those that were asked for [s]."""
         return max((meets.retardation for meets in self.known.values() if meets is not None), default=0.0)
 
-    def of(self, number: int) -> Meets | None:
+    def of(self, number: int) -> PairProperties | None:
         """What a pair has, by its number, or None."""
         if number not in self.known:
             self.known[number] = self.springs.of_pair(*divmod(number, self.blocks))
@@ -207,7 +207,7 @@ class GivenPairs:
 
     def retardations(self, one: int, others: Integers) -> Array:
         """Dashpot over spring of a block with others of higher numbers, zero where nothing is given [s], shape (n,)."""
-        if isinstance(self.springs.pairs, Meets):
+        if isinstance(self.springs.pairs, PairProperties):
             return np.full(len(others), self.springs.pairs.retardation)
         met = [self.of(number) for number in (one * self.blocks + others).tolist()]
         return np.array([0.0 if meets is None else meets.retardation for meets in met])

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...contacts.solref import body_weight, pair_values, row
 from ...method import METHOD
-from ...problem.masonry.laws.dry import Meets
+from ...problem.masonry.laws.dry import PairProperties
 from ...problem.wall.standing import in_space
 from ...quantities import Array, Integers
 from ...scene.parts import GROUND
@@ -110,7 +110,7 @@ class PairRows:
 def _given(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers, Array]:
     """Pieces of two blocks without a joint whose law the masonry gives, shape (n, 2), and the friction and dashpot over
     spring of each two, shape (n, 2)."""
-    alone, given = list[tuple[int, int]](), list[Meets]()
+    alone, given = list[tuple[int, int]](), list[PairProperties]()
     if scene.springs is not None and scene.springs.pairs is not None:
         names = [solid.name for solid in scene.standing.solids]
         jointed = {frozenset((pieces[a].block, pieces[b].block)) for a, b in found.tolist()}

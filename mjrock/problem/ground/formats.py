@@ -28,8 +28,8 @@ from .records import (
     NoRecordError,
     OtherContentError,
     Parse,
+    TableOptions,
     Trace,
-    Wanted,
     all_numbers,
     binary_kind,
     factor_of,
@@ -501,7 +501,7 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
     if SEISMOLOGY.match(lines[0]):
         return seismograms(path, unit)
     try:
-        return parse_table(lines, Wanted(unit))
+        return parse_table(lines, TableOptions(unit))
     except OtherContentError:
         raise
     except ValueError as error:

@@ -49,7 +49,18 @@ from .oscillator import (
     oscillator_steps,
     total_acceleration,
 )
-from .records import COARSEST, FINEST, Parse, SampleStep, Trace, Wanted, checked_record, read, table_traces, text_lines
+from .records import (
+    COARSEST,
+    FINEST,
+    Parse,
+    SampleStep,
+    TableOptions,
+    Trace,
+    checked_record,
+    read,
+    table_traces,
+    text_lines,
+)
 from .vertices import Vertices
 
 SUSPICIOUS = 3 * GRAVITY
@@ -763,7 +774,7 @@ class GroundMotion:
             ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step, or what their
                 decimals round), what is not a finite number, and for doubts, with the line and both readings.
         """
-        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip, sheet))
+        traces = table_traces(path, TableOptions(unit, time_unit, dt, columns, skip, sheet))
         if len(traces) > 1:
             raise ValueError(f"{path}: columns has {len(traces)} accelerations; components_in reads them all")
         return motion_of(traces[0], path)

@@ -32,7 +32,7 @@ from ...quantities import (
 from .formats import recognised
 from .motion import GroundMotion, motion_of
 from .oscillator import Periods
-from .records import NoRecordError, Wanted, read, table_traces
+from .records import NoRecordError, TableOptions, read, table_traces
 from .spectrum import SpectrumOfCode, factor_to_spectrum, response_spectrum, scaled_by
 
 VERTICAL = re.compile(r"(?:[A-Z][GHLNJ])?[ZVU]|UP|DO?W?N|VERT?(?:ICAL)?|VRT|U-?D|VT", re.IGNORECASE)
@@ -310,7 +310,7 @@ def components_in(
     if (dt, columns, skip, sheet) == (None, None, None, None):
         traces = read(path, lambda file: recognised(file, unit))
     else:
-        traces = table_traces(path, Wanted(unit, time_unit, dt, columns, skip, sheet))
+        traces = table_traces(path, TableOptions(unit, time_unit, dt, columns, skip, sheet))
     motions = (motion_of(trace, path) for trace in traces)
     return tuple(sorted(motions, key=lambda motion: order(motion.header.get("STREAM", ""))))
 

@@ -316,7 +316,7 @@ HEAD_COUNT = re.compile(
 )
 
 
-class Wanted(NamedTuple):
+class TableOptions(NamedTuple):
     """The arguments that describe a table.
 
     Args:
@@ -337,7 +337,7 @@ class Wanted(NamedTuple):
     sheet: str | None = None
 
 
-class Stated(NamedTuple):
+class HeaderNumber(NamedTuple):
     """A number that a line of a header states."""
 
     value: float
@@ -371,13 +371,13 @@ class RecordTable:
         """The table after its first rows, which are some of the header."""
         return replace(self, values=self.values[rows:], places=self.places[rows:])
 
-    def stated(self, *patterns: re.Pattern[str]) -> Stated | None:
+    def stated(self, *patterns: re.Pattern[str]) -> HeaderNumber | None:
         """The number that the header states in one of these forms; a rate is turned into a step."""
         for place, line in self.head.items():
             for pattern in patterns:
                 if found := pattern.search(line[:HEADER_LINE]):
                     value = value_of(found[1]) * (1e-3 if pattern is HEAD_STEP and found[2] else 1)
-                    return Stated(1 / value if pattern is HEAD_RATE and value else value, place)
+                    return HeaderNumber(1 / value if pattern is HEAD_RATE and value else value, place)
         return None
 
     def column(self, number_of: int) -> Array:
@@ -482,7 +482,7 @@ def _sheets(path: Path) -> dict[str, list[str]]:
     return {name: ["\t".join(map(_cell, row)).rstrip() for row in rows] for name, rows in tables}
 
 
-def table_traces(path: str | PathLike[str], wanted: Wanted) -> list[Trace]:
+def table_traces(path: str | PathLike[str], wanted: TableOptions) -> list[Trace]:
     """The accelerations of a file that is a table, see `parse_table`."""
     return read(path, lambda file: parse_table(table_lines(file, wanted.sheet), wanted))
 
@@ -491,7 +491,7 @@ def _cell(value: object) -> str:
     return "" if value != value else " ".join(str(value).split())
 
 
-def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
+def parse_table(lines: list[str], wanted: TableOptions) -> list[Trace]:
     """The accelerations of a table, a trace for each of its columns that is wanted, in their order.
 
     Lines ahead of the first number are a header; blank lines and those that begin with #, % or // are skipped.
@@ -522,7 +522,7 @@ def parse_table(lines: list[str], wanted: Wanted) -> list[Trace]:
         raise
 
 
-def _traces_of(found: RecordTable, wanted: Wanted, scale: float) -> list[Trace]:
+def _traces_of(found: RecordTable, wanted: TableOptions, scale: float) -> list[Trace]:
     """The accelerations of a table, with the step of `wanted` in s, and the length of a unit of time [s]."""
     dt = wanted.dt
     stated, scaled = found.stated(HEAD_STEP, HEAD_RATE), found.stated(HEAD_SCALE)
@@ -564,7 +564,7 @@ def _samples_in_rows(found: RecordTable, dt: float | None, scale: float) -> tupl
     values = np.array([x for row in found.values for x in row])
     if _has_pairs(values, found.decimals, scale):
         step_of_pairs = float(f"{_grid(scale * values[::2])[0]:.12g}")
-        _agree("dt, which was given,", dt, Stated(step_of_pairs, found.places[0]))
+        _agree("dt, which was given,", dt, HeaderNumber(step_of_pairs, found.places[0]))
         return {0: values[1::2]}, step_of_pairs
     if dt is None:
         raise NoRecordError("samples in rows need their time step: give dt")
@@ -646,7 +646,9 @@ def _names(head: Sequence[str], rows: Sequence[Sequence[float]]) -> list[str]:
     return []
 
 
-def _without_header(found: RecordTable, dt: float | None, stated: Stated | None) -> tuple[RecordTable, Stated | None]:
+def _without_header(
+    found: RecordTable, dt: float | None, stated: HeaderNumber | None
+) -> tuple[RecordTable, HeaderNumber | None]:
     """The table without rows that are numbers of a header, and the step that they state.
 
     They are some where one of them is the number of rows or samples that follow. A ValueError names both readings where
@@ -659,7 +661,7 @@ def _without_header(found: RecordTable, dt: float | None, stated: Stated | None)
         counts = {float(len(rest))} | ({float(sum(map(len, rest)))} if found.width > 2 else set())
         if set(lead) & counts:
             steps = [x for x in lead if FINEST <= x < COARSEST]
-            return found.without(rows), Stated(steps[0], found.places[0]) if len(steps) == 1 else stated
+            return found.without(rows), HeaderNumber(steps[0], found.places[0]) if len(steps) == 1 else stated
     first, *others = found.values
     doubted = 0
     if len(others) >= 3:
@@ -683,7 +685,7 @@ def _without_header(found: RecordTable, dt: float | None, stated: Stated | None)
     return found, stated
 
 
-def _columns_of(found: RecordTable, wanted: Wanted, dt: float | None) -> tuple[dict[int, Array], float]:
+def _columns_of(found: RecordTable, wanted: TableOptions, dt: float | None) -> tuple[dict[int, Array], float]:
     """The accelerations by the number of their column, in the unit of the file, and their time step [s]."""
     if wanted.columns is not None:
         given = [wanted.columns] if isinstance(wanted.columns, int | str) else list(wanted.columns)
@@ -772,7 +774,7 @@ def _step_of(time: Array, found: RecordTable, scale: float, given: float | None)
     return dt
 
 
-def _agree(name: str, given: float | None, stated: Stated | None) -> None:
+def _agree(name: str, given: float | None, stated: HeaderNumber | None) -> None:
     """Raise a ValueError with both readings where a step is another than the one that a header states."""
     if given is not None and stated is not None and abs(given - stated.value) > UNEVEN_TIME * stated.value:
         raise ValueError(

@@ -29,7 +29,7 @@ from ..ground.motion import GroundMotion
 from ..wall.case import Case
 from ..wall.effect import Anchored, Effect, require_only
 from ..wall.effects import EFFECT_KINDS, Carrying, Load
-from ..wall.plausible import IN_G, NEGLIGIBLE_SHARE, Whole, of_effects, of_motion
+from ..wall.plausibility import IN_G, NEGLIGIBLE_SHARE, Whole, of_effects, of_motion
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
@@ -57,8 +57,7 @@ and the displacement no motion [-]."""
 
 
 def doubts(case: MasonryCase) -> list[str]:
-    """What is odd about a case, in words; empty for a plausible one. `mjrock.problem.wall.plausible` has the same of a
-    wall."""
+    """What is odd about a case, in words; empty for a plausible one. For a wall see `problem.wall.plausibility`."""
     masonry = case.masonry
     mass = sum(masonry.blocks[i].mass for i in masonry.free)
     found = of_motion(case.motion, case.duration, "masonry", stood(case))
@@ -147,7 +146,7 @@ class MasonryCase(Carrying):
             a support that is not a fixed block of the masonry.
 
     Warns:
-        Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.
+        Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausibility`.
     """
 
     stop_top: ClassVar[None] = None

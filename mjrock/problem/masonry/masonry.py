@@ -71,7 +71,7 @@ from .files.compas import compas_text
 from .files.dxf import DensityOfLayer, LengthOfLayer, polygons_of, read_dxf
 from .files.meshes import obj_text
 from .laws.bond import Bond
-from .laws.dry import AnyPairs, Meets, requested_pair, required_pairs
+from .laws.dry import AnyPairs, PairProperties, requested_pair, required_pairs
 from .laws.joint_table import (
     PROPERTIES,
     AnyJoints,
@@ -385,13 +385,13 @@ class Masonry(Constructors, NotebookPicture):
         """The bond of each joint, or its law of one's own, None where it is dry."""
         return self.table.bonds
 
-    def of_pair(self, one: int, other: int) -> Meets | None:
+    def of_pair(self, one: int, other: int) -> PairProperties | None:
         """What two blocks without a joint have where they meet, by their numbers, or None where nothing is given."""
         dry = requested_pair(self.pairs, self.names[min(one, other)], self.names[max(one, other)])
         if dry is None:
             return None
         frequency = dry.frequency or (self._lowest_frequency if dry.xi else 1.0)
-        return Meets(dry.friction, 2 * dry.xi / frequency)
+        return PairProperties(dry.friction, 2 * dry.xi / frequency)
 
     def areas_of(self, k: Array, joint: Integers) -> Array:
         """What part of its joint each contact line stands for [m2], from its k [N/m] and the number of its joint."""

@@ -28,7 +28,7 @@ from ..ground.motion import GroundMotion
 from .block import Block
 from .effect import Anchored, Effect, require_only
 from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, constant_forces_of
-from .plausible import doubts
+from .plausibility import doubts
 from .restoring_moment import Restoring, TiePull, of_force, taken, tie_energy, tie_limits, yielded
 from .standing import WallStanding
 
@@ -55,7 +55,7 @@ class Case(Carrying):
             of another type, an effect that is not on the wall, or effects that overturn the wall as it stands.
 
     Warns:
-        Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.
+        Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausibility`.
     """
 
     transverse: ClassVar[None] = None

@@ -46,7 +46,7 @@ def link_law(kind: type[OfUser]) -> type[OfUser]:
     A link is longer than as drawn by u [m]; where it is shorter, u is below zero. The class has `force(self, u, rate)`
     [N], above zero where it pulls and below zero where it pushes, for u and its rate [m/s], and `energy(self, u)` [J],
     the integral of the force at no rate. It may have a tuple `memory` of names of numbers of each link, zero at the
-    start, which `remember(self, u)` changes before the others are asked. `self` has the numbers of the class and its
+    start, which `remember(self, u)` changes before the others are called. `self` has the numbers of the class and its
     memory. See docs/own_effect.md.
 
     Raises:

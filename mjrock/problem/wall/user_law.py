@@ -197,7 +197,7 @@ class AppliedLaw:
         """
         row = self.row(self.values if values is None else values)
         try:
-            with np.errstate(all="ignore"):  # what is not finite is said below
+            with np.errstate(all="ignore"):  # what is not finite is refused below
                 _plain(self.kind, remembers)(row, u, rate)
         except AttributeError as error:
             has = ", ".join((layout(self.kind).names or ())[len(ANSWERS) :])

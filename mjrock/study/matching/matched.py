@@ -21,7 +21,7 @@ from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.laws.joint_table import ByName
 from ...problem.masonry.lines import Lines, lowest_frequency
 from ...problem.masonry.masonry import Masonry
-from ...problem.masonry.pile import Pile
+from ...problem.masonry.rigid_stack import RigidStack
 from ...problem.wall.block import Block
 from ...problem.wall.effects import SideStop
 from ...quantities import (
@@ -222,7 +222,7 @@ def matched_masonry(
     require_kind("e", e, Restitution, type(None))
     amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
     accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
-    pile = Pile.of(masonry)
+    pile = RigidStack.of(masonry)
     e = as_one(pile) if e is None else e
     if pile.sides:
         e.require_rebound()
@@ -250,14 +250,14 @@ def matched_masonry(
     return damped(masonry)
 
 
-def strong(pile: Pile) -> float:
+def strong(pile: RigidStack) -> float:
     """c/k with which the blocks of a stack over an edge of its base do not vibrate on the joints above [s].
 
     It is 2 STRONG_ABOVE over the lowest frequency of the stack with all joints closed above, and one edge of the base.
     """
     stack = pile.free_standing
     lines = stack.lines
-    base = np.flatnonzero(lines.joint == Pile.of(stack).base)
+    base = np.flatnonzero(lines.joint == RigidStack.of(stack).base)
     edges = base[np.argsort(lines.at[base, 0])][[0, -1]]
     frequencies = []
     for edge in edges:
@@ -270,7 +270,7 @@ def strong(pile: Pile) -> float:
 
 def rebound(stack: Masonry, amplitude: float, accuracy: float) -> float:
     """|e| of the first rebound of a stack that rises as one to a rotation, a share of alpha; 0 without one."""
-    pile = Pile.of(stack)
+    pile = RigidStack.of(stack)
     velocity, swing = pile.rising(amplitude)
     for swings in (1.75, 3.5):  # a stack on soft joints rocks slower than a rigid one
         case = MasonryCase(stack, swings * swing, velocity=velocity)
@@ -293,7 +293,7 @@ def _found(face: str, closest: Closest, target: float) -> float:
     return closest.xi
 
 
-def restitutions(answer: Response, pile: Pile) -> Array:
+def restitutions(answer: Response, pile: RigidStack) -> Array:
     """|e| of each rebound of a stack: the root of the energy at a peak over that at the peak before, shape (rebounds,).
 
     It is the whole energy above the stack at rest, as in `Response.settled_restitution`.
@@ -302,7 +302,7 @@ def restitutions(answer: Response, pile: Pile) -> Array:
     return np.asarray(np.sqrt(np.maximum(energy[1:], 0.0) / energy[:-1]))
 
 
-def peaks(answer: Response, pile: Pile) -> list[int]:
+def peaks(answer: Response, pile: RigidStack) -> list[int]:
     """The samples at which the rotation of a stack, the mean over its mass, has a maximum to either side."""
     theta = answer.theta @ pile.masses / pile.masses.sum()
     beyond = np.sign(theta) * (np.abs(theta) > SMALLEST_REBOUND * np.abs(theta).max())

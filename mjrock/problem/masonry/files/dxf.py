@@ -162,7 +162,7 @@ def _is_insert(entity: DXFEntity) -> TypeGuard[Insert]:
     return entity.dxftype() == "INSERT"
 
 
-class Held(NamedTuple):
+class InsertCount(NamedTuple):
     """How many outlines and how many things in all are inserted, also those of outlines."""
 
     outlines: int = 0
@@ -171,9 +171,9 @@ class Held(NamedTuple):
 
 def _require_few(document: Drawing, space: Iterable[DXFEntity]) -> None:
     """Raise a `DrawingError` for blocks that insert each other, or that are too many, before they are inserted."""
-    counts: dict[str, Held] = {}
+    counts: dict[str, InsertCount] = {}
 
-    def held(entities: Iterable[DXFEntity], within: tuple[str, ...]) -> Held:
+    def counted(entities: Iterable[DXFEntity], within: tuple[str, ...]) -> InsertCount:
         outlines = inserted = 0
         for entity in entities:
             if _is_insert(entity):
@@ -182,18 +182,18 @@ def _require_few(document: Drawing, space: Iterable[DXFEntity]) -> None:
             else:
                 outlines += _is_polyline(entity)
                 inserted += bool(within)
-        return Held(outlines, inserted)
+        return InsertCount(outlines, inserted)
 
-    def block(name: str, within: tuple[str, ...]) -> Held:
+    def block(name: str, within: tuple[str, ...]) -> InsertCount:
         if name in within:
             raise DrawingError(f"the blocks {named(within[within.index(name) :])} insert each other")
         if len(within) >= DEEPEST:
             raise DrawingError(f"blocks are inserted in each other on more than {DEEPEST} levels, from {within[0]} on")
         if name not in counts:
-            counts[name] = held(document.blocks.get(name) or (), (*within, name))
+            counts[name] = counted(document.blocks.get(name) or (), (*within, name))
         return counts[name]
 
-    found = held(space, ())
+    found = counted(space, ())
     for count, what, most in (
         (found.outlines, "outlines", MOST_BODIES),
         (found.inserted, "things that are inserted", MOST_INSERTED),
@@ -263,7 +263,7 @@ def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, lengt
     polygons: dict[str, FlatBlock] = {}
     dented: dict[str, tuple[Mesh, tuple[float, float]]] = {}
     for outline in drawing.outlines:
-        held, layer = outline.layer in fixed or outline.name in fixed, outline.layer
+        counted, layer = outline.layer in fixed or outline.name in fixed, outline.layer
         numbers = of("density", density, layer), of("length", length, layer)
         corners = outline.corners @ turn.T
         begins = f"block {outline.name}, which begins at {corners[0, 0]:g}, {corners[0, 2]:g} m"
@@ -272,12 +272,12 @@ def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, lengt
         ring = corners[:, [0, 2]]
         with about(begins, (ValueError, TypeError)):
             try:
-                polygons[outline.name] = Polygon(ring, *numbers, held, outline.name)
+                polygons[outline.name] = Polygon(ring, *numbers, counted, outline.name)
             except InwardsError as error:
                 if given.convex is None:
                     raise ValueError(f"{error}; convex='parts' cuts it, and convex='hull' fills it") from None
                 places, faces = prism(ring, 1.0)
-                dented[outline.name] = Mesh(outline.name, places, list(faces), held), numbers
+                dented[outline.name] = Mesh(outline.name, places, list(faces), counted), numbers
     meshes = [mesh for mesh, _ in dented.values()]
     for block in blocks_of(meshes, FileOptions(convex=given.convex)) if meshes else ():
         polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])

@@ -54,8 +54,8 @@ class Dry:
 
     def __repr__(self) -> str:
         given = {name: value for name, value in vars(self).items() if value is not None}
-        said = {name: format(value, "g") if isinstance(value, Real) else repr(value) for name, value in given.items()}
-        return f"Dry({', '.join(f'{name}={value}' for name, value in said.items())})"
+        parts = {name: format(value, "g") if isinstance(value, Real) else repr(value) for name, value in given.items()}
+        return f"Dry({', '.join(f'{name}={value}' for name, value in parts.items())})"
 
     def __post_init__(self) -> None:
         keep_declared(self)
@@ -139,7 +139,7 @@ RUBBING = ("friction", "xi", "frequency")
 """Fields of a `Dry` that count for a pair. Its springs follow from the joints of its blocks."""
 
 
-class Meets(NamedTuple):
+class PairProperties(NamedTuple):
     """What two blocks have where they meet: friction [-], and dashpot over spring, c/k [s]."""
 
     friction: float

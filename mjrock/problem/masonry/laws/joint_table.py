@@ -43,7 +43,7 @@ PROPERTIES = tuple(Dry().properties)
 """Names of what a joint has, which are keywords of `Masonry` too."""
 
 
-def asked(name: str, given: FunctionOfJoint[T], joint: AnyJoint) -> T:
+def value_at(name: str, given: FunctionOfJoint[T], joint: AnyJoint) -> T:
     """What a function of the joint gives for one, or a TypeError that says how it is called."""
     try:
         return given(joint)
@@ -73,7 +73,7 @@ def properties_of(joints: AnyJoints | None, given: Properties) -> Properties:
         raise ValueError(f"joints is given with {', '.join(named)}, which it says itself; give one or the other")
     if callable(joints):
         choice = Choice(joints)
-        return {name: Chosen(choice, name) for name in PROPERTIES}
+        return {name: ChoiceProperty(choice, name) for name in PROPERTIES}
     require_kind("joints", joints, Dry, Mortar)
     return joints.properties
 
@@ -89,7 +89,7 @@ def has_function(value: object) -> bool:
 
 @dataclass(frozen=True)
 class Choice:
-    """A function of the joint that gives what it is, which is asked once of each joint."""
+    """A function of the joint that gives what it is, which is called once for each joint."""
 
     function: FunctionOfJoint[Dry | Mortar]
     known: dict[AnyJoint, Properties] = field(default_factory=dict, compare=False, repr=False)
@@ -97,14 +97,14 @@ class Choice:
     def __call__(self, joint: AnyJoint) -> Properties:
         """The properties of a joint by name."""
         if joint not in self.known:
-            chosen = asked("joints", self.function, joint)
+            chosen = value_at("joints", self.function, joint)
             require_kind(f"joints of {joint.name}", chosen, Dry, Mortar)
             self.known[joint] = chosen.properties
         return self.known[joint]
 
 
 @dataclass(frozen=True)
-class Chosen:
+class ChoiceProperty:
     """One property of what a function of the joint gives."""
 
     choice: Choice
@@ -291,7 +291,7 @@ def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Arr
     """A property of each joint, with what stands for None, shape (joints,)."""
     if not callable(given):
         return np.full(len(joints), FOR_NONE[name] if given is None else given)
-    one, values = declared(Dry)[name], [asked(name, given, joint) for joint in joints]
+    one, values = declared(Dry)[name], [value_at(name, given, joint) for joint in joints]
     found = [one.checked(f"{name} of {joint.name}", value) for joint, value in zip(joints, values, strict=True)]
     return np.array([FOR_NONE[name] if value is None else value for value in found])
 
@@ -300,7 +300,7 @@ def _bonds(given: OfBond, joints: Sequence[AnyJoint], columns: dict[str, Array])
     """The bond of each joint, the law of one's own, or the joint with its further numbers, None where it has none."""
     found: list[Bond | Own | Dry | None] = []
     for i, joint in enumerate(joints):
-        bond = asked("bond", given, joint) if callable(given) else given
+        bond = value_at("bond", given, joint) if callable(given) else given
         require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, OwnLaw, Dry, type(None))
         if isinstance(bond, OwnLaw):
             found.append(Own(bond, float(columns["k_n"][i]), float(columns["friction"][i])))
@@ -331,7 +331,7 @@ class OtherOptions(TypedDict, total=False):
 class JointOptions(OtherOptions, total=False):
     """Keywords of `Masonry` that its builders hand on: `joints`, or the properties of joints one by one, and the rest.
 
-    What they mean is said at `Masonry`. None takes the usual one.
+    `Masonry` describes them. None takes the usual one.
     """
 
     k_n: OfStiffness

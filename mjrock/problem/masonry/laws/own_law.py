@@ -1,6 +1,6 @@
 """Laws of joints that are classes in a user's own file: what a joint has of such a class, and its checks.
 
-A law is asked for a line of a joint, by its closing [m], which is negative where the line is open. It is given `k_n`
+A law is called for a line of a joint, with its closing [m], which is negative where the line is open. It is given `k_n`
 and `friction` of the joint, see `user_law`.
 """
 
@@ -72,7 +72,7 @@ def joint_law(kind: type[OfUser]) -> type[OfUser]:
     u = 0, above zero where it presses and below zero where it pulls, and `energy(self, u)` [J/m2], its integral. It may
     have `damping(self, u, rate)` [Pa] against a rate of closing [m/s] in the place of the dashpot of xi; a tuple
     `memory` of names of numbers of each line, zero at the start, which `remember(self, u)` changes before the others
-    are asked; and `lost(self)`, the share of its hold in tension that a line has lost for good [-]. `self` has the
+    are called; and `lost(self)`, the share of its hold in tension that a line has lost for good [-]. `self` has the
     numbers of the class, its memory, and `k_n` and `friction` of the joint. See docs/own_law.md.
 
     Raises:

@@ -61,7 +61,7 @@ def damping_by_law(
     """xi of each joint of a stack, and the frequency to which it refers [rad/s], as `Contacts.from_law` gives them for
     the rigid wall above.
 
-    What is asked for is the restitution of that wall by conservation of angular momentum. A joint with a fixed block
+    The required loss is the restitution of that wall by conservation of angular momentum. A joint with a fixed block
     beside the stack is damped as the side stop of the whole stack.
 
     Raises:

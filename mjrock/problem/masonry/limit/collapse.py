@@ -165,7 +165,7 @@ def pushed(masonry: Masonry, push: Array) -> Array:
     return force
 
 
-class Found(NamedTuple):
+class LimitForces(NamedTuple):
     """A state at the limit.
 
     Args:
@@ -183,7 +183,7 @@ class Found(NamedTuple):
 
 def _associated(
     masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls, least: float
-) -> Found | None:
+) -> LimitForces | None:
     """The state of associated friction, None where nothing gives way."""
     sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
     pressed, lines = cones(masonry, friction, across), masonry.lines
@@ -206,12 +206,12 @@ def _associated(
     )
     forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(across))).sum(axis=0)
     forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * ways).sum(axis=0)
-    return Found((float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces, answer.x[end:-1])
+    return LimitForces((float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces, answer.x[end:-1])
 
 
 def _without_dilatancy(
     masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
-) -> Found | None:
+) -> LimitForces | None:
     """The least state without dilatancy, None where nothing gives way."""
     programme = Programme.of(masonry, constant, grown, across, ties)
     states = states_without_dilatancy(programme)
@@ -219,4 +219,4 @@ def _without_dilatancy(
         return None
     multipliers, x = tuple(state.multiplier for state in states), states[0].x
     pulls = x[programme.pulled : programme.pulled + programme.ties]
-    return Found(multipliers, states[0].p[: programme.unknowns], programme.on_lines(masonry, x), pulls)
+    return LimitForces(multipliers, states[0].p[: programme.unknowns], programme.on_lines(masonry, x), pulls)

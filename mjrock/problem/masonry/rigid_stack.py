@@ -18,7 +18,7 @@ from .masonry import Masonry
 
 
 @dataclass(frozen=True)
-class Pile:
+class RigidStack:
     """A stack, with or without a side stop, that rocks as one: the numbers of the joint that it stands on, `base`, and
     of those with the side stop, and the rigid `wall` of its mass on the base, of plain rectangular shape."""
 
