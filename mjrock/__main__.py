@@ -42,7 +42,6 @@ COMMANDS = {
     "status": Command(".study.campaign.progress", "how far a campaign is, from its store"),
     "inspect": Command(".commands.inspect_contacts", "contacts of a MuJoCo model in physical units"),
     "measure": Command(".commands.measure_contact", "drop, press and push a contact of a MuJoCo model, and compare"),
-    "view": Command(".engine.replay", "a model and its motion in MuJoCo's viewer"),
 }
 """Every command, in the order of the help."""
 STATUSES = "Exit status: 0 holds or done, 1 does not hold, 2 error, 130 interrupted."

@@ -5,7 +5,7 @@
 A church façade of 12 m has a portal, a rose window and a gable. The roof pushes
 it outwards, and two steel bars are planned to hold it. Does it pass the check
 of the Italian code? At which acceleration does it overturn, and what do the
-bars add? What is asked of its upper part, which may rock on the floor of the
+bars add? How does its upper part fare, which may rock on the floor of the
 choir?
 """
 
@@ -160,10 +160,10 @@ for motion in across:
         upper, 0.0, 18.0, motion=motion.through_building(**floor), **above
     )
     answer = mr.solve_analytical(shaken, e_upper)
-    said = f"{answer.outcome.value}, peak {answer.peak_over_alpha:.2f} alpha"
+    ending = f"{answer.outcome.value}, peak {answer.peak_over_alpha:.2f} alpha"
     print(
         f"{motion.name}: peak of the floor {shaken.motion.peak:.1f} m/s2, "
-        f"{said}"
+        f"{ending}"
     )
 
 # %%

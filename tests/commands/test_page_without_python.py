@@ -12,7 +12,7 @@ from mjrock.command_line import Status
 PAGE = (Path(__file__).parents[2] / "docs" / "without_python.md").read_text(encoding="utf-8")
 PART = re.compile(r"^```(toml|sh)\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """A file, or lines of a terminal, and what these print where the page shows it right below."""
-ELSEWHERE = ("app", "view")
+ELSEWHERE = ("app",)
 """Commands that open a window and wait."""
 
 
