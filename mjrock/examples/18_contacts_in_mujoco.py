@@ -3,7 +3,7 @@
 ==================================================
 
 MuJoCo's default contact has a stiffness that grows with the mass of its bodies.
-``contact_for`` writes one of a given stiffness in N/m and of a given restitution.
+``contact_for`` writes one of a given stiffness in N/m and a given restitution.
 A ball of 2 kg falls on a floor, with both.
 """
 
