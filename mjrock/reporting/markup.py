@@ -29,61 +29,11 @@ GREEK = {"alpha": "\u03b1"}
 TAGS = {"_": "msub", "^": "msup", "/": "mfrac"}
 """What a sign between two parts of a formula makes of them."""
 
-LOOK = """
-@page { size: A4; margin: 19mm 16mm 17mm;
-  @top-left { content: "TITLE"; font: 8pt Helvetica, Arial, sans-serif; color: #666 }
-  @top-right { content: "PROJECT"; font: 8pt Helvetica, Arial, sans-serif; color: #666 }
-  @bottom-right { content: "PAGE " counter(page) " / " counter(pages); font: 8pt Helvetica, Arial, sans-serif }
-  @bottom-left { content: "VERSION"; font: 8pt Helvetica, Arial, sans-serif; color: #666 } }
-body { font: 10pt/1.38 "Source Serif 4", Georgia, "DejaVu Serif", serif; color: #222; max-width: 48em;
-  margin: 1.5em auto; padding: 0 1em; overflow-wrap: anywhere }
-h1 { font-size: 1.5em; line-height: 1.2; margin: 0 0 .4em; padding-bottom: .2em; border-bottom: 2px solid #12406b }
-h2 { font-size: 1.15em; margin: 1.2em 0 .4em; color: #12406b; break-after: avoid }
-h3 { font-size: 1em; margin: 1em 0 .2em; break-after: avoid }
-p { margin: .4em 0 }
-.wide { overflow-x: auto; margin: .4em 0 .7em }
-table { border-collapse: collapse; width: 100%; font: .8em/1.3 Helvetica, Arial, "DejaVu Sans", sans-serif }
-th, td { text-align: left; vertical-align: top; padding: .2em .5em; border-bottom: 1px solid #ddd;
-  overflow-wrap: normal }
-th { border-bottom: 1px solid #888; font-weight: 600; vertical-align: bottom }
-.right { text-align: right; font-variant-numeric: tabular-nums }
-td.right, table.runs td { white-space: nowrap }
-thead { display: table-header-group }
-tr, figure, .brief, .whole { break-inside: avoid }
-tbody tr:nth-child(-n+2) { break-after: avoid } tbody tr:nth-last-child(-n+2) { break-before: avoid }
-h2 + p, p.head { break-after: avoid }
-td.short { white-space: nowrap } td.all { text-align: center }
-table.block td:nth-child(odd) { width: 8em; color: #666 }
-table.inputs th:first-child { width: 30% } table.inputs th:last-child { width: 26% }
-table.beside { table-layout: fixed; min-width: 40em }
-table.beside th:first-child { width: 26% } table.beside th:last-child { width: 16% }
-table.block td { height: 1.3em }
-.holds { color: #0b5d3b; background: #e3f2ea; font-weight: 700; white-space: nowrap }
-.fails { color: #8f1d14; background: #fbe6e3; font-weight: 700; white-space: nowrap }
-.part { color: #6b4a00; background: #fdf1d8; font-weight: 700; white-space: nowrap }
-figure { margin: .6em 0; text-align: center }
-figure img { max-width: 100%; height: auto }
-figcaption { font-size: .85em; color: #444 }
-math { font-size: 1.15em; math-style: normal }
-ul { margin: .3em 0; padding-left: 1.3em }
-.sign { height: 4.5em; border: 1px solid #888; margin: .5em 0 }
-@media print { body { max-width: none; margin: 0; padding: 0; font-size: 9.3pt } .wide { overflow: visible } }
-"""
-FORMULAE = """
-math { white-space: nowrap } mo { padding: 0 .15em }
-mfrac { display: inline-block; vertical-align: middle; text-align: center }
-mfrac > * { display: block; padding: 0 .15em } mfrac > :last-child { border-top: .6pt solid }
-msub > :last-child { font-size: .7em; vertical-align: sub }
-msup > :last-child { font-size: .7em; vertical-align: super }
-msqrt { display: inline-block; vertical-align: middle; padding-left: .8em;
-  background: url("data:image/svg+xml;base64,ROOT") no-repeat left top / .8em 100% }
-msqrt > * { display: inline-block; border-top: .6pt solid; vertical-align: top }
-"""
+LOOK = Path(__file__).with_name("page.css")
+"""The style sheet of a page."""
+FORMULAE = LOOK.with_name("formulae.css")
 """How WeasyPrint sets formulae, which has no MathML."""
-ROOT = (
-    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 8 24" preserveAspectRatio="none">'
-    '<path d="M0.3 15 L2 13.8 L4.6 23.6 L8 0.3" fill="none" stroke="black" stroke-width="0.7"/></svg>'
-)
+ROOT = LOOK.with_name("root.svg")
 """A root sign as high as what stands under it."""
 
 
@@ -212,7 +162,9 @@ def _mark_ticks(axis: Axis, words: Words) -> None:
 def page(words: Words, title: str, project: str, version: str, parts: Sequence[Markup]) -> str:
     """The whole page. Title, project and version stand in the margins of paper."""
     margins = {"TITLE": title, "PROJECT": project, "VERSION": version, "PAGE": words("page")}
-    look = re.sub(f'"({"|".join(margins)})', lambda found: f'"{_in_style(margins[found[1]])}', LOOK)
+    look = re.sub(
+        f'"({"|".join(margins)})', lambda found: f'"{_in_style(margins[found[1]])}', LOOK.read_text(encoding="utf-8")
+    )
     size = '<meta name="viewport" content="width=device-width, initial-scale=1">'
     head = f'<meta charset="utf-8">{size}<title>{html.escape(title)}</title><style>{look}</style>'
     body = "\n".join(parts)
@@ -244,6 +196,6 @@ def pdf_writer() -> Any:
 def write_pdf(path: Path, text: str) -> None:
     """Write a page as PDF; ImportError as `pdf_writer`."""
     weasyprint = pdf_writer()
-    sheet = FORMULAE.replace("ROOT", base64.b64encode(ROOT.encode()).decode())
+    sheet = FORMULAE.read_text(encoding="utf-8").replace('ROOT"', f'{base64.b64encode(ROOT.read_bytes()).decode()}"')
     with replacing(path) as partial:
         weasyprint.HTML(string=text).write_pdf(partial, stylesheets=[weasyprint.CSS(string=sheet)])

@@ -53,14 +53,9 @@ FAR = 2.0
 NAMED = 5
 """Most runs of one record whose lines differ."""
 PLACES = (
-    ((4, 4), "left"),
-    ((-4, -11), "right"),
-    ((-4, 4), "right"),
-    ((4, -11), "left"),
-    ((7, -4), "left"),
-    ((0, 14), "center"),
-    ((0, 22), "center"),
-)
+    ((4, 4), "left"), ((-4, -11), "right"), ((-4, 4), "right"), ((4, -11), "left"), ((7, -4), "left"),
+    ((0, 14), "center"), ((0, 22), "center"),
+)  # fmt: skip
 """Where a name may stand beside its point [pt], and how it is aligned."""
 DOT = 5.0
 """Half of the room that a point takes in a diagram [pixels]."""

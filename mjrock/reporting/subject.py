@@ -48,13 +48,7 @@ TALLEST_BLOCKS, OVER_BLOCKS = 3.6, 0.6
 """Most height of a picture of blocks, and that of its title and its axis [inch]."""
 ENDS = 6
 """Most responses whose blocks are drawn as they end."""
-SETTINGS = {
-    "accuracy": ("", GIVEN),
-    "timestep": ("s", FOUND),
-    "rtol": ("", GIVEN),
-    "atol": ("", GIVEN),
-    "steps": ("", 9),
-}
+STATS = {"accuracy": ("", GIVEN), "timestep": ("s", FOUND), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
 """Statistics of runs that a report names, with their units and numbers of digits."""
 
 
@@ -364,7 +358,7 @@ def solved_with(responses: Sequence[Response], words: Words) -> list[str]:
         own = [response for response in responses if response.solver == solver]
         given = [("duration", [response.case.duration for response in own], ("s", GIVEN))]
         given += [
-            (name, [run.stats[name] for run in own if run.stats.get(name)], shown) for name, shown in SETTINGS.items()
+            (name, [run.stats[name] for run in own if run.stats.get(name)], shown) for name, shown in STATS.items()
         ]
         parts = [
             words(f"solved_{name}", value=_range(values, *shown, words)) for name, values, shown in given if values

@@ -143,18 +143,18 @@ function drawValue(field, values, path, add, then) {
     control = element('input', {...common, ...typed, type: 'text', placeholder: field.default ?? '', oninput: change});
     control.value = values[field.key] ?? '';
   }
-  const said = [[field.range, field.help].filter(Boolean).join('; ')];
+  const parts = [[field.range, field.help].filter(Boolean).join('; ')];
   const unit = field.unit ? [element('span', {class: 'unit'}, field.unit)] : [];
   if (control.type === 'file') {
     const names = field.control === 'folder' ? Object.keys(files) : [values[field.key] ?? []].flat();
-    said.unshift(element('b', {}, names.join(', ')), ' ');
+    parts.unshift(element('b', {}, names.join(', ')), ' ');
   }
   return element(
     'div',
     {class: 'field'},
     element('label', {for: id}, field.label, element('code', described, field.key)),
     element('div', {class: 'control'}, control, ...unit),
-    element('p', {class: 'help', id: notes}, ...said),
+    element('p', {class: 'help', id: notes}, ...parts),
   );
 }
 
@@ -394,11 +394,11 @@ function showFaults(faults) {
     for (let end = path.length; end && !at; end--) at = byId(place(path.slice(0, end)));
     if (!at) return element('li', {}, message);
     at.setAttribute('aria-invalid', 'true');
-    const said = element('p', {class: 'fault', role: 'alert'}, message);
+    const fault = element('p', {class: 'fault', role: 'alert'}, message);
     const frame = at.closest('.field') ?? at;
-    if (frame.tagName === 'FIELDSET') frame.firstChild.after(said);
-    else if (frame.tagName === 'BUTTON') frame.after(said);
-    else frame.append(said);
+    if (frame.tagName === 'FIELDSET') frame.firstChild.after(fault);
+    else if (frame.tagName === 'BUTTON') frame.after(fault);
+    else frame.append(fault);
     const show = event => {
       event.preventDefault();
       for (let fold = at.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;

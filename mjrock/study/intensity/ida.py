@@ -141,12 +141,7 @@ def ida(
 
 
 def overturning_intensity(
-    build: Build,
-    low: float | None = None,
-    high: float | None = None,
-    *,
-    tolerance: float = 1e-3,
-    start: float = 1.0,
+    build: Build, low: float | None = None, high: float | None = None, *, tolerance: float = 1e-3, start: float = 1.0
 ) -> float:
     """A scale at which a record overturns a wall, while at a scale that is hardly lower it does not.
 

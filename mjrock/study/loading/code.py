@@ -46,31 +46,15 @@ class StepOutput(NamedTuple):
 
 
 CHECK_STEPS = {
-    "alpha_0": StepOutput("", 4),
-    "participation": StepOutput("", 4),
-    "confidence_factor": StepOutput("", 2),
-    "a_0": StepOutput("g", 4),
-    "linear": StepOutput("g", 4),
-    "alpha_tied": StepOutput("", 4),
-    "linear_tied": StepOutput("g", 4),
-    "peak": StepOutput("g", 4),
-    "floor_peak": StepOutput("g", 4),
-    "free_peak": StepOutput("g", 4),
-    "linear_ratio": StepOutput("", 2),
-    "floor_linear_ratio": StepOutput("", 2),
-    "free_linear_ratio": StepOutput("", 2),
-    "damage": StepOutput("g", 4),
-    "damage_ratio": StepOutput("", 2),
-    "elastic_period": StepOutput("s", 3),
-    "d_0": StepOutput("m", 4),
-    "yields": StepOutput("m", 4),
-    "breaks": StepOutput("m", 4),
-    "capacity": StepOutput("m", 4),
-    "period": StepOutput("s", 3),
-    "demand": StepOutput("m", 4),
-    "ratio": StepOutput("", 2),
-    "ground_ratio": StepOutput("", 2),
-}
+    "alpha_0": StepOutput("", 4), "participation": StepOutput("", 4), "confidence_factor": StepOutput("", 2),
+    "a_0": StepOutput("g", 4), "linear": StepOutput("g", 4), "alpha_tied": StepOutput("", 4),
+    "linear_tied": StepOutput("g", 4), "peak": StepOutput("g", 4), "floor_peak": StepOutput("g", 4),
+    "free_peak": StepOutput("g", 4), "linear_ratio": StepOutput("", 2), "floor_linear_ratio": StepOutput("", 2),
+    "free_linear_ratio": StepOutput("", 2), "damage": StepOutput("g", 4), "damage_ratio": StepOutput("", 2),
+    "elastic_period": StepOutput("s", 3), "d_0": StepOutput("m", 4), "yields": StepOutput("m", 4),
+    "breaks": StepOutput("m", 4), "capacity": StepOutput("m", 4), "period": StepOutput("s", 3),
+    "demand": StepOutput("m", 4), "ratio": StepOutput("", 2), "ground_ratio": StepOutput("", 2),
+}  # fmt: skip
 """The steps of the check. The key of one of the whole mechanism is the name of its attribute of `MechanismCheck`, that
 of a limit state the name of its attribute of `LimitState`."""
 OF_MECHANISM = tuple(CHECK_STEPS)[: 1 + tuple(CHECK_STEPS).index("d_0")]

@@ -43,15 +43,7 @@ from ...quantities import (
 )
 from ..campaign.campaign import CampaignOptions, completed
 from ..campaign.task import Row, programs
-from .match import (
-    K_N_RANGE,
-    R_RANGE,
-    SLENDERNESS_RANGE,
-    Combination,
-    GivenWall,
-    Match,
-    combinations,
-)
+from .match import K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, GivenWall, Match, combinations
 
 
 @dataclass(frozen=True)
