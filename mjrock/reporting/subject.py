@@ -11,7 +11,6 @@ import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import fill
-from typing import Any, ClassVar, Protocol
 
 import matplotlib
 import numpy as np
@@ -52,68 +51,37 @@ STATS = {"accuracy": ("", GIVEN), "timestep": ("s", FOUND), "rtol": ("", GIVEN),
 """Statistics of runs that a report names, with their units and numbers of digits."""
 
 
-class Content(Protocol):
-    """A wall or masonry as a report sees it.
+@dataclass(frozen=True)
+class WallContent:
+    """A wall as a report sees it.
+
+    Args:
+        case: the wall and its effects.
 
     Attributes:
-        KIND: "wall" or "masonry".
+        KIND: the end of the keys of its texts.
         COLUMNS: keys of the columns of the table of runs.
-        case: what it is.
     """
-
-    case: Any
-
-    KIND: ClassVar[str]
-    COLUMNS: ClassVar[tuple[str, ...]]
-
-    def largest(self, response: Response) -> float:
-        """Its largest displacement in a response [m], infinite where it overturned or blocks fell."""
-
-    def moved(self, response: Response) -> Array:
-        """Its displacement at the samples of a response [m], shape (n,)."""
-
-    def limit(self) -> float | None:
-        """The displacement from which nothing brings it back, if there is one [m]."""
-
-    def result(self, response: Response, words: Words) -> list[str]:
-        """Its cells in the table of runs."""
-
-    def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
-        """What these results do not cover."""
-
-    def by_hand(self, words: Words) -> list[tuple[str, ...]]:
-        """Steps of a check by hand, where there is one."""
-
-    def at_rest(self, words: Words, borne: Sequence[Borne]) -> tuple[Figure, str]:
-        """It as it stands, with what it bears, and the caption."""
-
-    def at_end(self, runs: Sequence[Run], words: Words) -> Figure | None:
-        """It as responses end."""
-
-
-@dataclass(frozen=True)
-class WallContent(Content):
-    """A wall, see `Content`."""
 
     case: Case
     KIND = "wall"
     COLUMNS = "outcome", "largest", "share", "impacts"
 
     def largest(self, response: Response) -> float:
-        """Of the centroid as the wall turns about its toe, as the dynamic check has it."""
+        """Largest displacement of the centroid in a response [m], as in the dynamic check, infinite if it fell."""
         wall = response.of_wall[0].wall
         return displaced(wall, response.peak_over_alpha * wall.alpha)
 
     def moved(self, response: Response) -> Array:
-        """Of the centroid."""
+        """Displacement of the centroid at the samples of a response [m], shape (n,)."""
         return np.asarray(response.pose[:, 0, 0])
 
     def limit(self) -> float | None:
-        """Of the wall without its ties; None of one that they alone hold."""
+        """The displacement from which nothing but ties brings it back [m]; None of a wall that they alone hold."""
         return d_0_of(self.case) or None
 
     def result(self, response: Response, words: Words) -> list[str]:
-        """How it ended, its largest displacement, that over the limit, impacts."""
+        """Cells of the table of runs: how it ended, its largest displacement, that over the limit, impacts."""
         largest = self.largest(response)
         if math.isinf(largest):
             return [words("outcome_overturned"), DASH, DASH, str(len(response.impacts))]
@@ -173,10 +141,11 @@ class WallContent(Content):
 
 
 @dataclass(frozen=True)
-class MasonryContent(Content):
-    """Masonry, see `Content`.
+class MasonryContent:
+    """Masonry as a report sees it, see `WallContent`.
 
     Args:
+        case: the masonry and its effects.
         curve: of its mechanism, where it is checked by one.
     """
 
@@ -186,18 +155,18 @@ class MasonryContent(Content):
     COLUMNS = "outcome", "largest", "opening", "sliding", "fallen"
 
     def largest(self, response: Response) -> float:
-        """Of the farthest block."""
+        """Largest displacement of a block in a response [m], infinite where one fell."""
         return math.inf if response.fallen else float(self.moved(response).max())
 
     def moved(self, response: Response) -> Array:
-        """Of the farthest block."""
+        """Displacement of the farthest block at the samples of a response [m], shape (n,)."""
         return np.asarray(np.linalg.norm(response.pose[:, :, : 3 if response.in_space else 2], axis=2).max(axis=1))
 
     def limit(self) -> None:
         """None is known."""
 
     def result(self, response: Response, words: Words) -> list[str]:
-        """How it ended, largest motions, fallen blocks."""
+        """Cells of the table of runs: how it ended, largest motions, fallen blocks."""
         largest = float(self.moved(response).max())
         ended = "blocks_fell" if response.fallen else f"outcome_{response.outcome.name.lower()}"
         moved = largest, response.opening.max(), response.sliding.max()
@@ -250,6 +219,10 @@ class MasonryContent(Content):
         if not self.case.in_space:
             sized(figure, columns, TALLEST_BLOCKS if columns == 1 else 2.6)
         return figure
+
+
+Content = WallContent | MasonryContent
+"""What a report has of a wall or of masonry."""
 
 
 def sized(figure: Figure, columns: int, most: float) -> None:

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -27,34 +26,16 @@ from ..theory.analytical import solve_analytical
 from .campaign.task import Row
 
 
-class Subject(Protocol):
-    """A wall or masonry as a campaign sees it.
+@dataclass(frozen=True)
+class OfWall:
+    """A wall as a campaign sees it.
 
     Attributes:
         SOLVERS: names of the solvers that take it, and in words what they take where they are not all.
         COLUMNS: its columns but the last two.
-        PEAK: the one that an incremental dynamic analysis gathers; it is infinite for what has overturned.
+        PEAK: the column that an incremental dynamic analysis gathers, infinite for what has overturned.
         FALLS: what it does at its capacity, in words.
     """
-
-    SOLVERS: ClassVar[tuple[tuple[str, ...], str]]
-    COLUMNS: ClassVar[tuple[str, ...]]
-    PEAK: ClassVar[str]
-    FALLS: ClassVar[str]
-
-    def require(self, solver: str, e: AnyRestitution | None, contacts: Contacts | None) -> None:
-        """Raise ValueError unless it has what its solver needs, and no more."""
-
-    def law(self, solver: str, contacts: Contacts | None) -> str:
-        """The law of the damping."""
-
-    def values(self, response: Response, law: str) -> tuple[object, ...]:
-        """The values of the columns."""
-
-
-@dataclass(frozen=True)
-class OfWall(Subject):
-    """A wall, see `Subject`."""
 
     case: Case
     SOLVERS = (("analytical", "compliant", "MuJoCo", "explicit"), "")
@@ -76,19 +57,19 @@ class OfWall(Subject):
             contacts.require_fit(case.block, side_stop=case.one_sided)
 
     def law(self, solver: str, contacts: Contacts | None) -> str:
-        """That of its contacts, or "restitution" for the analytical solver."""
+        """The law of the damping: that of its contacts, or "restitution" for the analytical solver."""
         return "restitution" if contacts is None or solver == "analytical" else contacts.law
 
     def values(self, response: Response, law: str) -> tuple[object, ...]:
-        """Outcome, peaks and rebounds."""
+        """The values of the columns: outcome, peaks and rebounds."""
         restitution = [float(value) for value in response.restitution[:3]] + [None] * 3
         peaks = response.peak_over_alpha, response.peak_over_overturning, response.inwards_over_alpha
         return response.solver, law, response.outcome.value, *peaks, len(response.impacts), *restitution[:3]
 
 
 @dataclass(frozen=True)
-class OfMasonry(Subject):
-    """Masonry, see `Subject`."""
+class OfMasonry:
+    """Masonry as a campaign sees it, see `OfWall`."""
 
     case: MasonryCase
     SOLVERS = (("MuJoCo", "explicit"), ", which take masonry")
@@ -103,12 +84,12 @@ class OfMasonry(Subject):
         self.case.require_own_joints(e, contacts)
 
     def law(self, solver: str, contacts: Contacts | None) -> str:
-        """That which its joints were made with, or "given"."""
+        """The law of the damping of its joints, or "given"."""
         given = self.case.masonry.law
         return "given" if given is None else str(getattr(given, "name", spelt(given)))
 
     def values(self, response: Response, law: str) -> tuple[object, ...]:
-        """Outcome, fallen blocks and largest motions."""
+        """The values of the columns: outcome, fallen blocks and largest motions."""
         return (
             response.solver,
             response.outcome.value,
@@ -120,7 +101,7 @@ class OfMasonry(Subject):
         )
 
 
-def subject_of(case: AnyCase) -> Subject:
+def subject_of(case: AnyCase) -> OfWall | OfMasonry:
     """A case as a campaign sees it."""
     return OfMasonry(case) if isinstance(case, MasonryCase) else OfWall(case)
 
