@@ -8,12 +8,12 @@ OLDEST := .venv-oldest
 INSTALLED := out/installed
 CONTACTS := out/contacts
 
-.PHONY: demo docs test test-slow test-processors test-oldest test-installed test-contacts mutants lint calibrate models figures robots clean stale
+.PHONY: demo docs test test-slow test-all test-processors test-oldest test-installed test-contacts mutants lint calibrate models figures robots clean stale
 
 # Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
-test test-slow test-processors test-oldest test-installed test-contacts mutants: export OPENBLAS_NUM_THREADS = 1
+test test-slow test-all test-processors test-oldest test-installed test-contacts mutants: export OPENBLAS_NUM_THREADS = 1
 # Bytecode is stored: the processes that tests start then need not compile the package again, nor pytest rewrite its tests.
-test test-slow test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
+test test-slow test-all test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
 demo: $(READY)
 	$(BIN)/python -m mjrock demo --force --output out/demo
@@ -28,6 +28,9 @@ docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.
 
 test-slow: $(DOCS)
 	$(BIN)/pytest -n auto --dist worksteal -m slow
+
+test-all: $(DOCS) # both in one session, for .ci/run: modules are collected once, and no process waits at the end of the first
+	$(BIN)/pytest -n auto --dist worksteal -m 'slow or not slow'
 
 test-processors: $(TEST) # the everyday tests of the physics by the linear algebra of other processors; OTHERS=1 the few for .ci/run
 	$(BIN)/python tests/processors.py $(if $(OTHERS),--others)
@@ -56,6 +59,7 @@ test-installed:
 	cd $(INSTALLED) && venv/bin/python -m pytest -n auto --ignore tests/house
 
 # The distribution mjcontacts: its wheel in fresh environments with the oldest and the newest MuJoCo, and its tests there.
+# OLDEST_ONLY=1 leaves out the newest, with which `make test` runs the same tests by the names of mjrock.
 test-contacts:
 	rm -rf $(CONTACTS)
 	$(PYTHON) -m venv $(CONTACTS)/build
@@ -65,7 +69,7 @@ test-contacts:
 	cp tests/contacts/*.py tests/pairs.py tests/everyday.py $(CONTACTS)/tests
 	sed -i.before -e 's/^import mjrock as mr$$/import mjcontacts as mr/' -e 's/mjrock\.contacts/mjcontacts/g' $(CONTACTS)/tests/*.py
 	cp packaging/mjcontacts/pyproject.toml $(CONTACTS)
-	for needs in 'mujoco==3.3.2 numpy==1.26.4' 'mujoco numpy'; do \
+	for needs in 'mujoco==3.3.2 numpy==1.26.4' $(if $(OLDEST_ONLY),,'mujoco numpy'); do \
 		$(PYTHON) -m venv --clear $(CONTACTS)/venv && \
 		$(CONTACTS)/venv/bin/python -m pip install --quiet --disable-pip-version-check $$needs pytest $(CONTACTS)/files/*.whl && \
 		(cd $(CONTACTS) && venv/bin/python -m pytest tests) || exit 1; \

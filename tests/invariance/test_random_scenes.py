@@ -14,7 +14,7 @@ from tests.invariance.quantities import changed, moved, scaled, turned
 from tests.invariance.random_scenes import DENSITY, LATER, PLACES, draw, on_a_slope
 from tests.invariance.runs import apart, extruded, measured_in_the_plane, motion_of, softened, solve
 
-FIRST, SCENES, ADDED, CHUNK, DRAWN = 1000, 300, 90, 10, 3
+FIRST, SCENES, ADDED, CHUNK, DRAWN = 1000, 150, 50, 5, 3
 """Of the slow scenes: the first seed, how many there are from it and from `LATER` on, how many are one test, and how
 many invariances each is under."""
 EVERY_DAY = (2, 5, 7, 12, 22, LATER + 21, LATER + 27)

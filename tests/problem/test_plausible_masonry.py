@@ -164,7 +164,7 @@ def plausible_blocks(rng):
     return mr.MasonryCase(facade, 11.0, motion, effects=tie)
 
 
-@pytest.mark.parametrize(("make", "count"), [(plausible, 40), slow((plausible, 400)), slow((plausible_blocks, 400))])
+@pytest.mark.parametrize(("make", "count"), [(plausible, 40), slow((plausible, 400)), slow((plausible_blocks, 210))])
 def test_plausible_masonry_raises_hardly_an_alarm(make, count):
     """Less than 0.5 % warn; an opening whose edge leaves too small a piece is refused and drawn again."""
     rng, made, alarms = np.random.default_rng(0), 0, []
