@@ -76,7 +76,7 @@ OWN = {
     "distinct/contacts/touches.py": ("touches_inside_a_step", "books_close"),
     **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py")},
     **{
-        f"problem/{kind}/standing.py": ("joint_frames", "files_of_motion", "what_stands")
+        f"problem/{kind}/rest_geometry.py": ("joint_frames", "files_of_motion", "rest_geometry")
         for kind in ("wall", "masonry")
     },
     "result/forces.py": ("joint_frames", "forces"),
@@ -185,7 +185,7 @@ EQUIVALENT = {
         "once there is a crack, the spring holds what is left of the strength, or more where slip has worn it"
     ),
     "bond_law.py: PASSES = 16": "eight passes have found the opening and the closing to rounding",
-    "standing.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
+    "rest_geometry.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
         "joints on what is fixed have no arm that is read"
     ),
     "rows.py: if points.held[i] > 1:": "the inertia held is a thousand masses of a body, or zero",

@@ -60,12 +60,12 @@ def lines_of(scene: Scene) -> Rows:
 
 def add_joints(lines: Rows, scene: Scene) -> Rows:
     """Give lines their dashpots along the two faces of their joint and the ends of these. Returns the edges of all."""
-    of, joints = scene.contacts.joint, scene.standing.joints
-    number = np.array([solid.body for solid in scene.standing.solids])
+    of, joints = scene.contacts.joint, scene.rest_geometry.joints
+    number = np.array([solid.body for solid in scene.rest_geometry.solids])
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
         edges_of(face, origins[block], met)
-        for joint, faces in zip(joints, scene.standing.faces, strict=True)
+        for joint, faces in zip(joints, scene.rest_geometry.faces, strict=True)
         for block, face, met in zip((joint.below, joint.above), faces, faces[::-1], strict=True)
     ]
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
@@ -85,8 +85,8 @@ def add_joints(lines: Rows, scene: Scene) -> Rows:
 def begin_open(lines: Rows, scene: Scene) -> None:
     """Let the lines of joints as drawn begin a little open, see `touches.FIRST_OPENING`. Those of bonds that pull begin
     as drawn: they hold both ways."""
-    sizes = np.array([solid.size for solid in scene.standing.solids])
-    smaller = np.array([min(sizes[joint.below], sizes[joint.above]) for joint in scene.standing.joints])
+    sizes = np.array([solid.size for solid in scene.rest_geometry.solids])
+    smaller = np.array([min(sizes[joint.below], sizes[joint.above]) for joint in scene.rest_geometry.joints])
     pulls = np.array([bond is not None and bond.pulls for bond in scene.contacts.bonds])
     opening = (FIRST_OPENING * np.where(pulls, 0.0, smaller))[scene.contacts.joint]
     lines["between"] += opening[:, None] * lines["normal"]
@@ -104,7 +104,7 @@ def started(system: System, pose: Array, velocity: Array | None = None) -> Syste
 
 def moved_by(system: System, scene: Scene, supports: Sequence[Support]) -> System:
     """The system with supports that move fixed blocks, and the links that are anchored on these."""
-    names, joints = [solid.name for solid in scene.standing.solids], scene.standing.joints
+    names, joints = [solid.name for solid in scene.rest_geometry.solids], scene.rest_geometry.joints
     numbers = {names.index(support.block): i for i, support in enumerate(supports)}
     for table in system.links:
         table.rows["support"] = [numbers.get(block, -1) for block in table.rows["anchor_block"].tolist()]

@@ -138,7 +138,7 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     loads = samples.pose, samples.loads, samples.held
     jacks = np.array([*driven.values()]).T.copy() if driven else None
     gathered = KeptForces(run.t[kept], *loads, pulled, jacks, samples.guided, damage)
-    return forces_of(run.case, run.case.standing.frames, gathered)
+    return forces_of(run.case, run.case.rest_geometry.frames, gathered)
 
 
 def plastic(run: Run) -> dict[str, Plastic]:

@@ -55,7 +55,7 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
         plastic: what ties have yielded.
     """
     chosen, sample = np.unique(np.searchsorted(steps.windows.t, t, side="right") - 1, return_inverse=True)
-    frames, d = case.standing.frames, scene.freedom.translations
+    frames, d = case.rest_geometry.frames, scene.freedom.translations
     room = np.zeros((len(chosen), len(frames.names), scene.freedom.nv)), np.zeros((len(chosen), len(frames.blocks), d))
     loads = Loads(chosen, scene.sense, frames.fixed, frames.rest, *room)
     points = points_of(scene, steps.method)

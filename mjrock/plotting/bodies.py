@@ -150,9 +150,9 @@ class Bodies:
     @classmethod
     def of_moving(cls, moving: Moving, limits: ArrayLike | None = None) -> Bodies:
         """The bodies of a case."""
-        standing = moving.case.standing
-        free = [solid.body >= 0 for solid in standing.solids]
-        return cls(moving, colours_of(standing)[free], required_limits(limits, "xz"))
+        geometry = moving.case.rest_geometry
+        free = [solid.body >= 0 for solid in geometry.solids]
+        return cls(moving, colours_of(geometry)[free], required_limits(limits, "xz"))
 
     @classmethod
     def loose(

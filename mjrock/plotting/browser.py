@@ -19,7 +19,7 @@ from ..contacts.files import write_text
 from ..geometry.parts import creases_of
 from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
-from ..problem.wall.standing import Solid, in_space
+from ..problem.wall.rest_geometry import Solid, in_space
 from ..quantities import Array, Integers, require_path
 from ..result.bodies import bodies_of, frames_at
 from ..result.response import Response
@@ -101,7 +101,7 @@ class Page:
         self.t = response.t[samples]
         self.moving = response.moving.at(samples)
         self.bodies = bodies_of(self.moving, response.velocity[samples])
-        self.solids = self.case.standing.solids
+        self.solids = self.case.rest_geometry.solids
         free = [body for body in self.bodies if not body.fixed]
         self.low, self.high = ends_of(np.concatenate([body.rest + body.corners for body in free]))
         self.reached = ends_of(np.concatenate([ends_of(body.placed(body.corners)) for body in free]))
@@ -229,7 +229,7 @@ class Page:
         places, shares = (in_space(np.stack(part, axis=1)) for part in zip(*frames, strict=True))
         if not self.response.in_space:  # on the front of the blocks
             places[..., 1] = self.low[1] - ON_LEVEL * self.extent
-        joints = self.case.standing.joints
+        joints = self.case.rest_geometry.joints
         return {
             "scale": acting.scale,
             "longest": LONGEST * acting.extent,

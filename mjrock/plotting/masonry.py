@@ -228,7 +228,7 @@ def _pressed(ax: Axes, moving: Moving, masonry: Masonry, forces: JointForces) ->
     normal, along = forces.normal, forces.eccentricity
     pressing = np.stack([normal, forces.shear], axis=1)
     size = np.linalg.norm(pressing, axis=1)
-    middles, axes = (of[0] for of in moving.joints(moving.case.standing.frames))
+    middles, axes = (of[0] for of in moving.joints(moving.case.rest_geometry.frames))
     widths = [joint.width for joint in masonry.plane_joints]
     named_line(ax, f"{size.max() / 1e3:.3g} kN", FORCE, THICK)
     for i in np.flatnonzero(normal > 1e-3 * size.max()):

@@ -138,7 +138,7 @@ class Solids:
 
     def _faces_of(self, blocks: Integers) -> Facets:
         """The faces of some blocks."""
-        parts = [(block, part) for block in blocks.tolist() for part in self.case.standing.solids[block].parts]
+        parts = [(block, part) for block in blocks.tolist() for part in self.case.rest_geometry.solids[block].parts]
         block = np.repeat([block for block, _ in parts], [len(part.faces) for _, part in parts])
         corners = evened([part.corners[list(face)] for _, part in parts for face in part.faces])
         normals = np.concatenate([part.normals for _, part in parts])
@@ -156,7 +156,9 @@ class Solids:
         (right, _), azimuth = self.across, np.radians(np.asarray(self.camera)[1])
         sun = SUN @ np.array([right, (np.cos(azimuth), np.sin(azimuth), 0.0), (0.0, 0.0, 1.0)])
         corners, block, plane = self._staged
-        surfaces = Surfaces(self.moving.placed_at(frame, block, corners), plane, colours_of(self.case.standing)[block])
+        surfaces = Surfaces(
+            self.moving.placed_at(frame, block, corners), plane, colours_of(self.case.rest_geometry)[block]
+        )
         return surfaces, sun / np.linalg.norm(sun), self.ground
 
     @cached_property

@@ -54,7 +54,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     )
     ax.plot([left, right], [0, 0], color="0.15", linewidth=1.0, zorder=1)
     if case.stop_top is not None:
-        face, back = case.standing.met_by_stop, -wall.b - 0.09 * height
+        face, back = case.rest_geometry.met_by_stop, -wall.b - 0.09 * height
         stop = Polygon(np.vstack([(back, 0.0), face, (back, case.stop_top)]))
         stop.set(facecolor=GROUND_COLOUR, edgecolor="0.4", hatch="////", linewidth=0.8, zorder=1)
         ax.add_patch(stop)

@@ -14,7 +14,7 @@ from ..geometry.hull import Faces, triangles_of
 from ..geometry.poses import displaced, rotated, rotations
 from ..problem.masonry.case import AnyCase
 from ..problem.masonry.masonry import Masonry
-from ..problem.wall.standing import JointFrames, in_space
+from ..problem.wall.rest_geometry import JointFrames, in_space
 from ..quantities import Array, Integers, require_within
 from ..scene.tints import colours_of
 
@@ -173,7 +173,7 @@ def bodies_of(moving: Moving, velocity: Array) -> list[Body]:
         spin = (rotations(moving.pose) @ velocity[..., 3:, None])[..., 0]
         velocity = np.concatenate([velocity[..., :3], spin], axis=-1)
     bodies = []
-    for solid, colour in zip(case.standing.solids, colours_of(case.standing), strict=True):
+    for solid, colour in zip(case.rest_geometry.solids, colours_of(case.rest_geometry), strict=True):
         body, support = case.body_of(solid.block), case.support_of(solid.block)
         where, rate = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
         if solid.block is not None:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..problem.masonry.case import AnyCase
-from ..problem.wall.standing import JointFrames
+from ..problem.wall.rest_geometry import JointFrames
 from ..quantities import Array, require_size
 from .bodies import Moving
 from .ties import across
@@ -188,7 +188,7 @@ def required_room(case: AnyCase, samples: float) -> tuple[int, int, int, int]:
     Raises:
         ValueError: if their forces at the samples do not fit into memory.
     """
-    frames = case.standing.frames
+    frames = case.rest_geometry.frames
     d, driven = frames.middle.shape[1], len(case.actuators)
     counts = len(frames.names), len(frames.blocks), len(case.links), driven
     numbers = samples * (counts[0] * 4 * (d - 1) + counts[1] * d + counts[2] + driven * (1 if d == 2 else 3))

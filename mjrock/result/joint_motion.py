@@ -17,7 +17,7 @@ from ..geometry.vectors import Vector, dot, minus, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.histories import Support
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.standing import MasonryStanding, travels
+from ..problem.masonry.rest_geometry import MasonryRestGeometry, travels
 from ..quantities import Array, Flags, Integers, named
 from ..scene.scene import Scene
 
@@ -146,8 +146,8 @@ def _pairs(masonry: Masonry) -> Integers:
 def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
     """Whether no chain of joints connects each free block with a fixed one, shape (bodies,); `pairs` of joints."""
     labels = connected_parts(pairs, len(masonry.blocks))
-    standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
-    return ~np.isin(labels[list(masonry.free)], list(standing))
+    fixed = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
+    return ~np.isin(labels[list(masonry.free)], list(fixed))
 
 
 AT_ONCE = 1_000_000
@@ -192,7 +192,7 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
     for first in range(0, len(pose), size):
         some = slice(first, first + size)
         seen = _joint_gaps(scene, points, pose[some], shift[some])
-        far, off[some] = _slid_off(case.standing, seen.slid)
+        far, off[some] = _slid_off(case.rest_geometry, seen.slid)
         parted[some] = (far > widths) | (seen.nearest > PARTED * widths)
         opening, sliding = np.maximum(opening, seen.opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
         deepest = max(deepest, -float(seen.nearest.min()))
@@ -211,19 +211,19 @@ def displacements(supports: Sequence[Support], t: Array, d: int) -> Array:
     return np.swapaxes(moved, 0, 1)
 
 
-def _slid_off(standing: MasonryStanding, slid: Array) -> tuple[Array, Flags]:
+def _slid_off(geometry: MasonryRestGeometry, slid: Array) -> tuple[Array, Flags]:
     """How far joints have slid [m], and whether one block has left the other, shape (steps, joints) each, from their
     slips [m], shape (steps, joints, d)."""
-    if not standing.masonry.in_space:
-        joints = standing.masonry.plane_joints
+    if not geometry.masonry.in_space:
+        joints = geometry.masonry.plane_joints
         along = np.einsum("sji,ji->sj", slid, np.array([joint.along for joint in joints]))
         back, forth = np.array([joint.travel for joint in joints]).T
         return np.abs(along), (along > forth) | (along < -back)
-    widths, far = np.array([joint.width for joint in standing.joints]), np.linalg.norm(slid, axis=2)
+    widths, far = np.array([joint.width for joint in geometry.joints]), np.linalg.norm(slid, axis=2)
     off = far >= widths
     for j in np.flatnonzero(off.any(axis=0)):
         ways = slid[:, j] / np.maximum(far[:, j], widths[j])[:, None]
-        off[:, j] &= far[:, j] > travels(standing.faces[j], ways)
+        off[:, j] &= far[:, j] > travels(geometry.faces[j], ways)
     return far, off
 
 
@@ -314,20 +314,20 @@ VERTICAL_FACE = 1e-9
 
 
 def past_support(
-    standing: MasonryStanding, motion: JointRecord, slips: Callable[[Integers], Array]
+    geometry: MasonryRestGeometry, motion: JointRecord, slips: Callable[[Integers], Array]
 ) -> dict[str, float]:
     """Largest distance by which the centroid of each block has passed the edge of its support [m], by name.
 
     Only blocks whose joints are horizontal count. The overhang of the drawing is subtracted.
 
     Args:
-        standing: the masonry at rest.
+        geometry: the masonry at rest.
         motion: of the joints.
         slips: from the numbers of some steps, how far the block above each joint has slid on the one below [m], shape
             (steps, joints, d).
     """
-    masonry, centroids, found = standing.masonry, standing.centroids, {}
-    faces = [below.corners[:, :-1] for below, _ in standing.faces]
+    masonry, centroids, found = geometry.masonry, geometry.centroids, {}
+    faces = [below.corners[:, :-1] for below, _ in geometry.faces]
     looks = np.unique(np.linspace(0, len(motion.off) - 1, OVERHANG_SAMPLES).astype(int))
     for block, beds in _beds(masonry).items():
         weight = centroids[block, :-1]

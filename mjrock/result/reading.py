@@ -104,7 +104,7 @@ def masonry_reading(
     quiet, opening = bool(abs(motion.energy[-1]) < scene.rest_energies[2]), joints.opening.copy()
     if beside is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
-        past = past_support(case.standing, joints, lambda some: slips(case, scene, t[some], pose[some]))
+        past = past_support(case.rest_geometry, joints, lambda some: slips(case, scene, t[some], pose[some]))
         place = overhang_message({name: far for name, far in past.items() if name not in fallen})
     else:
         elsewhere = beside.left or bool(case.supports) or bool(case.actuators)  # energy at rest is another one there

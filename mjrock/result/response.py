@@ -16,7 +16,7 @@ from ..geometry.poses import angle_of, tilt_of
 from ..notebook import NotebookPicture
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..problem.wall.standing import in_space
+from ..problem.wall.rest_geometry import in_space
 from ..quantities import Array, keep, require_path, require_within, shown
 from .bodies import Moving, bodies_of, frames_at, openings
 from .ending import Outcome

@@ -16,7 +16,7 @@ from ..problem.masonry.laws.own_law import Own
 from ..problem.masonry.limit.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.standing import MasonryStanding
+from ..problem.masonry.rest_geometry import MasonryRestGeometry
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import link_effects
 from ..quantities import GRAVITY, Array, Integers, named, require_kind
@@ -224,7 +224,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
         ),
         *attachments(effects, number, lambda effect: place_in_world(masonry, effect), centroids[free]),
         limits=limits,
-        made_of=MasonryStanding(masonry, centroids),
+        made_of=MasonryRestGeometry(masonry, centroids),
         springs=JointSprings(
             masonry.joint_stiffness,
             masonry.joint_shear,

@@ -21,7 +21,7 @@ import numpy as np
 from ..geometry.frames import Freedom, frames_of
 from ..geometry.kinematics import AppliedForces, LinkEnds, Places, Ties, ends, gaps
 from ..problem.masonry.laws.own_law import OwnSprings
-from ..problem.wall.standing import Standing
+from ..problem.wall.rest_geometry import RestGeometry
 from ..quantities import GRAVITY, Array, Integers, frozen
 from .dampers import Dampers
 from .masses import kinetic_energies
@@ -64,7 +64,7 @@ class Scene:
     limits: Limits = field(default_factory=Limits)
     title: str = "Rigid bodies on compliant contacts"
     facts: Mapping[str, float | str] = field(default_factory=dict)
-    made_of: Standing | None = None
+    made_of: RestGeometry | None = None
     springs: JointSprings | None = None
 
     def __repr__(self) -> str:
@@ -89,7 +89,7 @@ class Scene:
         return self.bodies.freedom
 
     @property
-    def standing(self) -> Standing:
+    def rest_geometry(self) -> RestGeometry:
         """Solids and joints of the bodies and of what they stand on.
 
         Raises:
@@ -122,7 +122,7 @@ class Scene:
     @cached_property
     def sense(self) -> Array:
         """1 where the body of a contact is above its joint, -1 where it is below, shape (m,)."""
-        above = self.standing.frames.above[self.contacts.joint]
+        above = self.rest_geometry.frames.above[self.contacts.joint]
         return frozen(np.where(above == self.contacts.body, 1.0, -1.0))
 
     @cached_property

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..problem.wall.standing import Standing
+from ..problem.wall.rest_geometry import RestGeometry
 from ..quantities import Array
 
 TINTS = (
@@ -45,9 +45,9 @@ def distinct_tints(count: int, touching: Iterable[tuple[int, int]]) -> list[int]
     return chosen
 
 
-def colours_of(standing: Standing) -> Array:
+def colours_of(geometry: RestGeometry) -> Array:
     """Red, green and blue of each solid, 0 to 1, shape (solids, 3)."""
-    body = [solid.body for solid in standing.solids]
-    pairs = ((body[joint.below], body[joint.above]) for joint in standing.joints)
+    body = [solid.body for solid in geometry.solids]
+    pairs = ((body[joint.below], body[joint.above]) for joint in geometry.joints)
     numbers = distinct_tints(max(body) + 1, (pair for pair in pairs if min(pair) >= 0))
     return np.array([FIXED_COLOUR if number < 0 else TINTS[numbers[number]] for number in body])

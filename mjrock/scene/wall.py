@@ -12,7 +12,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
-from ..problem.wall.standing import WallStanding
+from ..problem.wall.rest_geometry import WallRestGeometry
 from ..quantities import Array, require_kind
 from .course import Course
 from .parts import GROUND, Bodies, ContactPoints, attachments
@@ -135,7 +135,7 @@ def standing_wall(
         settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]) if even else None,
         title=_title(wall, stop_top),
         facts=facts,
-        made_of=WallStanding(wall, stop_top),
+        made_of=WallRestGeometry(wall, stop_top),
     )
     if even:
         return scene

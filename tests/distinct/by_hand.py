@@ -9,7 +9,7 @@ from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
 from mjrock.distinct.turning import take_inverse_inertia, take_turn
 from mjrock.geometry.frames import PLANE, SPACE
-from mjrock.problem.wall.standing import Solid, in_space
+from mjrock.problem.wall.rest_geometry import Solid, in_space
 from mjrock.scene.course import Ground
 
 TURNS = Rotation.from_rotvec([[0.7, -0.4, 0.3], [-0.2, 0.5, 0.6]])

@@ -8,7 +8,7 @@ import pytest
 import mjrock as mr
 from mjrock.distinct.contacts import faces
 from mjrock.distinct.rows import kinds, rows
-from mjrock.problem.wall.standing import Face
+from mjrock.problem.wall.rest_geometry import Face
 
 TURN = 0.3
 C, S = math.cos(TURN), math.sin(TURN)
@@ -25,7 +25,7 @@ def test_the_outlines_of_a_joint_of_the_plane_are_the_two_whole_sides():
     blocks = [rectangle(-1, 4, -1, 0, fixed=True), rectangle(0.5, 1.5, 0, 1)]
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.6)
     along, up = np.array([C, S]), np.array([-S, C])
-    ((below, above),) = mr.MasonryCase(masonry, 1.0).standing.faces
+    ((below, above),) = mr.MasonryCase(masonry, 1.0).rest_geometry.faces
     for outline, ends, normal in ((below, (-1, 4), up), (above, (0.5, 1.5), -up)):
         np.testing.assert_allclose(sorted((outline.corners @ along).tolist()), ends, rtol=1e-12)
         np.testing.assert_allclose(outline.corners @ up, 0.0, atol=1e-12)
@@ -40,7 +40,7 @@ def test_the_outlines_of_a_joint_in_space_are_the_two_whole_faces():
         mr.Polyhedron.box((1.0, 2.0, 1.0), (1.0, 0.5, 0.5), density=2000.0),
     ]
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.6)
-    ((below, above),) = mr.MasonryCase(masonry, 1.0).standing.faces
+    ((below, above),) = mr.MasonryCase(masonry, 1.0).rest_geometry.faces
     for outline, size, normal in ((below, (4.0, 3.0), 1.0), (above, (1.0, 2.0), -1.0)):
         np.testing.assert_allclose(np.ptp(outline.corners, axis=0), [*size, 0.0], atol=1e-12)
         np.testing.assert_allclose(outline.normal, [0.0, 0.0, normal], atol=1e-12)

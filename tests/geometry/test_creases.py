@@ -13,7 +13,7 @@ def length_of(creases):
 
 def parts_of(block):
     ground = mr.Polygon([(-9, -1), (9, -1), (9, 0), (-9, 0)], fixed=True)
-    return mr.MasonryCase(mr.Masonry([ground, block], k_n=1e9), 1.0).standing.solids[1].parts
+    return mr.MasonryCase(mr.Masonry([ground, block], k_n=1e9), 1.0).rest_geometry.solids[1].parts
 
 
 def test_a_box_has_twelve_edges():
@@ -34,6 +34,6 @@ def test_a_cut_through_a_unit_is_no_edge():
 def test_a_wall_shows_its_opening_and_not_the_parts_that_it_is_made_of():
     window = mr.Opening(width=1.0, height=2.0, sill=1.0)
     wall = mr.Block.from_size(thickness=0.6, height=4.2, length=4.0, openings=[window])
-    parts = mr.Case(wall, 0.01, 1.0).standing.solids[0].parts
+    parts = mr.Case(wall, 0.01, 1.0).rest_geometry.solids[0].parts
     assert len(parts) > 3
     assert length_of(creases_of(parts)) == pytest.approx(4 * (0.6 + 4.2 + 4.0) + 4 * (1.0 + 2.0) + 4 * 0.6)

@@ -19,8 +19,8 @@ from mjrock.distinct.setup import setup_of
 from mjrock.geometry.poses import rotations
 from mjrock.problem.masonry.blocks.joints_in_space import SpaceJoint
 from mjrock.problem.masonry.lines import Lines
-from mjrock.problem.masonry.standing import MasonryStanding
-from mjrock.problem.wall.standing import Solid
+from mjrock.problem.masonry.rest_geometry import MasonryRestGeometry
+from mjrock.problem.wall.rest_geometry import Solid
 from tests import own_laws
 
 from .quantities import QUANTITIES, Quantity, Scene, changed
@@ -172,11 +172,11 @@ def solve(scene: Scene, **options: Any) -> mr.Response:
 def measured_in_the_plane(scene: Scene) -> Iterator[None]:
     """Prisms of a scene of the plane have the sizes of its blocks, the outlines of their faces and the widths of its
     joints. The search goes by these when it looks for contacts, takes the faces that meet and hands joints over."""
-    flat, solids, about = masonry_of(scene), vars(MasonryStanding)["solids"].func, Solids.about
+    flat, solids, about = masonry_of(scene), vars(MasonryRestGeometry)["solids"].func, Solids.about
     sizes = {name: block.size for name, block in zip(flat.names, flat.blocks, strict=True)}
     widths = {(joint.below, joint.above, *np.round(joint.middle, 9)): joint.width for joint in flat.joints}
 
-    def measured(standing: MasonryStanding) -> tuple[Solid, ...]:
+    def measured(standing: MasonryRestGeometry) -> tuple[Solid, ...]:
         return tuple(replace(solid, size=sizes[solid.name]) for solid in solids(standing))
 
     def width(joint: SpaceJoint) -> float:
@@ -187,7 +187,7 @@ def measured_in_the_plane(scene: Scene) -> Iterator[None]:
 
     with (
         patch.object(Solids, "about", outlined),
-        patch.object(MasonryStanding, "solids", property(measured)),
+        patch.object(MasonryRestGeometry, "solids", property(measured)),
         patch.object(SpaceJoint, "width", property(width)),
     ):
         yield

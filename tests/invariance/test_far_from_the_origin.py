@@ -26,7 +26,7 @@ def dome(by=(0.0, 0.0, 0.0), k_n=1e12):
 def meetings_in(masonry, by=(0.0, 0.0, 0.0)):
     """Of each pair of blocks without a joint, after small displacements: its places, their share of what the pair has,
     the middle of the places, moved back, and the sum of their normals, shape (pairs, 8)."""
-    standing = standing_masonry(masonry).standing
+    standing = standing_masonry(masonry).rest_geometry
     solids, count = standing.solids, len(standing.solids)
     moved = SHAKEN * np.random.default_rng(1).standard_normal((count, 3))
     poses = Poses(np.array([solid.rest for solid in solids]), moved, np.zeros((count, 3, 3)))

@@ -97,7 +97,7 @@ OUTPUTS = (in_gltf, in_vtk, in_browser, in_mujoco, in_plain_mujoco)
 def test_a_block_has_its_colour_in_every_output(output, masonry, tmp_path):
     """Bytes round a colour by half of 1/255."""
     run = still(masonry)
-    wanted = dict(zip(masonry.names, colours_of(run.case.standing), strict=True))
+    wanted = dict(zip(masonry.names, colours_of(run.case.rest_geometry), strict=True))
     found = output(run, tmp_path)
     for name in run.bodies:
         np.testing.assert_allclose(found[name], wanted[name], atol=0.51 / 255, err_msg=name)

@@ -81,11 +81,11 @@ def test_a_tie_holds_the_inner_face_where_that_is():
 def test_the_side_stop_lies_behind_every_storey():
     wall = setback()
     case = mr.Case(wall, 0.0, 1.0)
-    side = case.standing.solids[2]
+    side = case.rest_geometry.solids[2]
     assert [part.corners[:, 0].max() for part in side.drawn] == pytest.approx([-0.3, -0.15])
     volume = sum(part.bulk.volume for part in side.drawn)
     assert volume == pytest.approx((0.9 - 0.3) * STEP + (0.9 - 0.15) * (HEIGHT - STEP))
-    assert mr.Case(wall, 0.0, 1.0, side_stop=mr.SideStop(2.0)).standing.solids[2].drawn[0].bulk.volume == (
+    assert mr.Case(wall, 0.0, 1.0, side_stop=mr.SideStop(2.0)).rest_geometry.solids[2].drawn[0].bulk.volume == (
         pytest.approx(0.6 * 2.0)
     )
 

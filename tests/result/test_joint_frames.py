@@ -38,7 +38,9 @@ def test_the_joint_on_the_lowest_free_block_moves_and_turns_with_it():
     block = mr.Block.from_size(thickness=0.5, height=0.8, length=1.0, density=2000.0)
     case = mr.MasonryCase(mr.Masonry.stack([block, block], 1e9), 1.0)
     x, z, turn = 0.1, 0.2, 0.3
-    middle, axes = Moving(case, np.zeros(1), np.array([[(x, z, turn), (0.0, 0.0, 0.0)]])).joints(case.standing.frames)
+    middle, axes = Moving(case, np.zeros(1), np.array([[(x, z, turn), (0.0, 0.0, 0.0)]])).joints(
+        case.rest_geometry.frames
+    )
     np.testing.assert_allclose(middle[0, 0], (0.0, 0.0), atol=1e-12)
     np.testing.assert_allclose(middle[0, 1], (x + 0.4 * np.sin(turn), 0.4 + z + 0.4 * np.cos(turn)), atol=1e-12)
     np.testing.assert_allclose(axes[0, 1, 0], (np.sin(turn), np.cos(turn)), atol=1e-12)
@@ -50,7 +52,7 @@ def test_the_joint_on_a_support_moves_with_it():
     masonry = mr.Masonry.stack([block], 1e9)
     ground = next(name for name, one in zip(masonry.names, masonry.blocks, strict=True) if one.fixed)
     case = mr.MasonryCase(masonry, 1.0, supports={ground: ([0.0, 1.0], [0.0, 0.2], [0.0, -0.1])})
-    middle, axes = Moving(case, np.array([0.5]), np.zeros((1, 1, 3))).joints(case.standing.frames)
+    middle, axes = Moving(case, np.array([0.5]), np.zeros((1, 1, 3))).joints(case.rest_geometry.frames)
     np.testing.assert_allclose(middle[0, 0], (0.1, -0.05), atol=1e-12)
     np.testing.assert_allclose(axes[0, 0, 0], (0.0, 1.0), atol=1e-12)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...compiled import inlined
 from ...geometry.vectors import Vector, components, dot, minus, scaled
-from ...problem.wall.standing import Face
+from ...problem.wall.rest_geometry import Face
 from ...quantities import Array
 from ..rows import Rows, kinds, rows
 

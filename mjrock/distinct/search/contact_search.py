@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...compiled import for_types_of
-from ...problem.wall.standing import Standing
+from ...problem.wall.rest_geometry import RestGeometry
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
 from ..rows import chosen, joined, rows, unsound
@@ -98,7 +98,7 @@ class ContactSearch:
     examine = staticmethod(is_outdated)  # until a run knows the types of its arguments
 
     def __init__(self, scene: Scene, system: System) -> None:
-        solids, joints, joint = scene.standing.solids, scene.standing.joints, scene.contacts.joint
+        solids, joints, joint = scene.rest_geometry.solids, scene.rest_geometry.joints, scene.contacts.joint
         self.count, self.group = len(solids), len(joints)
         self.names, self.sizes = [solid.name for solid in solids], np.array([solid.size for solid in solids])
         body, drawn = np.array([solid.body for solid in solids]), np.array([solid.rest for solid in solids])
@@ -116,7 +116,7 @@ class ContactSearch:
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
         np.minimum.at(left, of, LEFT_JOINT * np.array([joint.width for joint in joints]))
-        np.minimum.at(rolled, of, _rolled(scene.standing))
+        np.minimum.at(rolled, of, _rolled(scene.rest_geometry))
         self.first_joint = np.unique(of, return_index=True)[1]
         self.jointed, points = _jointed(scene, self.finder, of)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
@@ -293,11 +293,11 @@ class ContactSearch:
         return shares_within(sides, law, system.bodies, h / OF_STABLE_STEP)
 
 
-def _rolled(standing: Standing) -> Array:
+def _rolled(geometry: RestGeometry) -> Array:
     """1 less the cosine of the angle of its faces up to which each joint serves [-], shape (joints,)."""
-    normals = [np.array([side.normal for side in solid.sides]) for solid in standing.solids]
-    rolled = np.empty(len(standing.joints))
-    for i, joint in enumerate(standing.joints):
+    normals = [np.array([side.normal for side in solid.sides]) for solid in geometry.solids]
+    rolled = np.empty(len(geometry.joints))
+    for i, joint in enumerate(geometry.joints):
         cosine = -1.0
         for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
             beside = normals[block] @ normals[block][side]
@@ -315,12 +315,12 @@ def _jointed(scene: Scene, finder: Finder, of: Integers) -> tuple[tuple[Integers
         of: number of the pair of blocks of each joint, shape (joints,).
     """
     assert scene.springs is not None
-    standing, of_joints = scene.standing, scene.springs.points.tolist()
+    geometry, of_joints = scene.rest_geometry, scene.springs.points.tolist()
     pairs, numbers, points = list[int](), list[int](), list[int]()
-    for joint, pair, count in zip(standing.joints, of.tolist(), of_joints, strict=True):
+    for joint, pair, count in zip(geometry.joints, of.tolist(), of_joints, strict=True):
         ends = (joint.below, joint.above)
         one, other = (
-            [int(finder.first[block]) + part for part in standing.solids[block].sides[side].parts]
+            [int(finder.first[block]) + part for part in geometry.solids[block].sides[side].parts]
             for block, side in zip(ends, joint.sides, strict=True)
         )
         both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]

@@ -19,7 +19,7 @@ import numpy as np
 from ...compiled import compiled_at_once, inlined
 from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun
 from ...problem.masonry.blocks.joints import each_with_each
-from ...problem.wall.standing import Solid
+from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
 from ..rows import Rows, rows
 from .clipping import PLACE, clip, corner_of, face_towards, lay_out, length_of, next_corner, normal_of, write_place

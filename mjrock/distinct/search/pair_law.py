@@ -31,7 +31,7 @@ import numpy as np
 from ...geometry.hull import Side, area_vector
 from ...problem.masonry.laws.dry import PairProperties
 from ...problem.masonry.laws.joint_law import INTENSIVE, Law, largest_stiffness
-from ...problem.wall.standing import Solid
+from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.parts import JointSprings
 from ...scene.scene import Scene
@@ -90,12 +90,12 @@ class PairLaw(NamedTuple):
     @classmethod
     def of_joints(cls, scene: Scene, lines: Rows) -> PairLaw:
         """The law of the joints of a scene, from their lines."""
-        solids, springs, joint = scene.standing.solids, scene.springs, scene.contacts.joint
+        solids, springs, joint = scene.rest_geometry.solids, scene.springs, scene.contacts.joint
         in_space = len(scene.freedom.axes) == 3
         assert springs is not None
-        blocks, joints = len(solids), len(scene.standing.joints)
-        below, above = np.array([(each.below, each.above) for each in scene.standing.joints]).T
-        areas = np.array([each.area if in_space else each.width for each in scene.standing.joints])
+        blocks, joints = len(solids), len(scene.rest_geometry.joints)
+        below, above = np.array([(each.below, each.above) for each in scene.rest_geometry.joints]).T
+        areas = np.array([each.area if in_space else each.width for each in scene.rest_geometry.joints])
         sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED_COLUMNS), areas])
         others = np.zeros((joints, len(INTENSIVE)))
         others[joint] = np.column_stack([lines[name] for name in INTENSIVE])
@@ -262,14 +262,14 @@ def _of_loose(scene: Scene, joints: Array, others: Array, loose: Flags) -> tuple
     """What loose blocks have over their largest faces. Of joints that are as soft, the softest along the face counts,
     then the least damped and the smoothest one."""
     assert scene.springs is not None
-    springs, solids = scene.springs, [scene.standing.solids[i] for i in np.flatnonzero(loose)]
+    springs, solids = scene.springs, [scene.rest_geometry.solids[i] for i in np.flatnonzero(loose)]
     known = springs.k_n, springs.k_s, springs.retardation, *others.T
     softest = int(np.lexsort(known[::-1])[0])
     largest = np.reshape([max(side_area(side) for side in solid.sides) for solid in solids], (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
     if len(scene.freedom.axes) == 2:
         length = np.array([[np.ptp(solid.drawn[0].corners[:, 1])] for solid in solids]).reshape(-1, 1)
-        of_joint = scene.standing.joints[softest].length
+        of_joint = scene.rest_geometry.joints[softest].length
         per_area = per_area * np.append(length / of_joint * np.ones(4), np.ones_like(length), 1)
     return largest * per_area, np.tile(others[softest], (len(solids), 1))
 

@@ -17,7 +17,7 @@ from ...geometry.hull import Convex, Side, area_vector
 from ...geometry.vectors import Vector, increase, put
 from ...problem.masonry.blocks.joints import PARTS_APART
 from ...problem.masonry.blocks.joints_in_space import axes_across
-from ...problem.wall.standing import Solid
+from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
 
 

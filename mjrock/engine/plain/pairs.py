@@ -16,7 +16,7 @@ import numpy as np
 from ...contacts.solref import body_weight, pair_values, row
 from ...method import METHOD
 from ...problem.masonry.laws.dry import PairProperties
-from ...problem.wall.standing import in_space
+from ...problem.wall.rest_geometry import in_space
 from ...quantities import Array, Integers
 from ...scene.parts import GROUND
 from ...scene.scene import Scene
@@ -112,7 +112,7 @@ def _given(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers
     spring of each two, shape (n, 2)."""
     alone, given = list[tuple[int, int]](), list[PairProperties]()
     if scene.springs is not None and scene.springs.pairs is not None:
-        names = [solid.name for solid in scene.standing.solids]
+        names = [solid.name for solid in scene.rest_geometry.solids]
         jointed = {frozenset((pieces[a].block, pieces[b].block)) for a, b in found.tolist()}
         by_block = {name: [i for i, each in enumerate(pieces) if each.block == name and each.meets] for name in names}
         for i, j in combinations(range(len(names)), 2):

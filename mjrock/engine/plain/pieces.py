@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from ...geometry.hull import Convex, hull_of
-from ...problem.wall.standing import Solid
+from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array
 from ...scene.scene import Scene
 
@@ -90,7 +90,7 @@ class Piece:
 
 def pieces_of(scene: Scene) -> list[Piece]:
     """The pieces of a scene: those of its bodies in their order, and then the fixed ones."""
-    solids = sorted(scene.standing.solids, key=lambda solid: solid.fixed)
+    solids = sorted(scene.rest_geometry.solids, key=lambda solid: solid.fixed)
     return [piece for solid in solids for piece in _of_solid(solid, scene)]
 
 
@@ -135,7 +135,7 @@ def _of_wall(solid: Solid, scene: Scene) -> Iterator[Piece]:
     if inset > 1e-12 * np.abs(corners).max():  # edges that have been crushed are cut off
         edges = np.array([(x, y, low) for x in ends for y in (foot[:, 1].min(), foot[:, 1].max())])
         corners = np.concatenate([corners[corners[:, 2] > low], foot + np.array((0.0, 0.0, inset)), edges])
-    if any(is_stepped_stop(other) for other in scene.standing.solids):
+    if any(is_stepped_stop(other) for other in scene.rest_geometry.solids):
         top = corners[corners[:, 2] == corners[:, 2].max()]
         corners = np.concatenate([corners, np.minimum(top, (corners[:, 0].min(), np.inf, np.inf))])
     yield from _filled(solid, corners)

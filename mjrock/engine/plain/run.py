@@ -178,7 +178,7 @@ class PlainRun:
         ties = motion_of_ties(Moving(case, at.t, at.pose), plastic)
         pulled = {name: ties[name].force for name in links.sprung.names}
         pulled |= dict(zip(links.damped.names, at.pulled.T, strict=True))
-        return forces_of(case, case.standing.frames, KeptForces(at.t, at.pose, at.loads, at.held, pulled))
+        return forces_of(case, case.rest_geometry.frames, KeptForces(at.t, at.pose, at.loads, at.held, pulled))
 
 
 def simulate_plain(problem: Problem, options: Options, state: State | None) -> Response:
@@ -201,7 +201,7 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
     require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
     warn_if_plain_is_slow(scene, course.duration, h)
     model, watch = PlainModel(problem, scene, course), Stopwatch()
-    frames = case.standing.frames
+    frames = case.rest_geometry.frames
     gathers = JointForces(model.pairs.of_joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
     steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
     try:

@@ -47,7 +47,7 @@ from .laws.bond import Bond
 from .laws.own_law import Own
 from .limit.collapse import limit_of, pushed
 from .masonry import Masonry
-from .standing import MasonryStanding
+from .rest_geometry import MasonryRestGeometry
 
 JUDGED_BLOCKS = 40
 """Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
@@ -297,9 +297,9 @@ class MasonryCase(Carrying):
         return {i: block.corners for i, block in enumerate(self.masonry.blocks) if block.fixed}
 
     @cached_property
-    def standing(self) -> MasonryStanding:
+    def rest_geometry(self) -> MasonryRestGeometry:
         """The blocks and their joints at rest."""
-        return MasonryStanding(self.masonry, self.centroids)
+        return MasonryRestGeometry(self.masonry, self.centroids)
 
     def held_by(self, link: Anchored) -> Array:
         """The point that a link holds, at rest [m], shape (d,)."""

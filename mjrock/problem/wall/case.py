@@ -29,8 +29,8 @@ from .block import Block
 from .effect import Anchored, Effect, require_only
 from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, constant_forces_of
 from .plausibility import doubts
+from .rest_geometry import WallRestGeometry
 from .restoring_moment import Restoring, TiePull, of_force, taken, tie_energy, tie_limits, yielded
-from .standing import WallStanding
 
 
 @dataclass(frozen=True)
@@ -170,9 +170,9 @@ class Case(Carrying):
         return (self.wall.outline,)
 
     @cached_property
-    def standing(self) -> WallStanding:
+    def rest_geometry(self) -> WallRestGeometry:
         """The wall and what it stands on and against, at rest."""
-        return WallStanding(self.wall, self.stop_top)
+        return WallRestGeometry(self.wall, self.stop_top)
 
     def held_by(self, link: Anchored) -> Array:
         """The point that a link holds, at rest [m], shape (2,)."""

@@ -62,7 +62,7 @@ def tear(bond: LawRow, gap: float) -> None:
 
 @inlined
 def hardened(bond: LawRow, closing: float) -> float:
-    """What a joint that hardens bears after it has closed by so much more, up to its peak [N]."""
+    """What a joint that hardens bears after it has closed by a further amount, up to its peak [N]."""
     share = min((bond.crushed + closing) / bond.hardening, 1.0)
     bears: float = bond.peak * (YIELDS + (1 - YIELDS) * math.sqrt(share * (2 - share)))
     return bears

@@ -172,7 +172,7 @@ class WallJoint(NamedTuple):
         return self.width * self.length
 
 
-class Standing(Protocol):
+class RestGeometry(Protocol):
     """The bodies and joints of a wall or of masonry at rest. Each property is computed when it is first read."""
 
     @property
@@ -198,7 +198,7 @@ def in_space(vectors: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class WallStanding:
+class WallRestGeometry:
     """A wall on its base, with a side stop of a height [m] or without one."""
 
     wall: Block

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.hull import Side
 from ...quantities import Array
-from ..wall.standing import Face, JointFrames, Solid, in_space
+from ..wall.rest_geometry import Face, JointFrames, Solid, in_space
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
 from .lines import free_numbers
@@ -17,7 +17,7 @@ from .masonry import Masonry
 
 
 @dataclass(frozen=True, eq=False)
-class MasonryStanding:
+class MasonryRestGeometry:
     """Masonry, and the centroids of all blocks with the masses that are added to them [m], shape (blocks, d)."""
 
     masonry: Masonry
