@@ -241,8 +241,8 @@ for name in list(variants)[1:]:
 # Bars that break after 30 mm add little, as they are gone before the large
 # rotations. Bars that can be drawn out by 100 mm add more. The report answers
 # on its first page, and has the checks step by step, the runs, the inputs and
-# their sources. It opens in any browser, on a phone too, and prints on eight
-# pages or fewer. A path that ends in .pdf makes a PDF where WeasyPrint is
+# their sources. It opens in any browser, on a phone too, and prints on some
+# ten pages. A path that ends in .pdf makes a PDF where WeasyPrint is
 # installed. `language="it"` writes it in Italian. The film shows the wall as it
 # is.
 upper_part = "part above the choir floor"
