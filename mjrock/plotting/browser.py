@@ -54,7 +54,8 @@ def view(response: Response, path: str | Path, *, fps: float = 25.0) -> Path:
     """Write a page with the motion of a response that opens in any browser without a network.
 
     The blocks can be turned, zoomed, scrubbed and played, with what the ground does below the slider. A block that is
-    clicked tells its name, mass and displacement. There is a switch for blocks, ground, supports that move, ties,
+    clicked tells its name, mass and displacement, and a line the largest opening of a joint so far. Colours follow the
+    light or dark theme of the reader. There is a switch for blocks, ground, supports that move, ties,
     cracks, and, where the run kept them, for forces. `page.html#t=0.7&forces` opens the page at 0.7 s with forces.
 
     Args:
@@ -112,7 +113,11 @@ class Page:
     def run(self) -> Json:
         """All that the script of the page needs."""
         room = AROUND * self.extent
-        low, high = np.maximum(self.reached[0], self.low - room), np.minimum(self.reached[1], self.high + room)
+        beside = [
+            body.rest + body.corners for i, body in enumerate(self.bodies) if body.fixed and i not in self.grounds
+        ]
+        low, high = ends_of(np.concatenate([*self.reached[:, None], *beside]))
+        low, high = np.maximum(low, self.low - room), np.minimum(high, self.high + room)
         moves = [i for i, body in enumerate(self.bodies) if body.moves]
         return {
             "t": [float(f"{t:.9g}") for t in self.t],
@@ -123,6 +128,7 @@ class Page:
             "cracks": list(self._cracks()),
             "forces": None if self.response.kept_forces is None else self._forces(),
             "track": list(self._track()),
+            "opened": self._opened(),
             "box": [self._rounded(low), self._rounded(high)],
             "way": WAYS[self.response.in_space],
             "reach": float(np.abs(self.reached - np.array([low, high])).max() + 2 * self.extent),
@@ -250,6 +256,14 @@ class Page:
         if self.case.tilt is not None:
             t, angle = self.case.tilt
             yield _line("tilt of the table", "rad", np.interp(self._instants(t), t, angle))
+
+    def _opened(self) -> list[float] | None:
+        """Largest opening of a joint so far at each sample [m], at the last that of the whole run; None of a wall."""
+        if self.response.joints is None:
+            return None
+        widest = np.maximum.accumulate(self.response.crack_widths.max(axis=1, initial=0.0))[self.samples]
+        widest[-1] = max(widest[-1], self.response.opening.max(initial=0.0))
+        return [float(f"{width:.4g}") for width in widest]
 
     def _instants(self, given: ArrayLike) -> Array:
         """Times of the points of a line, and then those given within the run [s]."""

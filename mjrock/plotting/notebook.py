@@ -20,10 +20,10 @@ from ..study.loading.design import Design
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
 from ..study.sensitivity import Sensitivity
-from .histories import history
+from .histories import displacement, history
 from .masonry import blocks, mechanism
 from .studies import design, fragility, overturning_map, push, pushover, thresholds, tornado
-from .style import figure_of, png, wrapped
+from .style import Picture, figure_of, png, wrapped
 from .wall import sketch
 
 MOST_BLOCKS = 3000
@@ -33,7 +33,7 @@ PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     MasonryCase: lambda case, said: _masonry(case.masonry),
     Masonry: lambda masonry, said: _masonry(masonry),
     Collapse: lambda found, said: None if found.forces is None else mechanism(found),
-    Response: history,
+    Response: lambda answer, said: history(answer, said) if answer.joints is None else _run(answer, said),
     Comparison: lambda pair, said: history([pair.reference, pair.candidate], said),
     Push: lambda curve, said: push({"": curve}),
     PushoverCurve: lambda curve, said: pushover({"": curve}),
@@ -59,3 +59,16 @@ def png_of(shown: object) -> bytes | None:
 
 def _masonry(masonry: Masonry) -> Axes | None:
     return blocks(masonry) if len(masonry.blocks) <= MOST_BLOCKS else None
+
+
+def _run(answer: Response, said: str) -> Figure:
+    """The blocks of masonry at the end of a run, above how far they have moved."""
+    figure = Picture(figsize=(6.4, 6.0), layout="constrained")
+    (above,), (below,) = figure.subfigures(2, 1, squeeze=False, height_ratios=(2.0, 1.0))
+    above.suptitle(wrapped(said, 6.0, 9), fontsize=9)
+    if len(answer.case.standing.solids) <= MOST_BLOCKS:
+        blocks(above.subplots(subplot_kw={"projection": "3d"} if answer.in_space else None), answer)
+    moved = displacement(below.subplots(), [answer])
+    if answer.fallen:
+        moved.set_title("a cross where a block falls", fontsize=9)
+    return figure

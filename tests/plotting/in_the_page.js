@@ -71,11 +71,21 @@ const tests = {
     byId('block').onchange();
     view.draw();
     told.chosen = byId('card').querySelector('h2').textContent;
+    view.poses[8 * 1] -= 2e-8; // less than a digit of the card
+    view.poses[8 * 1 + 1] -= 2e-8;
+    view.writeCard();
+    told.zero = byId('card').textContent;
     press('Escape');
     told.switches = Object.keys(view.switches);
     view.switches.forces.click();
     view.draw();
     told.scales = [byId('force-scale').textContent, byId('length-scale').textContent];
+    told.opened = byId('opened').textContent;
+    told.canvas = byId('canvas').ariaLabel;
+    // the squares of what the picture shows of three unit vectors at right angles sum to one in any direction of it
+    const ends = all('#axes line').map(line => ['x2', 'y2'].map(name => line.getAttribute(name) / 26));
+    const sums = [0, 1].map(k => ends.reduce((sum, end) => sum + end[k] ** 2, 0));
+    told.axes = [...sums, 1 - ends.reduce((sum, [x, y]) => sum + x * y, 0)];
     const named = one => one.ariaLabel || one.textContent.trim() || one.labels?.length;
     told.unnamed = all('button, select, input, canvas').filter(one => !named(one)).length;
     return told;

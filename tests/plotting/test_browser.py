@@ -239,6 +239,28 @@ def test_a_wall_of_one_block_has_a_page(tmp_path):
     }
     assert [body["mass"] for body in run["bodies"]] == [pytest.approx(wall.mass, rel=1e-5), None, None]
     assert run["track"] == []
+    assert run["opened"] is None
+
+
+def test_a_page_looks_at_all_that_a_wall_leans_on(tmp_path):
+    """The box of the view has the side stop, of which a narrow window would else cut a part off."""
+    wall = mr.Block.from_size(thickness=0.6, height=4.2)
+    case = mr.Case(wall, 0.1 * wall.alpha, 1.0, side_stop=mr.SideStop(3.0))
+    run = run_of(plotting.view(mr.solve_analytical(case, mr.Restitution.from_geometry(wall)), tmp_path / "w.html"))
+    (side,) = (body for body in run["bodies"] if body["name"] == "side")
+    corners = np.array(side["rest"]) + np.array(run["shapes"][side["shape"]]["corners"])
+    low, high = np.array(run["box"])
+    assert (low <= corners + 1e-5).all()
+    assert (corners <= high + 1e-5).all()
+
+
+def test_the_largest_opening_so_far_grows_to_that_of_the_run(slid, tmp_path):
+    run = run_of(plotting.view(slid, tmp_path / "w.html", fps=10))
+    assert len(run["opened"]) == len(run["t"])
+    assert (np.diff(run["opened"]) >= 0).all()
+    assert run["opened"][-1] == pytest.approx(slid.opening.max(), rel=1e-3)
+    at = np.searchsorted(slid.t, run["t"][4])
+    assert run["opened"][4] == pytest.approx(slid.crack_widths[: at + 1].max(), rel=1e-3)
 
 
 def test_what_is_wrong_is_named(slid, tmp_path):
@@ -336,6 +358,12 @@ def test_a_browser_shows_the_blocks_where_they_are_and_its_controls_work(slid, t
     assert told["reset"] == [0, 1, pytest.approx(0, abs=1e-6)]
     assert told["card"].startswith(NASTY)
     assert all(word in told["card"] for word in ("mass600 kg", "displacement", "turned by", "force with lower"))
+    assert re.search(r"displacement\d+(\.\d+)? mm", told["card"])
+    assert re.fullmatch(r"largest opening so far \d+(\.\d+)? mm", told["opened"])
+    assert "0.000 mm" in told["zero"]
+    assert "-0.000" not in told["zero"]
+    assert told["canvas"].startswith("2 blocks, 0 to 1 s")
+    assert told["axes"] == pytest.approx([1, 1, 1], abs=1e-4)
     assert (told["picked"], told["hidden"], told["none"], told["chosen"]) == ("2", True, -1, "lower")
     assert set(told["switches"]) == {"ground", "blocks", "ties", "forces"}
     assert re.fullmatch(r"[125]0* k?N", told["scales"][0])

@@ -25,6 +25,8 @@ SHOWN = {
     "masonry": lambda: BOND,
     "masonry in space": lambda: BOX,
     "case of masonry": lambda: mr.MasonryCase(BOND, 1.0),
+    "answer of masonry": lambda: mr.solve_explicit(mr.MasonryCase(BOND, 0.1, mr.GroundMotion.sine(3.0, 0.1))),
+    "answer of masonry in space": lambda: mr.solve_explicit(mr.MasonryCase(BOX, 0.02)),
     "collapse": lambda: mr.collapse_multiplier(BOND),
 }
 
@@ -54,6 +56,22 @@ def test_problems_and_answers_are_drawn(make):
     assert (drawn[: rows // 4] < 100).all(axis=2).any()
     below = drawn[rows // 10 :].astype(int)
     assert np.ptp(below, axis=2).max() > 20 or len(np.unique(below)) > 20
+
+
+def test_an_answer_of_masonry_shows_its_blocks_where_they_are_at_the_end():
+    """A wall that a pulse of the ground throws over: the upper part has brick where it lies, beside its base."""
+    wall = mr.Masonry.running_bond(0.25, 1.0, (0.25, 0.25), k_n=1e9, friction=0.9)
+    run = mr.solve_explicit(mr.MasonryCase(wall, 1.2, motion=mr.GroundMotion.rectangular(-8.0, 0.5)))
+    assert run.fallen
+    places = {}
+    for name, answer in (("at the end", run), ("at rest", mr.solve_explicit(mr.MasonryCase(wall, 0.01)))):
+        drawn = pixels(answer._repr_png_()).astype(int)
+        upper = drawn[drawn.shape[0] // 8 : drawn.shape[0] * 3 // 5]
+        places[name] = np.argwhere((upper[..., 0] - upper[..., 2] > 40) & (upper[..., 0] > 120))
+        assert len(places[name]) > 500
+    rest, end = (np.ptp(places[name], axis=0) for name in ("at rest", "at the end"))
+    assert rest[0] > rest[1]
+    assert end[1] > end[0]
 
 
 def test_the_title_is_what_it_prints_as(monkeypatch, theory):

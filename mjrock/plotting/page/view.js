@@ -6,19 +6,22 @@
 
 const run = JSON.parse(document.getElementById('run').textContent);
 const byId = id => document.getElementById(id);
+const all = selector => [...document.querySelectorAll(selector)];
 const canvas = byId('canvas');
 const NARROW = (24 * Math.PI) / 180; // vertical angle of the camera
 const WIDE = 1024; // texels in a row of the texture of poses
+const NIGHT = matchMedia('(prefers-color-scheme: dark)'),
+  dark = NIGHT.matches;
 const INK = '#2b1a14',
-  FAINT = '#a08f86',
-  GREY = '#c9c5bd',
-  FLOOR = '#e4e0d7',
+  FAINT = dark ? '#6d6058' : '#a08f86',
+  GREY = dark ? '#77716a' : '#c9c5bd',
+  FLOOR = dark ? '#4a4641' : '#e4e0d7',
   PICKED = '#ffd24a';
 const EDGE = 1.3; // width of edges in pixels
-const KINDS = {ties: ['#1f5f9e', 3], cracks: ['#d1261a', 3.5], forces: ['#b5462f', 3.5]}; // colour and width in pixels
+const KINDS = {ties: [dark ? '#7db8f0' : '#1f5f9e', 3], cracks: ['#d1261a', 3.5], forces: ['#b5462f', 3.5]}; // colour and width in pixels
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2];
 const LENGTHS = [1, 2, 5, 10, 20]; // of the bars of forces
-const LINES_OF_TRACK = ['#12406b', '#c2571a', '#3f8f5b'];
+const LINES_OF_TRACK = dark ? ['#8fbfee', '#f0a070', '#86cf9d'] : ['#12406b', '#b04a10', '#2f7d4b'];
 
 // ---------------------------------------------------------------------------------------------- numbers of the run
 
@@ -329,6 +332,15 @@ function shown(value, unit, digits = 3) {
   return `${+(value / factor).toPrecision(digits)} ${prefix}${unit}`;
 }
 
+// A number with so many decimals, and no minus before a zero.
+const plain = (value, places) => value.toFixed(places).replace(/^-(0(\.0*)?)$/, '$1');
+
+// A length in mm, or in m from one metre on, to three digits, as text.
+function lengthOf(metres) {
+  const size = Math.abs(metres);
+  return size < 1 ? `${plain(1e3 * metres, size < 1e-2 ? 3 : size < 1e-1 ? 2 : 1)} mm` : `${plain(metres, 2)} m`;
+}
+
 // ----------------------------------------------------------------------------------------------------------- picking
 
 // The number of the nearest body that a ray meets, or -1.
@@ -386,10 +398,8 @@ function rowsOf(number, poses, forces, time) {
   if (body.colour === null) rows.push(['fixed', run.moving.includes(number) ? 'moved as a support' : 'yes']);
   if (run.moving.includes(number)) {
     const off = [0, 1, 2].map(i => pose[i] - body.rest[i]);
-    const far = Math.hypot(...off);
-    const places = Math.min(6, Math.max(0, 2 - Math.floor(Math.log10(far + 1e-6))));
-    rows.push(['displacement', `${far.toFixed(places)} m`]);
-    rows.push(['x, y, z [m]', off.map(value => value.toFixed(places)).join(', ')]);
+    rows.push(['displacement', lengthOf(Math.hypot(...off))]);
+    rows.push(['along x, y, z', off.map(lengthOf).join(', ')]);
     const angle = (2 * Math.atan2(Math.hypot(pose[4], pose[5], pose[6]), Math.abs(pose[7])) * 180) / Math.PI;
     rows.push(['turned by', `${angle < 5e-5 ? 0 : angle.toPrecision(3)} degrees`]);
   }
@@ -477,8 +487,11 @@ class View {
     this.blocks = meshOfBodies(false, this.uniforms);
     this.shapes = {};
     const always = [-1e30, 1e30];
+    const outlined = body => !(run.ground && body.kind === 'ground'); // the ground goes on beyond its edge
     const edges = run.bodies.flatMap((body, i) =>
-      run.shapes[body.shape].edges.map(([start, end]) => ({start, end, bodies: [i, i], life: always})),
+      run.shapes[body.shape].edges
+        .filter(() => outlined(body))
+        .map(([start, end]) => ({start, end, bodies: [i, i], life: always})),
     );
     this.edges = meshOfLines(edges, [INK, EDGE], this.uniforms);
     this.scene.add(this.blocks, meshOfBodies(true, this.uniforms), this.edges);
@@ -557,10 +570,13 @@ class View {
       this.controls.enableZoom = window.self === window.top;
     });
     document.addEventListener('keydown', event => this.key(event));
+    const count = run.bodies.filter(body => body.kind === 'blocks').length,
+      [first, last] = [this.first, this.last].map(time => +time.toFixed(2));
     canvas.setAttribute(
       'aria-label',
-      `${run.bodies.length} blocks in motion, ${this.first} to ${this.last} s: drag to turn, wheel or pinch to zoom, click a block`,
+      `${count} block${count === 1 ? '' : 's'}, ${first} to ${last} s: drag to turn, wheel or pinch to zoom, click a block`,
     );
+    NIGHT.addEventListener('change', () => location.reload()); // in the other colours
   }
 
   // What a key does. Keys that a control of the page takes are left to it.
@@ -757,7 +773,22 @@ class View {
       for (const end of ['x1', 'x2'])
         this.cursor.setAttribute(end, (1000 * (this.time - this.first)) / (this.last - this.first));
     this.drawScales(this.tall / (2 * distance * Math.tan(NARROW / 2)));
+    this.drawAxes();
+    if (run.opened) byId('opened').textContent = `largest opening so far ${lengthOf(run.opened[sampleAt(this.time)[0]])}`;
     if (this.number >= 0) this.writeCard();
+  }
+
+  // Draw the directions of x, y and z as the camera sees them.
+  drawAxes() {
+    const turn = this.camera.quaternion.clone().invert();
+    all('#axes g').forEach((group, i) => {
+      const {x, y} = new THREE.Vector3(+(i === 0), +(i === 1), +(i === 2)).applyQuaternion(turn);
+      const [line, text] = group.children;
+      line.setAttribute('x2', 26 * x);
+      line.setAttribute('y2', -26 * y);
+      text.setAttribute('x', 35 * x);
+      text.setAttribute('y', -35 * y);
+    });
   }
 
   // Draw the scale bars, of so many pixels a metre at what the camera looks at.
