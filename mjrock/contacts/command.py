@@ -1,11 +1,13 @@
 """`mjrock inspect model.xml`: what the contacts of a MuJoCo model are in N/m and N s/m.
 
-The worst contacts come first, and equal notes are given once."""
+The worst contacts come first, and equal notes are given once. A line has at most 80 columns where names are short."""
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import math
+import textwrap
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -20,6 +22,14 @@ from .notes import VARIES, model_spoilers
 
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
+IN_SHORT = [
+    True,
+    True,
+    False,
+    *(name in ("k [N/m]", "c [N s/m]", "mass [kg]", "points", "e") for name in NUMBERS),
+    True,
+]
+"""Which columns a page has; `--all` and `--csv` give the others too."""
 GAINS_NOTE, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
 """Parts of notes that put a contact first or last in the table."""
 
@@ -67,7 +77,7 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
     Args:
         found: contacts from `inspect_contacts`.
         speed: speed of approach at which the column `e at v` counts gravity [m/s].
-        most: rows that are shown; None shows all.
+        most: contacts of which a page has the main columns, those alike in one row; None shows all rows and columns.
     """
     speed = require_within("speed", speed, 1e-9, 1e9, "m/s")
     if not found:
@@ -82,16 +92,28 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
     for contact in shown:
         marks = sorted({numbers[VARIES.sub("#", note)] for note in contact.notes})
         rows.append([*values(contact, speed), ",".join(str(mark) for mark in marks)])
-    head, *body = aligned([list(HEADER), *rows])
+    head, *body = aligned([list(HEADER), *rows] if most is None else short([list(HEADER), *rows]))
     lines = [head, "-" * len(head), *body]
-    if len(shown) < len(found):
-        lines.append(
-            f"and {len(found) - len(shown)} more; --all shows them, --geom, --body and --pair choose among them"
-        )
-    lines.append(f"v is {speed:g} m/s. k loaded carries the static load: that of the pose, or --load.")
+    if most is not None:
+        more = f"and {len(found) - len(shown)} more; " if len(shown) < len(found) else ""
+        lines.append(f"{more}--all shows all rows and columns; --geom, --body and --pair choose")
+    else:
+        lines.append(f"v is {speed:g} m/s. k loaded carries the static load: that of the pose, or --load.")
     for number, (first, *others) in enumerate(alike.values(), 1):
-        lines.append(f"{number}: {first}" + (f" [and {len(others)} like it]" if others else ""))
+        lines += textwrap.wrap(f"{number}: {first}" + (f" [and {len(others)} like it]" if others else ""), 80)
     return "\n".join(lines)
+
+
+def short(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    """The columns of a page; rows that differ in their second geom alone are one, which says how many are like it."""
+    kept = [list(itertools.compress(row, IN_SHORT)) for row in rows]
+    groups: dict[tuple[str, ...], list[list[str]]] = {}
+    for row in kept:
+        groups.setdefault((row[0], *row[2:]), []).append(row)
+    return [
+        [first[0], first[1] + (f" and {len(others)} like it" if others else ""), *first[2:]]
+        for first, *others in groups.values()
+    ]
 
 
 def values(contact: InspectedContact, speed: float) -> list[str]:
@@ -141,8 +163,8 @@ def add_arguments(made: argparse.ArgumentParser) -> None:
     made.add_argument("--contacts", type=int, help="points that share the mass, instead of those counted")
     made.add_argument("--keyframe", help="keyframe in which the geoms meet, by name or number")
     made.add_argument("--load", type=float, help="static load of a contact point [N], instead of the weight")
-    made.add_argument("--speed", type=float, default=1.0, help="speed of approach of the last e [m/s]")
-    made.add_argument("--all", action="store_true", help=f"every row, not the worst {PAGE}")
+    made.add_argument("--speed", type=float, default=1.0, help="speed of approach of the last e of --all [m/s]")
+    made.add_argument("--all", action="store_true", help=f"every row and column, not the worst {PAGE}")
     made.add_argument("--csv", type=Path, help="a file for every row that is chosen, with its notes")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -26,23 +27,28 @@ SAME_IMPACT = 0.25
 """How far apart in time two impacts may be that belong to each other, times p of the wall [-]."""
 
 
+WIDEST_LINE = 80
+"""Columns of a terminal, which no line of a table is longer than."""
+
+
 class Measure(NamedTuple):
-    """A measure of an impact: name and unit, its property of `Comparison`, and its heading and format in a table."""
+    """A measure of an impact: name and unit, its property of `Comparison`, and its format in a table that has it."""
 
     name: str
     unit: str
     of: str
-    heading: str
-    form: str
+    form: str | None
 
 
 OF_AN_IMPACT = (
-    Measure("impact time", "s", "impact_times", "time [s]", "10.4f"),
-    Measure("restitution", "-", "restitution", "restitution [-]", "10.4f"),
-    Measure("rebound peak", "theta/alpha", "rebound_peaks", "peak [theta/alpha]", "10.5f"),
-    Measure("energy loss", "J", "energy_loss", "energy loss [J]", "10.2f"),
-    Measure("energy loss share", "of release", "energy_share", "loss / release", "10.2%"),
+    Measure("impact time", "s", "impact_times", "8.4f"),
+    Measure("restitution", "-", "restitution", "7.4f"),
+    Measure("rebound peak", "theta/alpha", "rebound_peaks", "7.5f"),
+    Measure("energy loss", "J", "energy_loss", None),
+    Measure("energy loss share", "of release", "energy_share", "7.2%"),
 )
+HEADINGS = " time [s] ", "restitution [-]", "peak/alpha [-]", "loss / release"
+"""Of the measures of a table."""
 
 
 @dataclass(frozen=True)
@@ -166,19 +172,19 @@ class Comparison(NotebookPicture):
         return csv_text(list(rows[0]), [list(row.values()) for row in rows])
 
     def table(self, most: int = 6) -> str:
-        """The first `most` impacts and the totals as text, for a terminal."""
+        """The first `most` impacts and the totals as text of at most 80 columns; `csv` has the losses in J too."""
         labels = self._labels
-        pair = " ".join(f"{label[:10]:>10}" for label in labels)
         lines = [
-            f"{'':>6} |" + "|".join(f"{one.heading:^21}" for one in OF_AN_IMPACT),
-            f"{'impact':>6} |" + "|".join([pair] * len(OF_AN_IMPACT)),
+            f"Of each impact: {labels[0]}, then {labels[1]}",
+            "impact |" + "|".join(f"{heading:^17}" for heading in HEADINGS),
         ]
         for i, row in enumerate(self._measured[: max(0, most)].tolist()):
             cells = (
-                " ".join(f"{'-':>10}" if math.isnan(value) else f"{value:{one.form}}" for value in both)
+                " ".join(f"{'-':>{one.form[0]}}" if math.isnan(value) else f"{value:{one.form}}" for value in both)
                 for one, both in zip(OF_AN_IMPACT, row, strict=True)
+                if one.form is not None
             )
-            lines.append(f"{i + 1:>6} |" + "|".join(cells))
+            lines.append(f"{i + 1:>6} | " + " | ".join(cells))
         if self.pairs is not None:
             lines.append(
                 f"Impacts are paired by time; those of less than {COMPARED_FROM:.0%} of the overturning energy are out."
@@ -188,7 +194,7 @@ class Comparison(NotebookPicture):
         lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
         for label, response in zip(labels, self._both, strict=True):
             lines.append(f"{label}: {response.message}")
-        return "\n".join(lines)
+        return "\n".join(part for line in lines for part in textwrap.wrap(line, WIDEST_LINE))
 
 
 def compare(reference: Response, candidate: Response) -> Comparison:

@@ -33,11 +33,12 @@ def lines_of(capsys, *arguments):
 
 
 def test_it_is_a_page(model, capsys):
-    """55 contacts: 40 rows, the notes that are alike once, geoms by the names of their bodies."""
+    """55 contacts: 40 of them, the notes that are alike once, geoms by the names of their bodies, within 80 columns."""
     lines = lines_of(capsys, "inspect", model)
-    assert len(lines) < 60
+    assert len(lines) < 66
+    assert max(map(len, lines)) <= 80
     assert "floor  leg0[1]" in lines[2] or "leg" in lines[2]
-    assert lines[42].startswith("and 15 more; --all shows them")
+    assert any(line.startswith("and 15 more; --all shows all rows") for line in lines)
     notes = [line for line in lines if line[:1].isdigit()]
     assert len(notes) < 8
     assert any("like it]" in note for note in notes)
@@ -57,13 +58,29 @@ def test_it_chooses(model, capsys):
 
 
 def _rows(lines):
-    return lines[2 : next(i for i, line in enumerate(lines) if line.startswith("v is"))]
+    return lines[2 : next(i for i, line in enumerate(lines) if line.startswith(("v is", "--all")))]
 
 
 def test_the_worst_are_first_and_the_immovable_last(model, capsys):
     rows = _rows(lines_of(capsys, "inspect", model, "--geom", "floor", "--all"))
     assert rows[-1].split()[6] == "inf"
     assert rows[-1].split()[10:13] == ["-", "-", "-"]
+
+
+def test_contacts_that_differ_in_a_name_alone_are_one_row(tmp_path, capsys):
+    """Four equal balls on a floor: one row of a page, and four of --all, which has 14 columns."""
+    balls = "".join(
+        f'<body name="ball{i}" pos="{i} 0 1"><freejoint/><geom contype="2" size=".1" mass="1"/></body>'
+        for i in range(4)
+    )
+    path = tmp_path / "balls.xml"
+    path.write_text(scene(FLOOR.replace("<geom", '<geom conaffinity="2"', 1), balls))
+    (row,) = _rows(lines_of(capsys, "inspect", path))
+    assert "and 3 like it" in row
+    lines = lines_of(capsys, "inspect", path, "--all")
+    assert len(_rows(lines)) == 4
+    assert "row adds" in lines[0]
+    assert lines[0].endswith("notes")
 
 
 def test_it_writes_every_row(model, tmp_path, capsys):
