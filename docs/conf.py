@@ -7,6 +7,7 @@ import html
 import inspect
 import os
 import re
+import shutil
 import sys
 import types
 from collections.abc import Callable
@@ -85,6 +86,7 @@ html_static_path = ["static"]
 LIVE = HERE / "build" / "live"
 html_extra_path = ["build/live"]
 html_css_files = ["mjrock.css"]
+html_js_files = ["films.js"]
 html_favicon = html_logo = "static/mark.svg"
 html_theme_options = {"sidebar_hide_name": False}
 html_baseurl = os.environ.get(
@@ -171,9 +173,17 @@ def write_live_view() -> None:
     mjrock.plotting.view(falling_arch(), LIVE / "arch_view.html")
 
 
+def copy_films() -> None:
+    """Copy films and their posters to where pages play them."""
+    (LIVE / "films").mkdir(parents=True, exist_ok=True)
+    for film in sorted(made_pages.FIGURES.glob("*.mp4")):
+        for ending in (".mp4", ".webm", ".webp"):
+            shutil.copy(film.with_suffix(ending), LIVE / "films")
+
+
 def write_card() -> None:
     """Write the picture that a message shows which links to the site: a façade as it falls, and the name."""
-    film = made_pages.whole("facade_in_space.gif", 0.7)
+    film = made_pages.whole("facade_in_space.webp")
     figure = Figure(figsize=(12.0, 6.3), dpi=100)
     ax = figure.add_axes((0.0, 0.2, 1.0, 0.8))
     ax.imshow(film.crop((0, film.height // 9, film.width, 8 * film.height // 9)), aspect="equal")
@@ -185,6 +195,9 @@ def write_card() -> None:
 
 compile_loops()
 write_live_view()
+copy_films()
+made_pages.write_scripts(LIVE)
+shutil.copy(HERE.parent / "CITATION.cff", LIVE)
 write_card()
 
 
@@ -205,10 +218,15 @@ def made(app: Any, page: str, source: list[str]) -> None:
         app.env.note_dependency(other)
 
 
+EXAMPLE = re.compile(r'<img alt="" (?=src="[^"]*sphx_glr_(?:\d+_)?(\w+)_thumb)')
+"""The small picture of an example, whose file is named after it."""
+
+
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Load pictures below the first as they come into sight, and say what a link to a page shows."""
     first, *others = re.split(r"(?=<img )", context.get("body") or "")
     above, others = "".join([first, *others[:1]]), others[1:]
+    others = [EXAMPLE.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', part) for part in others]
     context["body"] = above + "".join(part.replace("<img ", '<img loading="lazy" ', 1) for part in others)
     title = re.sub(r"<[^>]*>", "", context.get("title", project))
     said = {"og:title": title, "og:site_name": project, "og:image": f"{app.config.html_baseurl}card.png"}

@@ -9,6 +9,9 @@ import re
 from pathlib import Path
 
 from PIL import Image
+from pygments import highlight
+from pygments.formatters import HtmlFormatter
+from pygments.lexers import PythonLexer
 from sphinx.pycode import ModuleAnalyzer
 
 HERE = Path(__file__).parent
@@ -19,7 +22,14 @@ WIDE = 560
 MARK = re.compile(r"[|*]")
 """What Markdown would take for its own."""
 NAMED = re.compile(r"^\.\. auto(\w+):: (mjrock[\w.]*)$", re.MULTILINE)
-PICTURE = re.compile(r"!\[([^\]]*)\]\(figures/([\w/]+\.\w+)\)\n")
+FILM = re.compile(r"\[!\[([^\]]*)\]\(figures/(\w+)\.webp\)\]\(figures/\2\.mp4\)")
+"""A film of a page: its poster, which leads to it where no page plays it."""
+LOOPED = re.compile(r"!\[([^\]]*)\]\(figures/(\w+)\.gif\)")
+"""A film of the README, which GitHub plays as a GIF."""
+SECTION = re.compile(r"^```\{section\} ([\w.]+)(?: +(.*))?\n```$", re.MULTILINE)
+"""A file of the repository, and the title of a section of it."""
+SCRIPT = re.compile(r"`(scripts/[\w/]+)\.py([^`]*)`")
+PICTURE = re.compile(r"\[?!\[([^\]]*)\]\(figures/([\w/]+\.\w+)\)(?:\]\(figures/\w+\.mp4\))?\n")
 CARD = re.compile(rf"^((?:{PICTURE.pattern}\n?)+)\*(.+?)\*\n$", re.MULTILINE | re.DOTALL)
 """Pictures of the gallery, and the caption below them."""
 
@@ -130,28 +140,70 @@ def gallery(text: str) -> str:
     return head + "".join(shown)
 
 
-def home(text: str) -> str:
-    """The home page: the README with small pictures in its table, and what the page itself has."""
-    readme = (HERE.parent / "README.md").read_text(encoding="utf-8").replace("](docs/", "](")
-    readme = re.sub(r"\]\(mjrock/examples/(\w+)\.py\)", r"](auto_examples/\1.rst)", readme)
-    readme = re.sub(r"\[([^\]]*)\]\(CONTRIBUTING\.md[^)]*\)", r"\1", readme)
-    readme = re.sub(r"\[!\[\]\(figures/([\w./]+)\)\]", lambda found: f"[![]({thumbnail(found[1])})]", readme)
-    return text.replace("```{readme}\n```", readme)
+def player(found: re.Match[str]) -> str:
+    """A film with its controls. `static/films.js` plays it while it is in sight, but for readers who want no motion."""
+    alt, name = found.groups()
+    with Image.open(FIGURES / f"{name}.webp") as poster:
+        size = 'width="{}" height="{}"'.format(*poster.size)
+    sources = "".join(f'<source src="films/{name}.{kind}" type="video/{kind}">' for kind in ("webm", "mp4"))
+    film = (
+        f'<video {size} poster="films/{name}.webp" preload="none" controls loop muted playsinline aria-label="{alt}">'
+    )
+    return f"```{{raw}} html\n{film}{sources}{alt}</video>\n```"
+
+
+def section(found: re.Match[str]) -> str:
+    """A section of a file of the repository, or all of it, with its links as the site has them."""
+    name, title = found.groups()
+    text = (HERE.parent / name).read_text(encoding="utf-8")
+    if title:
+        _, _, text = text.partition(f"\n## {title}\n")
+        text = text.partition("\n## ")[0]
+    text = text.replace("](docs/", "](").replace("](VERSIONING.md)", "](versions.md)")
+    text = text.replace("](mjrock/examples/", "](../mjrock/examples/")
+    text = re.sub(r"\[([^\]]*)\]\((CITATION\.cff)\)", r'<a href="\2">\1</a>', text)
+    text = re.sub(r"\[!\[\]\(figures/([\w./]+)\)\]", lambda found: f"[![]({thumbnail(found[1])})]", text)
+    return LOOPED.sub(player, text)
+
+
+def linked_scripts(page: str, text: str) -> str:
+    """Names of scripts in the prose of a page as links to their text, which `write_scripts` writes."""
+    up = "../" * page.count("/")
+    parts = re.split(r"(?ms)(^`{3,}\{?.*?^`{3,}$)", text)
+    parts[::2] = [SCRIPT.sub(rf'<a href="{up}\1.html"><code>\1.py\2</code></a>', part) for part in parts[::2]]
+    return "".join(parts)
+
+
+def write_scripts(folder: Path) -> None:
+    """Write each script as a page, with the colours of its language."""
+    form = HtmlFormatter(full=True, linenos="inline", style="default")
+    for script in sorted((HERE.parent / "scripts").glob("*/**/*.py")):
+        name = script.relative_to(HERE.parent)
+        form.title = str(name)
+        page = folder / name.with_suffix(".html")
+        page.parent.mkdir(parents=True, exist_ok=True)
+        page.write_text(highlight(script.read_text(encoding="utf-8"), PythonLexer(), form), encoding="utf-8")
 
 
 def made(page: str, text: str) -> str:
     """The text of a page as the site has it."""
-    if page == "index":
-        return home(text)
+    text = SECTION.sub(section, text)
     if page == "gallery":
-        return gallery(text)
-    return reference(page, text) if page == "api" or page.startswith("api/") else text
+        text = gallery(text)
+    elif page == "api" or page.startswith("api/"):
+        text = reference(page, text)
+    text = FILM.sub(player, text)
+    text = re.sub(r"\]\(\.\./mjrock/examples/(\w+)\.py\)", r"](auto_examples/\1.rst)", text)
+    return text if page.startswith("auto_examples") else linked_scripts(page, text)
 
 
 def made_of(page: str) -> list[Path]:
     """The other files that a page of the site is made of."""
     return {
         "index": [HERE.parent / "README.md"],
+        "limitations": [HERE.parent / "README.md"],
+        "install": [HERE.parent / "README.md"],
+        "versions": [HERE.parent / "VERSIONING.md"],
         "gallery": sorted(HERE.glob("*.md")),
         "api": sorted((HERE / "api").glob("*.md")),
     }.get(page, [])

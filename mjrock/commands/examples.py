@@ -64,35 +64,41 @@ def cells(text: str) -> Iterator[str]:
 
 
 def run(example: Example, folder: Path, force: bool) -> list[Path]:
-    """Run an example, which prints, and save its pictures into a folder.
+    """Run an example, which prints, and save its pictures into a folder, and a page of its `answer`, a response.
 
     Args:
         example: the example.
-        folder: that of the pictures, which is made for the first of them.
-        force: whether a picture that is there may be replaced.
+        folder: that of the files, which is made for the first of them.
+        force: whether a file that is there may be replaced.
 
     Returns:
-        The pictures.
+        The files.
 
     Raises:
-        FileExistsError: for a picture that may not be replaced.
+        FileExistsError: for a file that may not be replaced.
     """
     from matplotlib.figure import Figure  # the list needs no pictures
 
+    from ..plotting.browser import view
     from ..plotting.style import save
+    from ..result.response import Response
 
     names: dict[str, Any] = {"__name__": "__main__", "__file__": str(example.path)}
-    pictures: list[Path] = []
-    require_free(folder / f"{example.path.stem}_1.png", force)
+    written: list[Path] = []
+    for ending in ("_1.png", ".html"):
+        require_free(folder / f"{example.path.stem}{ending}", force)
     for cell in cells(example.text):
         exec(compile(cell, example.path, "exec"), names)
         sys.stdout.flush()
         figure = names.pop("figure", None)
         if isinstance(figure, Figure):
             folder.mkdir(parents=True, exist_ok=True)
-            path = folder / f"{example.path.stem}_{len(pictures) + 1}.png"
-            pictures.append(save(figure, require_free(path, force)))
-    return pictures
+            path = folder / f"{example.path.stem}_{len(written) + 1}.png"
+            written.append(save(figure, require_free(path, force)))
+    shown = names.get("answer")
+    if isinstance(shown, Response):
+        written.append(view(shown, require_free(folder / f"{example.path.stem}.html", force)))
+    return written
 
 
 def answer(argv: Sequence[str]) -> Answer:
@@ -102,10 +108,13 @@ def answer(argv: Sequence[str]) -> Answer:
         ValueError: for an example that is not there.
         OSError: if a file cannot be written, or is there and may not be replaced.
     """
-    made = parser("examples", "List the examples, run one, which prints and draws pictures, or copy its script.")
+    made = parser(
+        "examples",
+        "List the examples, run one, which prints, draws and writes a page, or copy its script.",
+    )
     made.add_argument("name", nargs="?", help="its number or name, such as 7 or push_over; none lists them")
     made.add_argument("-c", "--copy", action="store_true", help="write the script, to be changed, and do not run it")
-    add_output(made, "folder of the pictures, or of the script", "the current one")
+    add_output(made, "folder of the pictures and the page, or of the script", "the current one")
     args = made.parse_args(argv)
     if args.name is None:
         listed = aligned([(one.path.stem, one.title) for one in examples()], "<")
@@ -115,5 +124,5 @@ def answer(argv: Sequence[str]) -> Answer:
         folder.mkdir(parents=True, exist_ok=True)
         written = write_text(require_free(folder / example.path.name, args.force), example.text)
         return Answer(f"written: {written}")
-    pictures = run(example, folder, args.force)
-    return Answer(f"written: {', '.join(map(str, pictures))}")
+    files = run(example, folder, args.force)
+    return Answer(f"written: {', '.join(map(str, files))}")

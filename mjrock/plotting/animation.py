@@ -107,7 +107,12 @@ LOWEST, HIGHEST, OTHERWISE = 2.0, 6.0, 4.5
 STRIP, CLOCK = 1.3, 0.4
 """Heights of a strip below the bodies and of the text above them [inch]."""
 HELD = 1.0
-"""How much longer than others a GIF shows its last frame, after which it begins anew [s]."""
+"""How much longer than others the last frame is shown, after which a film begins anew [s]."""
+CODECS = {
+    ".mp4": ("h264", "-crf", "26", "-preset", "slow", "-movflags", "+faststart"),  # plays before it is loaded
+    ".webm": ("libvpx-vp9", "-crf", "36", "-b:v", "0"),
+}
+"""Coder of a film and its options by the ending of the file. At these rates edges of blocks stay sharp."""
 JUST = 1 - 1e-9
 """Factor on the rate of frames [-]: writers round the milliseconds of a frame down, which must not lose one."""
 
@@ -235,7 +240,7 @@ def animate(
 
     It shows the wall with its base, pivots, side stop, ties, openings, loads, thrusts and masses, and beside it the
     rotation over time, the motion of the ground and the forces of the ties where there are any. Of masonry it shows
-    the blocks and their ties above the motion of the ground. A GIF shows the end for another second.
+    the blocks and their ties above the motion of the ground. The end is shown for another second.
 
     Args:
         response: of any solver.
@@ -320,14 +325,32 @@ def _film(
     dpi = require_within("dpi", dpi, 20.0, 600.0)
     require_text("title", title)
     figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title, pressed=pressed)
+    return write(figure, update, len(times), path, writer, dpi, title)
+
+
+def write(
+    figure: Figure, update: Update, count: int, path: Path, writer: AbstractMovieWriter, dpi: float, title: str = ""
+) -> Path:
+    """Write the frames of a scene, of which the last is shown for another second.
+
+    Args:
+        figure, update: of `scene`.
+        count: number of frames.
+        path: of the file, with the ending that the writer is for.
+        writer: of `writer_for`.
+        dpi: resolution [1/inch].
+        title: of a page, whose name is taken where it is empty.
+    """
     with replacing(path) as partial:
         with writer.saving(figure, str(partial), dpi):
             if isinstance(writer, GifWriter | PageWriter):
                 writer.stage = Stage(figure, dpi)
-                writer.stage.keep_colours(update, len(times))
-            for frame in counted(range(len(times)), path.name, "frames"):
+                writer.stage.keep_colours(update, count)
+            for frame in counted(range(count), path.name, "frames"):
                 update(frame)
                 writer.grab_frame()
+            for _ in range(0 if isinstance(writer, GifWriter) else round(HELD * writer.fps)):
+                writer.grab_frame()  # a GIF gives its last frame a time instead
         if path.suffix.lower() == ".html":
             stem = path.stem.encode("utf-8", "replace").decode()  # a name of a file may hold any bytes
             text = standalone(partial.read_text(encoding="utf-8"), title or stem)
@@ -345,8 +368,9 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
             if not MovieWriter.isAvailable():
                 needs = f"{ending} needs the program ffmpeg, which is not on the PATH"
                 raise RuntimeError(f"{path.name}: {needs}; pip install imageio-ffmpeg, or write a .gif or an .html")
-            codec = "h264" if ending == ".mp4" else "libvpx-vp9"
-            return MovieWriter(fps=fps, codec=codec, extra_args=["-pix_fmt", "yuv420p"]), 1 / fps  # type: ignore[arg-type]
+            codec, *options = CODECS[ending]
+            extra = ["-pix_fmt", "yuv420p", *options]
+            return MovieWriter(fps=fps, codec=codec, extra_args=extra), 1 / fps  # type: ignore[arg-type]
         case ".html":
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
             writer = PageWriter(JUST / interval, embed_frames=True, embed_limit=4096, default_mode="loop")  # type: ignore[arg-type]

@@ -11,19 +11,26 @@ import itertools
 import sys
 import warnings
 from collections.abc import Sequence
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
 import mjrock as mr
+from mjrock.plotting import animation
+from mjrock.plotting.bodies import Bodies
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.films import FPS, told
+from scripts.shared.films import films as written
 
 HALF = np.array([0.15, 0.1, 0.05])
 """Half extents of a stone [m]."""
 LIGHT, HEAVY = 1.5, 300.0
 """Masses [kg]."""
 COUNT = 5
+NAMES = "MuJoCo's default", "contact_for, 1e6 N/m"
+"""Labels of the two stacks."""
 DURATION, FRAME = 1.5, 0.02
 """[s]"""
 APART = 0.8
@@ -72,30 +79,37 @@ def followed(model: mujoco.MjModel) -> tuple[Array, Array]:
     return np.array(times), np.array(poses)
 
 
+def drawn(bodies: Bodies, labels: Sequence[str], path: Path) -> Path:
+    """Write the film of both stacks, with a label under each."""
+    times = np.append(np.arange(0.0, DURATION, 1 / FPS), DURATION)
+    title = "A stone of 300 kg on four of 1.5 kg in MuJoCo"
+    figure, update = animation.scene(bodies.at(times), [], None, title=title)
+    (ax,) = figure.axes
+    ax.axis("off")
+    ax.set_position((0.02, 0.02, 0.96, 0.84))
+    for side, label in zip((-1, 1), labels, strict=True):
+        ax.text(side * APART / 2, -0.13, label, ha="center", va="center", fontsize=10)
+    return animation.write(figure, update, len(times), path, animation.writer_for(path, FPS)[0], 100.0)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Draw both."""
     out = cli.folder(cli.parser(__doc__, "out/stack_before_and_after").parse_args(argv).out)
     films = [followed(stack().compile()), followed(after(stack()))]
-    lines = []
-    for name, (_, poses) in zip(("default contacts", "contacts of 1e6 N/m"), films, strict=True):
-        sunk = -1000 * (poses[-1, :, 1] + DROP * HIGHEST)
-        lines.append(f"{name}: the stones have sunk by {', '.join(f'{depth:.2f}' for depth in sunk)} mm")
+    sunk = np.array([-1000 * (poses[-1, :, 1] + DROP * HIGHEST) for _, poses in films])
+    lines = [
+        f"{name}: the stones have sunk by {', '.join(f'{depth:.2f}' for depth in each)} mm"
+        for name, each in zip(NAMES, sunk, strict=True)
+    ]
     box = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * HALF[[0, 2]]
     rests = [(side * APART / 2, HALF[2] * (2 * i + 1)) for side in (-1, 1) for i in range(COUNT)]
     poses = np.concatenate([poses for _, poses in films], axis=1)
     poses[..., 1] += DROP * np.tile(HIGHEST, 2)
     ground = np.array([(-0.9, -0.06), (0.9, -0.06), (0.9, 0.0), (-0.9, 0.0)])
-    mr.plotting.animate_bodies(
-        films[0][0],
-        [box] * (2 * COUNT),
-        rests,
-        poses,
-        out / "stack_before_and_after.gif",
-        fixed=[ground],
-        title="300 kg on four stones of 1.5 kg: MuJoCo's default, and contacts_for",
-        fps=20,
-        dpi=80,
-    )
+    outlines = [box] * (2 * COUNT)
+    bodies = Bodies.loose(films[0][0], outlines, rests, poses, 1.0, [ground], [(-0.9, 0.9), (-0.2, 0.55)])
+    labels = [f"{name}: sinks by {depth:.3g} mm" for name, depth in zip(NAMES, sunk[:, -1], strict=True)]
+    lines += [told(written(lambda path: drawn(bodies, labels, path), out / "stack_before_and_after", DURATION))]
     cli.report(out / "stack_before_and_after", "\n".join(lines))
 
 

@@ -5,7 +5,7 @@ in running bond. The joints have k_n = k_s = 1e9 N/m3, mu = 0.6, xi = 0.01 at th
 each. The ground moves by three synthetic motions, along x, y and z; peaks are given in the table.
 Prints the horizontal acceleration that the blocks stand by limit analysis outwards, inwards and along the facade, what
 the run did and took, and the time of a simulated second against the number of points. Times are those of the processor.
-Writes facade_in_space.csv, .png, .gif and .txt.
+Writes facade_in_space.csv, .png and .txt, the film as .mp4 and .webm, its poster as .webp, and a .gif.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
 from scripts.shared.at_times import at_times
+from scripts.shared.films import films, told
 
 LENGTH, HEIGHT, DEPTH, UNIT = 3.2, 1.6, 1.2, (0.4, 0.2)
 WINDOWS = tuple((y, mr.Opening(width=0.4, height=0.6, sill=0.6)) for y in (-0.6, 0.6))
@@ -91,8 +92,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     far = np.linalg.norm(answer.pose[moment, :, :3] - answer.pose[0, :, :3], axis=1)
     words = {"at rest": 0, "as the first block falls": moment, "at the end": len(answer.t) - 1}
     plotting.save(at_times(answer, words, CAMERA), out / "facade_in_space.png")
-    film: dict[str, Any] = {"speed": 1.0, "fps": 10, "dpi": 85, "camera": CAMERA}
-    path = plotting.animate(answer, out / "facade_in_space.gif", **film)
+    written = films(
+        lambda path: plotting.animate(answer, path, camera=CAMERA), out / "facade_in_space", 0.7 * float(answer.t[-1])
+    )
+    written.append(plotting.animate(answer, out / "facade_in_space.gif", fps=10, dpi=80, camera=CAMERA))
     header = ["blocks", "points", "set-up [s]", "step [us]", "s a simulated s", "ns a point and step"]
     rows = [cost(0.4, 2)] if args.quick else [cost(*size) for size in SIZES]
     each = 1e9 * stats["stepping_processor_time"] / stats["steps"] / len(masonry.lines.k)
@@ -105,7 +108,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         f"{stats['steps']} steps of {1e6 * stats['timestep']:.3g} us: {stats['stepping_processor_time']:.3g} s, "
         f"{stats['stepping_processor_time'] / answer.t[-1]:.3g} s a simulated second, {each:.0f} ns a point and step; "
         f"before them {stats['processor_time'] - stats['stepping_processor_time']:.2g} s",
-        f"{path.name}: {path.stat().st_size / 1e6:.2f} MB",
+        told(written),
         "",
         cli.table(header, rows),
     ]

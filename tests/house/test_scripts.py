@@ -20,8 +20,15 @@ from scripts.studies import in_the_browser, town
 
 SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*/*.py") if path.parent.name != "shared"}
 """Every script by its name."""
+
+
+def film(stem):
+    """The files of a film: for every browser, and its poster."""
+    return {f"{stem}.{ending}" for ending in ("mp4", "webm", "webp")}
+
+
 WRITES = {
-    "animate": {"arch.gif", "figure3.gif"},
+    "animate": film("arch") | film("figure3"),
     "compare_wall": {"scene.xml", "comparison.png", "comparison.csv"},
     "figure3": {"figure3.png", "figure3.csv"},
     "table2": {"table2.png", "table2.csv"},
@@ -72,13 +79,13 @@ WRITES = {
     "second_opinion": {f"second_opinion.{ending}" for ending in ("png", "csv", "txt")},
     "opened_in_vtk": {"opened_in_vtk.txt"},
     "drawn_in_space": {"drawn_in_space.png", "drawn_in_space.txt"},
-    "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
-    | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
+    "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")} | film("two_storeys_falls"),
     "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")}
     | {"columns_under_records.png"},
     "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
-    "facade_in_space": {f"facade_in_space.{ending}" for ending in ("png", "gif", "csv", "txt")},
+    "facade_in_space": {f"facade_in_space.{ending}" for ending in ("png", "gif", "csv", "txt")}
+    | film("facade_in_space"),
     "corner_block": {f"corner_block.{ending}" for ending in ("png", "csv", "txt")},
     "law_in_space": {f"law_in_space.{ending}" for ending in ("png", "csv", "txt")},
     "dome": {f"dome.{ending}" for ending in ("png", "csv", "txt")},
@@ -96,13 +103,15 @@ WRITES = {
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
     "vaults": {"vaults.png", "vaults.txt"},
+    "which_call": {"which_call.png"},
+    "check_in_one_picture": {"check_in_one_picture.png", "check_in_one_picture.txt"},
     "mechanisms": {"mechanisms.png", "mechanisms.txt", "axle.png"},
     "your_geometry": {"your_geometry.png", "your_geometry.txt"},
     "result_files": {"result_files.csv", "result_files.txt"},
     "throughput": {"throughput.txt"},
     "first_minute": {"first_minute.csv", "first_minute.txt"},
     "form_times": {"form_times.csv", "form_times.txt"},
-    "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
+    "stack_before_and_after": film("stack_before_and_after") | {"stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "four_masses": {f"four_masses.{ending}" for ending in ("png", "csv", "txt")},
     "rocking_by_the_guide": {"rocking_by_the_guide.csv", "rocking_by_the_guide.txt"},

@@ -1,5 +1,6 @@
 import dataclasses
 import re
+import subprocess
 
 import numpy as np
 import pytest
@@ -69,7 +70,10 @@ def test_html_needs_no_other_file(tmp_path):
     assert text.count("<button") == 9
     assert "&#8226;" not in text
     assert "<title>rock</title>" in text
-    assert text.count("data:image/png;base64") == 3
+    shown = re.findall(r'"data:image/png;base64,(.*?)"', text, re.DOTALL)
+    assert len(shown) == 3 + 20 * animation.HELD
+    assert shown[1] != shown[2]
+    assert set(shown[3:]) == {shown[2]}
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -78,6 +82,19 @@ def test_html_needs_no_other_file(tmp_path):
 def test_films_of_ffmpeg(ending, mark, tmp_path):
     path = plotting.animate(theory(0.1), tmp_path / f"rock.{ending}", dpi=20)
     assert mark in path.read_bytes()[:64]
+
+
+@pytest.mark.skipif(not animation.MovieWriter.isAvailable(), reason="needs ffmpeg")
+@pytest.mark.parametrize("ending", ["mp4", "webm"])
+def test_a_film_holds_its_end(ending, tmp_path):
+    """The motion of 0.4 s has 11 frames at 25 a second; 25 more show the last one, a little changed by the coder."""
+    path = plotting.animate(theory(0.4), tmp_path / f"rock.{ending}", dpi=30)
+    command = [animation.MovieWriter.bin_path(), "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "gray", "-"]
+    film = np.frombuffer(subprocess.run(command, check=True, capture_output=True).stdout, np.uint8)
+    frames = film.reshape(11 + 25, -1).astype(float)
+    changes = np.abs(frames - frames[-1]).mean(axis=1)
+    assert changes[10:].max() < 0.2 * changes[:10].max()
+    assert changes[0] > 1.0
 
 
 def test_mp4_without_ffmpeg(tmp_path, monkeypatch):
