@@ -6,10 +6,12 @@ friction is that of the mean of two steps.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..geometry.vectors import Vector
-from ..quantities import Array
+from ..quantities import Array, named
 from ..result.response import End
 from .assembly import copied, guided_as
 from .loop import Clock, accelerated
@@ -44,6 +46,28 @@ def memory_of(start: object, of: object) -> Memory | None:
     """The memory of a start, if it has one of what stands here."""
     memory = start.memory if isinstance(start, End) else None
     return memory if isinstance(memory, Memory) and memory.of == of else None
+
+
+def require_nothing_forgotten(start: object) -> None:
+    """Raise a ValueError that names the joints whose laws remember something at a start of another structure, such as
+    the same one with another law or another number of it."""
+    memory = start.memory if isinstance(start, End) else None
+    if not isinstance(memory, Memory):
+        return
+    masonry: Any = memory.of[0] if isinstance(memory.of, tuple) else None
+    bonds = getattr(masonry, "bonds", ())  # a wall has none
+    joints = {
+        masonry.joints[int(memory.system.lines["group"][i])].name: None
+        for law in (memory.system.laws if any(bonds) else ())
+        for i in np.flatnonzero(law.marked(bonds)).tolist()
+        if memory.system.lines["group"][i] < len(masonry.joints)
+    }
+    if joints:
+        raise ValueError(
+            f"start is the end of a run of another structure, whose joints, laws or effects are not those of the case, "
+            f"and the laws of {named(list(joints))} remember something there; go on with the same structure, or give "
+            "start=(end.pose, end.velocity), from which laws begin without a memory and bonds whole"
+        )
 
 
 def remember(of: object, system: System, clock: Clock, blocks: tuple[str, ...]) -> Memory:

@@ -195,12 +195,19 @@ def require_sound(run: Run, step: float) -> None:
         )
 
 
+LARGEST_ADVICE = 0.1
+"""Least step that a message names, over the one that was taken [-]."""
+
+
 def advice(step: float, share: float, wanted: float) -> str:
     """The step that brings a share of energy without an account down to the one that is wanted, in words.
 
-    The share falls at least in proportion to the step.
+    The share falls at least in proportion to the step, once steps are short enough for the stiffest contact. Where much
+    is missing they are not, and the share does not say by how much.
     """
-    return f"take timestep = {wanted / share * step:.2g} s"
+    shorter = max(wanted / share, LARGEST_ADVICE)
+    again = "" if shorter > LARGEST_ADVICE else " first, and a tenth of that if energy still appears"
+    return f"take timestep = {shorter * step:.2g} s{again}"
 
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:

@@ -21,7 +21,7 @@ from ..scene.scene import Scene
 from .assembly import begin_open, copied, guide, moved_by, started, system_of, take_grips
 from .kinds.lists import laws_of, links_of
 from .limit import STABLE_AHEAD, Impacts, longest_step
-from .memory import Memory, memory_of, recalled
+from .memory import Memory, memory_of, recalled, require_nothing_forgotten
 from .search.contact_search import ContactSearch
 from .step_length import StepLength
 from .system import System
@@ -109,12 +109,14 @@ def carried_on(setup: Setup, start: object) -> Setup:
     """The setup that carries on the steps of another run, if the start is the end of one of the same structure.
 
     Raises:
-        ValueError: for ties that yield, of which another start does not say how far they have.
+        ValueError: for ties that yield, of which another start does not say how far they have, and for an end of
+            another structure whose joints remember something.
     """
     memory = memory_of(start, setup.of)
     if memory is None:
         if start is not None:
             require_known_ties(setup.problem.case)
+            require_nothing_forgotten(start)
         return setup
     if setup.search is not None and memory.search is not None:
         setup.search.state = deepcopy(memory.search)

@@ -589,6 +589,8 @@ def load(path: str | Path, laws: Iterable[type] = ()) -> Response:
         UserWarning: where the file has a memory of explicit steps that this version of mjrock does not read. All else
             is there, and a run goes on from pose and velocity.
     """
+    if isinstance(laws, type):
+        raise TypeError(f"laws = {shown(laws)} is one class; give a list of them, laws=[{laws.__name__}]")
     for law in (given := tuple(laws)):
         if not isinstance(law, type):
             raise TypeError(f"laws has {shown(law)}, which is not a class; give its class")

@@ -178,6 +178,61 @@ def test_a_run_that_carries_on_remembers_its_cracks():
     np.testing.assert_allclose(second.forces.damage[-1], whole.forces.damage[-1], rtol=1e-9)
 
 
+@pytest.mark.parametrize(
+    "dry",
+    [
+        replace(BED, law=replace(GLUE, strength=1.2e5)),
+        replace(BED, law=None),
+        mr.Mortar(BED, mr.Bond(2e5, 3e5, 13.0, 130.0)),
+    ],
+)
+def test_a_run_that_carries_on_with_another_law_does_not_drop_the_memory_silently(dry):
+    """Nor does mortar, by which a crack would heal. A pose and a velocity alone begin without a memory."""
+    case = mr.MasonryCase(block(replace(BED, law=GLUE)), 0.002, velocity=[[0.03, 0.12, 0.1]])
+    cracked = mr.solve_explicit(case, timestep=1e-5, output_step=1e-4).end
+    other = mr.MasonryCase(block(dry), 0.0005)
+    with pytest.raises(ValueError, match=r"another structure.*the laws of ground\|block_1 remember something"):
+        mr.solve_explicit(other, timestep=1e-5, start=cracked)
+    again = mr.solve_explicit(other, timestep=1e-5, start=(cracked.pose, cracked.velocity), forces=True)
+    assert np.nan_to_num(again.forces.damage[0]).max() < 0.5
+
+
+def test_a_law_without_a_memory_goes_on_as_another_one():
+    case = mr.MasonryCase(block(replace(BED, law=laws.Stiffening(a=A))), 0.001, velocity=[[0, 0.02, 0]])
+    end = mr.solve_explicit(case, timestep=1e-5).end
+    softer = mr.MasonryCase(block(replace(BED, law=laws.Stiffening(a=2 * A))), 0.001)
+    assert mr.solve_explicit(softer, timestep=1e-5, start=end).t[-1] == 0.001
+
+
+def test_the_energy_of_an_undamped_throw_is_of_second_order_in_the_step():
+    """The kinetic energy of a sample is that which the steps keep with a linear spring. A spring that stiffens changes
+    within a step, and what is missing falls with the square of it; the block leaves as fast as it came."""
+    dry, missing = replace(BED, xi=0.0, law=laws.Stiffening(a=A)), []
+    for step in (2e-5, 1e-5, 5e-6):
+        _, velocity, answer = run(dry, 0.01, -0.1, timestep=step, output_step=step)
+        missing.append(unpaid(answer) / (0.5 * MASS * 0.1**2))
+        assert velocity.max() == pytest.approx(0.1, rel=1e-4)
+    assert missing[0] < 2e-4
+    assert np.log2(missing[:-1]) - np.log2(missing[1:]) == pytest.approx(2.0, abs=0.05)
+
+
+def test_the_step_that_a_message_names_is_not_far_too_short():
+    """A block is thrown at a joint that gets much stiffer than at rest. A message names a tenth of the step at least:
+    the step that is short enough is found within a factor of ten."""
+    dry, step, named = replace(BED, xi=0.0, law=laws.Stiffening(a=1e-8)), 8e-5, []
+    while step not in named:
+        try:
+            answer = run(dry, 0.005, -2.0, timestep=step)[2]
+            break
+        except RuntimeError as error:
+            named.append(step)
+            shorter = float(str(error).split("timestep = ")[1].split(" s")[0])
+            assert shorter >= 0.099 * step
+            step = shorter
+    assert named
+    assert answer.stats["timestep"] == step
+
+
 def test_each_joint_may_have_a_law_of_its_own_beside_dry_ones_and_mortar():
     """Each cube of a tower closes its joint as its own law says under what stands on it."""
     ground = mr.Polygon([(-2, -1), (2, -1), (2, 0), (-2, 0)], fixed=True, name="ground")
@@ -222,6 +277,10 @@ WRONG = {
     r"Mine: .*'b'; the law and its lines have k_n, friction$": {"stress": lambda self, u: self.b * u},
     r"Mine.dampening is never called; a law of a joint has stress, energy, damping": {"dampening": lambda self, u: 0.0},
     r"Mine has a memory and no remember\(self, u\)": {"memory": ("widest",)},
+    r"Mine.memory = 'deepest' is no tuple of names; give memory = \(\"deepest\",\)": {
+        "memory": "deepest",
+        "remember": lambda self, u: None,
+    },
     r"Mine fails at a closing of .* ZeroDivisionError": {"stress": lambda self, u: u / 0},
 }
 
@@ -268,6 +327,12 @@ def test_a_law_that_pulls_needs_a_shear_stiffness():
 def test_a_law_and_a_bond_are_one_too_many():
     with pytest.raises(ValueError, match=r"bond = .* on a joint whose law is Stiffening\(a=2e-05\): give one of both"):
         mr.Mortar(replace(BED, law=laws.Stiffening(a=A)), mr.Bond(2e5, 3e5, 13.0, 130.0))
+
+
+@pytest.mark.parametrize("law", [laws.Stiffening, "Stiffening", 3.0])
+def test_a_law_is_an_object_of_a_class_under_joint_law(law):
+    with pytest.raises(TypeError, match=r"law = .* is no object of a class under mr.joint_law, such as Law\(a=1.0\)"):
+        mr.Dry(law=law)
 
 
 def test_numbers_of_a_law_are_checked():

@@ -78,6 +78,15 @@ def test_sums(one, other):
     np.testing.assert_array_equal(total.times, backwards.times)
     assert (total.dt, total.duration) == (min(one.dt, other.dt), max(one.duration, other.duration))
     assert np.diff(total.times).min() == 0 or total.instants is None or not len(total.jumps)
+    assert sum([one, other]) == total
+
+
+def test_a_table_of_times_that_jumps_is_refused_with_the_way_to_make_it(tmp_path):
+    path = tmp_path / "pulse.csv"
+    pulse = mr.GroundMotion.pieces([(0.3, 2.0), (0.6, -1.0)])
+    path.write_text("\n".join(f"{t},{a}" for t, a in zip(pulse.times.tolist(), pulse.accel.tolist(), strict=True)))
+    with pytest.raises(ValueError, match=r"line 3: the time 0.3 s stands twice; .* GroundMotion.pieces"):
+        mr.GroundMotion.from_csv(path, "m/s2")
 
 
 def test_jumps_that_cancel_go():

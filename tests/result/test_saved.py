@@ -360,6 +360,8 @@ def test_classes_of_the_user_are_read_where_they_are_given(path):
     assert mr.load(path, laws=[OwnLoad]) == found
     with pytest.raises(TypeError, match=r"laws has .*OwnLoad.*, which is not a class"):
         mr.load(path, laws=[load])
+    with pytest.raises(TypeError, match=r"laws = .*OwnLoad.* is one class; give a list of them, laws=\[OwnLoad\]"):
+        mr.load(path, laws=OwnLoad)
 
 
 @mr.joint_law

@@ -142,6 +142,10 @@ class JointLaw:
     def bend(laws: Rows, lines: Rows, depth: Array) -> None:
         """Give such lines the springs that the law has at some depths [m]."""
 
+    def marked(self, bonds: tuple[Any, ...]) -> Flags:
+        """Which lines remember something, by what each joint has for its bond, shape (rows,)."""
+        return np.zeros(len(self.rows), dtype=bool)
+
     def going_on(self, now: Self) -> Self:
         """The law with which a run starts that carries on the run of this one, beside that of a start from rest."""
         return self

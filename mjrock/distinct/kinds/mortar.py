@@ -10,7 +10,7 @@ it holds.
 from __future__ import annotations
 
 import math
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -112,6 +112,10 @@ class Bonds(JointLaw, Table):
         """The secants go too."""
         self.rows["secant"][which & (self.rows["k"] > 0)] = 0.0
         super().release(lines, which)
+
+    def marked(self, bonds: tuple[Any, ...]) -> Flags:
+        """Those that have lost a part of it."""
+        return np.asarray((self.rows["share"] > 0) & (self.rows["integrity"] < 1))
 
     def going_on(self, now: Self) -> Self:
         """Ages count from the start of each run."""

@@ -239,6 +239,14 @@ class OwnLaws(JointLaw, Table):
             lines["k"][i] = law.area * law.values[OF_STRESS] / closing
             lines["bent"][i] = 2 * law.area * law.values[OF_ENERGY] / closing**2 - lines["k"][i]
 
+    def marked(self, bonds: tuple[Any, ...]) -> Flags:
+        """Those whose numbers are not those of a new line."""
+        marked, known = super().marked(bonds), slice(len(ANSWERS), None)
+        for i in np.flatnonzero((self.rows["address"] != 0) & (self.rows["remembers"] > 0)).tolist():
+            row = self.rows[i]
+            marked[i] = (row["values"][known] != bonds[row["joint"]].values[known]).any()
+        return marked
+
     def going_on(self, now: Self) -> Self:
         """Addresses are those of this process."""
         own = self.rows["address"] != 0

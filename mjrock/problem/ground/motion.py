@@ -189,6 +189,10 @@ class GroundMotion:
         total, finest = self.vertices.plus(other.vertices), min(self.dt, other.dt)
         return GroundMotion._through(total, finest, f"{self.name} + {other.name}")
 
+    def __radd__(self, other: object) -> GroundMotion:
+        """The motion itself, where `sum` adds it to the zero with which it begins."""
+        return self if type(other) is int and other == 0 else NotImplemented
+
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}  # without cached values
 

@@ -753,6 +753,11 @@ def _step_of(time: Array, found: RecordTable, scale: float, given: float | None)
     back = np.flatnonzero(steps <= 0)
     if back.size:
         i = back[0]
+        if steps[i] == 0:
+            raise ValueError(
+                f"line {places[i + 1]}: the time {time[i]:g} s stands twice; a motion that jumps is made by "
+                "GroundMotion.pieces, and a record has one value at each time"
+            )
         raise ValueError(f"line {places[i + 1]}: time does not increase, {time[i]:g} s to {time[i + 1]:g} s")
     dt = float(f"{_grid(time)[0]:.12g}")  # so that two components have one step
     if not _is_even(time, found.decimals, scale):

@@ -97,6 +97,7 @@ def law_class(kind: type[OfUser], base: type[UserLaw], called: str) -> type[OfUs
         if takes is None or len(takes) != 1 + count:
             raise TypeError(f"{name}.{method}({', '.join(takes or ())}) is needed as {method}({takes_all})")
     _require_methods(kind, base, called)
+    _require_names(name, getattr(kind, "memory", ()))
     body = {each: getattr(kind, each) for each in ("__module__", "__qualname__", "__doc__")}
     texts = [getattr(kind, "memory", ()), *(_text(getattr(kind, each, None)) for each in base.methods)]
     body["formula"] = hashlib.sha256(repr(texts).encode()).hexdigest()
@@ -118,6 +119,13 @@ def _require_methods(kind: type, base: type[UserLaw], called: str) -> None:
         raise TypeError(f"{kind.__name__}.{others[0]} is never called; {called} has {', '.join(base.methods)}")
     if getattr(kind, "memory", ()) and "remember" not in own:
         raise TypeError(f"{kind.__name__} has a memory and no remember(self, u), which changes it")
+
+
+def _require_names(name: str, memory: object) -> None:
+    """Raise a TypeError for a memory that is no tuple of names."""
+    if not isinstance(memory, tuple | list) or not all(isinstance(one, str) and one.isidentifier() for one in memory):
+        shape = f'("{memory}",)' if isinstance(memory, str) else '("deepest",)'
+        raise TypeError(f"{name}.memory = {memory!r} is no tuple of names; give memory = {shape}")
 
 
 def _text(method: Any) -> object:

@@ -59,8 +59,11 @@ class Dry:
 
     def __post_init__(self) -> None:
         keep_declared(self)
-        require_kind("law", self.law, OwnLaw, type(None))
         if self.law is not None:
+            if not isinstance(self.law, OwnLaw):
+                raise TypeError(
+                    f"law = {shown(self.law)} is no object of a class under mr.joint_law, such as Law(a=1.0)"
+                )
             require_plain(self, f"law = {self.law!r}")
             k_s = math.inf if self.k_s is None else self.k_s
             Own(self.law, self.k_n, self.friction).require_fit("the joint", self.k_n, k_s, self.friction, self.points)
