@@ -87,7 +87,7 @@ def test_a_file_is_turned_until_the_axis_that_is_named_points_upwards(up):
 def test_a_wall_that_lies_on_its_face_is_doubted(up):
     """Also where the ground is in the file; nobody doubts a caller who says that z points upwards."""
     pile = bricks(up=up, size=(0.25, 0.12, 0.1))
-    said = f"z points upwards: does {up} in this file. up='{up}' turns it, and up='z' says that all is well"
+    said = f"z points upwards: does {up} in this file. up='{up}' turns it, and up='z' keeps z"
     with pytest.warns(mr.Implausible, match=f"8 of 8 blocks lie on the ground, side by side along {up}; {said}"):
         mr.Masonry.from_meshes(pile, ground=True)
     with pytest.warns(mr.Implausible, match=f"lie along {up} from the fixed ones and not above them; {said}"):

@@ -130,7 +130,7 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
     free = [i for i, block in enumerate(blocks) if not block.fixed]
     held = [i for i, block in enumerate(blocks) if block.fixed]
     extent = np.ptp(np.concatenate([blocks[i].corners for i in free]), axis=0)
-    text = "z points upwards: does {0} in this file? up={0!r} turns it, and up='z' says that all is well"
+    text = "z points upwards: does {0} in this file? up={0!r} turns it, and up='z' keeps z"
     if not ground:
         centroids = np.array([block.centroid for block in blocks])
         beyond = (centroids[free].mean(axis=0) - centroids[held].mean(axis=0)) / extent.max()
