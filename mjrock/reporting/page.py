@@ -125,13 +125,13 @@ def report(
         element("h1", head),
         title_block(block, words),
         *([element("p", element("b", words("question")), " ", notes)] if notes else []),
-        *answered(parts, drawings, runs, mechanisms, words),
-        *checked(parts, drawings, mechanisms, words),
-        *shaken(parts, words),
+        *answer_section(parts, drawings, runs, mechanisms, words),
+        *checks_section(parts, drawings, mechanisms, words),
+        *runs_section(parts, words),
         *[piece for name, some in required_sections(sections).items() for piece in section(name, some, words)],
-        *judged(parts, runs, mechanisms, words, inputs.loads_in([one for _, one in subjects], words)),
+        *judgement_section(parts, runs, mechanisms, words, inputs.loads_in([one for _, one in subjects], words)),
         *appendix(given, rests, words),
-        *(piece for one in lists for piece in listed_blocks(one, words)),
+        *(piece for one in lists for piece in input_table_parts(one, words)),
         *every_run(parts, words),
     ]
     text = page(words, head, block.get("project", ""), f"mjrock {__version__}", pieces)
@@ -245,7 +245,7 @@ def title_block(block: Mapping[str, str], words: Words) -> Markup:
     return table((), [cells[i : i + 4] for i in range(0, len(cells), 4)], kind="block")
 
 
-def answered(
+def answer_section(
     parts: Sequence[Part],
     drawings: Sequence[Sequence[Markup]],
     runs: Sequence[Run],
@@ -273,7 +273,7 @@ def outcomes(runs: Sequence[Run], words: Words) -> str:
     return f"{words('falls')} {'; '.join(counts)}."
 
 
-def checked(
+def checks_section(
     wholes: Sequence[Part], drawings: Sequence[Sequence[Markup]], mechanisms: Sequence[Mechanism], words: Words
 ) -> list[Markup]:
     """The checks, of each wall with its drawings, its curves and its steps."""
@@ -285,7 +285,7 @@ def checked(
         parts += [element("h2", words("checks" if kinematic else "drawings"))]
         parts += [element("p", text) for text in verdicts.sentences(codes, "kinematic", words)]
     for one, drawing in zip(wholes, drawings, strict=True):
-        parts += [*[element("h3", one.names)] * several, *drawing, *stepped(one.mechanisms, words)]
+        parts += [*[element("h3", one.names)] * several, *drawing, *curves_and_steps(one.mechanisms, words)]
     if loaded := [(one.name, check.result) for one in mechanisms for check in one.loads]:
         parts.append(element("h2", words("loaded")))
         parts += [part for name, result in loaded for part in of_borne(name, result, words)]
@@ -296,7 +296,7 @@ def checked(
     return parts
 
 
-def stepped(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
+def curves_and_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The curves of kinematic checks, and their steps; nothing where there are none."""
     figure = capacity_curves(mechanisms, words)
     if figure is None:
@@ -306,16 +306,16 @@ def stepped(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     return [picture(figure, words("curves_caption"), words), *notes, *verdicts.kinematic_steps(mechanisms, words)]
 
 
-def shaken(parts: Sequence[Part], words: Words) -> list[Markup]:
+def runs_section(parts: Sequence[Part], words: Words) -> list[Markup]:
     """The runs as pictures, those of each wall for themselves; nothing without runs."""
     moved = [part for part in parts if part.runs]
     found = [element("h2", words("runs"))] if moved else []
     for part in moved:
-        found += [*[element("h3", part.names_run)] * (len(moved) > 1), *shaken_part(part, words)]
+        found += [*[element("h3", part.names_run)] * (len(moved) > 1), *pictures_of_runs(part, words)]
     return found
 
 
-def shaken_part(part: Part, words: Words) -> list[Markup]:
+def pictures_of_runs(part: Part, words: Words) -> list[Markup]:
     """The runs of a wall or masonry as pictures."""
     whole, runs, mechanisms = part.whole, part.runs, part.mechanisms
     limits, limit = {}, whole.limit()
@@ -335,7 +335,7 @@ def shaken_part(part: Part, words: Words) -> list[Markup]:
     return found if end is None else [*found, picture(end, words("ends_caption"), words)]
 
 
-def judged(
+def judgement_section(
     wholes: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, loads: Sequence[str]
 ) -> list[Markup]:
     """What governs, the limits of the results and of the loads, and the chapter of the code on programs."""
@@ -398,7 +398,7 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
         elif isinstance(piece, Design):
             parts += [
                 picture(design_drawn(piece, words), words("design_caption"), words),
-                *verdicts.designed(piece, words),
+                *verdicts.design_results(piece, words),
             ]
         elif isinstance(piece, Borne):
             parts += of_borne(name, piece, words)
@@ -467,7 +467,7 @@ def lists_of(subjects: Sequence[Subject], path: Path, words: Words) -> list[Inpu
     return found
 
 
-def listed_blocks(one: InputTable, words: Words) -> list[Markup]:
+def input_table_parts(one: InputTable, words: Words) -> list[Markup]:
     """A table of inputs, or the name of the file that has it."""
     heading = element("p", element("b", one.listing.heading), kind="head")
     if one.file is not None:

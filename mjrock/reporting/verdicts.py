@@ -273,7 +273,7 @@ def design_rows(found: Design, words: Words) -> list[list[str]]:
     return rows
 
 
-def designed(found: Design, words: Words) -> list[Markup]:
+def design_results(found: Design, words: Words) -> list[Markup]:
     """Each value that was tried with what governs it, and the result in a sentence."""
     heads, *cells = design_rows(found, words)
     rows: list[list[Any]] = []
