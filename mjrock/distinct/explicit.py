@@ -22,7 +22,7 @@ from ..scene.explicit_step import warn_if_tiny
 from .following import Stepping, follow, warn_if_long
 from .reading import Run, response_of
 from .search.overlap import checked_overlap
-from .setup import carried_on, setup_of, slowed
+from .setup import carried_on, setup_of_problem, slowed
 from .system import Books, Samples
 
 COMPILING_RUN = 0.02
@@ -88,7 +88,7 @@ def solve_explicit(
         'at rest'
     """
     given, watch = locals().copy(), Stopwatch()
-    problem_of(case, contacts)
+    problem = problem_of(case, contacts)
     require_flag("ledger", ledger)
     require_flag("forces", forces)
     if timestep is not None:
@@ -98,7 +98,7 @@ def solve_explicit(
     if start is None:
         warn_if_still(case, forces=forces)
     with first_answer(solve_shortly, case=case, contacts=contacts):
-        setup = slowed(carried_on(setup_of(case, contacts, state), start), mass_damping, local_damping)
+        setup = slowed(carried_on(setup_of_problem(problem, contacts, state), start), mass_damping, local_damping)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)
     count, bodies = steps.samples, len(scene.bodies.names)

@@ -64,7 +64,7 @@ def longest_step(system: System) -> float:
 def rates_of_links(system: System) -> tuple[float, float]:
     """The highest circular frequency of the bodies on the springs of links alone, and the highest rate at which
     dashpots of links without a spring let a velocity decay [1/s]. Actuators, which follow histories, are left out."""
-    links = [table for table in system.links if table.told != "actuators" and any(of.any() for of in table.springs())]
+    links = [table for table in system.links if not table.driven and any(of.any() for of in table.springs())]
     if not links:
         return 0.0, 0.0
     k, c = (np.concatenate([table.springs()[i] for table in links]) for i in range(2))

@@ -62,9 +62,10 @@ class Run:
             for row, name in zip(table.rows, names, strict=True):
                 yield table, row, name
 
-    def forces_of(self, told: str, pulled: Array) -> dict[str, Array]:
-        """The force of each link that is told as a link or as an actuator, by name, among those of all."""
-        return {name: pulled[:, row.number] for table, row, name in self.links if table.told == told}
+    def forces_of(self, pulled: Array, *, driven: bool) -> dict[str, Array]:
+        """The force of each link, or of each actuator, by name, among those of all."""
+        some = ((row, name) for table, row, name in self.links if table.reported and table.driven is driven)
+        return {name: pulled[:, row.number] for row, name in some}
 
     @cached_property
     def energy(self) -> Array:
@@ -107,7 +108,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         joints=reading.joints,
         plastic=yielded,
         ledger=ledger_of(run, kept) if ledger else None,
-        actuators=run.forces_of("actuators", samples.pulled[kept]),
+        actuators=run.forces_of(samples.pulled[kept], driven=True),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
         end=End(samples.pose[-1].copy(), samples.velocity[-1].copy(), run.followed.memory),
@@ -130,7 +131,8 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     samples = run.samples.taken(kept)
     if not samples.held.shape[1]:
         return None
-    pulled, driven = run.forces_of("links", -samples.pulled), run.forces_of("actuators", samples.pulled)
+    pulled = run.forces_of(-samples.pulled, driven=False)
+    driven = run.forces_of(samples.pulled, driven=True)
     damage = None
     if any(len(law.rows) for law in run.followed.system.laws):
         dry = [bond is None for bond in run.scene.contacts.bonds]

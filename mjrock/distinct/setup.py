@@ -96,8 +96,12 @@ def slowed(setup: Setup, drag: float, local: float) -> Setup:
 
 def setup_of(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
     """A wall or masonry at the start of a case, or in a given state."""
-    problem = problem_of(case, contacts)
-    scene = problem.scene()
+    return setup_of_problem(problem_of(case, contacts), contacts, state)
+
+
+def setup_of_problem(problem: Problem, contacts: Contacts | None, state: State | None) -> Setup:
+    """A problem at its start, or in a given state."""
+    case, scene = problem.case, problem.scene()
     course = problem.course(scene)
     course = course if state is None else course.continued(*state)
     if isinstance(case, MasonryCase):
@@ -137,19 +141,28 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
     """Masonry at the start of its course."""
     at_rest = standing(scene)
     names, links = links_of(scene, case, at_rest.system.bodies)
-    passive = tuple(table for table in links if table.told != "actuators")
-    guided = np.concatenate([table.rows["body"] for table in links if table.told == "actuators"])
+    passive = tuple(table for table in links if not table.driven)
+    guided = np.concatenate([table.rows["body"] for table in links if table.driven])
     system = copied(at_rest.system)._replace(ground=course.ground, links=links, guided=guided)
     system = moved_by(system, scene, case.supports)
     acts = any(len(table.rows) for table in passive)
     unguided = longest_step(system._replace(links=passive)) if acts else at_rest.limit
     guide(system, case)
     limit, step, impacts = StepLength.of(system, unguided, at_rest.search)
-    of, blocks = (case.masonry, case.passive), tuple(support.block for support in case.supports)
-    search = at_rest.search.begun(blocks)
-    started(system, course.pose, course.velocity)
-    apart = {"search": search, "impacts": impacts, "of": of, "blocks": blocks, "names": names}
-    return Setup(problem, scene, course, system, limit, step / limit, **apart)  # type: ignore[arg-type]
+    blocks = tuple(support.block for support in case.supports)
+    return Setup(
+        problem,
+        scene,
+        course,
+        started(system, course.pose, course.velocity),
+        limit,
+        step / limit,
+        search=at_rest.search.begun(blocks),
+        impacts=impacts,
+        of=(case.masonry, case.passive),
+        blocks=blocks,
+        names=names,
+    )
 
 
 class AtRest(NamedTuple):

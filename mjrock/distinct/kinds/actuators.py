@@ -37,7 +37,7 @@ class Actuators(Kind, Histories):
     """
 
     own = ("k", "c", "reach", "dragged")
-    told = "actuators"
+    driven = True
     booked = ("actuators", "dashpots")
 
     @classmethod

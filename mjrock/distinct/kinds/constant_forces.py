@@ -16,7 +16,7 @@ from .link import Columns, Kind, Named, Table
 class ConstantForces(Kind, Table):
     """Forces `between` [N] that keep size and direction and follow points of bodies."""
 
-    told = ""
+    reported = False
 
     @classmethod
     def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:

@@ -50,7 +50,8 @@ class Kind:
         rows: a row for each link, with the numbers of `table` and `own` ones.
         further: what its rows have that is no number, such as integers.
         endless: numbers of a row that may be infinite.
-        told: "links" where responses tell the forces among those of links, "actuators" among those of actuators.
+        driven: whether histories drive them: actuators, whose forces responses have apart from those of links.
+        reported: whether responses have their forces.
         booked: the parts of the ledger in which each link has an account. That of row i begins at `rows[i].account` of
             `Books.links`.
     """
@@ -59,7 +60,8 @@ class Kind:
     own: ClassVar[tuple[str, ...]] = ()
     further: ClassVar[Fields] = []
     endless: ClassVar[tuple[str, ...]] = INFINITE_IN_LAW
-    told: ClassVar[str] = "links"
+    driven: ClassVar[bool] = False
+    reported: ClassVar[bool] = True
     booked: ClassVar[tuple[str, ...]] = ()
 
     @classmethod

@@ -45,6 +45,7 @@ from .pair_law import SHARED_COLUMNS, LongestSteps, PairLaw, least_among, pair_n
 from .softening import Sides, shares_within
 from .solids import Poses
 from .validity import (
+    Account,
     JointState,
     Limits,
     Motion,
@@ -267,14 +268,17 @@ class ContactSearch:
         laws = tuple(each.with_found(count, kept, added) for each, added in own)
         system = system._replace(lines=lines, laws=laws).with_ways()
         after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        self._book(books, before, after, 0.5 * h if state.since > 0 else 0.0)
+        return system
+
+    def _book(self, books: Books, before: Account, after: Account, half: float) -> None:
+        """Book what a search changes, whose forces change half a step before the pose [s]."""
         given = min(before.sheared - after.sheared, 0.0)  # what shear springs lose friction takes, and it gives nothing
-        half = 0.5 * h if state.since > 0 else 0.0  # forces change half a step before the pose
         late = half * (after.power - before.power)
         books.totals[0].encounter_ends += before.energy + given - after.energy - late
         books.totals[0].ground += half * (before.carried - after.carried)
         books.totals[0].friction += half * (before.rubbed - after.rubbed) - given
         books.dashpots[self.group] += half * (before.damped - after.damped)
-        return system
 
     def _joints_of(self, pair: Integers) -> Integers:
         """Number of the first joint of each pair of blocks, -1 for a pair that has none."""

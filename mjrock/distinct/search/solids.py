@@ -80,20 +80,20 @@ class Solids(NamedTuple):
         side = np.arange(len(outlines)) if side is None else side
         around = whole_outlines(outlines, side, corners, normals)
         return cls(
-            corners,
-            corner,
-            normals,
-            _begins(block.normals for block in blocks),
-            np.concatenate(edges),
-            _begins(edges),
-            np.concatenate(outlines),
-            _begins(outlines),
-            np.concatenate(inside),
-            owner,
-            np.array([np.linalg.norm(ways, axis=1).sum() for ways in around_faces]),
-            side,
-            np.concatenate(around),
-            _begins(around),
+            corners=corners,
+            corner=corner,
+            normals=normals,
+            face=_begins(block.normals for block in blocks),
+            ways=np.concatenate(edges),
+            way=_begins(edges),
+            outline=np.concatenate(outlines),
+            first=_begins(outlines),
+            inside=np.concatenate(inside),
+            owner=owner,
+            extent=np.array([np.linalg.norm(ways, axis=1).sum() for ways in around_faces]),
+            side=side,
+            around=np.concatenate(around),
+            begin=_begins(around),
         )
 
     def moved(self, place: Array, change: Array) -> Solids:
