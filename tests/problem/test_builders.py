@@ -86,5 +86,12 @@ def test_refusals_name_the_class_method(call, message):
         call()
 
 
+def test_a_section_of_warnings_has_one_entry():
+    """Sphinx takes no more."""
+    for name in (*constructors.BUILDERS, *constructors.READERS):
+        warns = (inspect.getdoc(getattr(mr.Masonry, name)) or "").partition("Warns:\n")[2].partition("\n\n")[0]
+        assert len(re.findall(r"^ {4}\w", warns, re.MULTILINE)) <= 1, name
+
+
 def test_the_stub_is_what_is_made():
     assert stubs.STUB.read_text() == stubs.stub()

@@ -518,8 +518,7 @@ class Constructors:
 
         Warns:
             Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances.
-            UserWarning: of the volume that hulls add.
+                as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
         """
 
     @classmethod
@@ -560,8 +559,7 @@ class Constructors:
 
         Warns:
             Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances.
-            UserWarning: of the volume that hulls add.
+                as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
         """
 
     @classmethod
@@ -602,8 +600,7 @@ class Constructors:
 
         Warns:
             Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances.
-            UserWarning: of the volume that hulls add.
+                as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
         """
 
     @classmethod
@@ -645,8 +642,7 @@ class Constructors:
 
         Warns:
             Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances.
-            UserWarning: of the volume that hulls add.
+                as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
         """
 
     @classmethod
@@ -665,7 +661,8 @@ class Constructors:
     ) -> Self:
         """Blocks of the input of LMGC90: bodies RBDY3 with one polyhedron POLYR each. Driven bodies are fixed.
 
-        Joints are those of mjrock: laws of contact, loads and gravity of the folder are not read.
+        Joints are those of mjrock: laws of contact, loads and gravity of the folder are not read. A UserWarning names
+        planes, spheres and other shapes, which are left out, and a file that is missing.
 
         Args:
             path: of a folder DATBOX with BODIES.DAT, BULK_BEHAV.DAT, DRV_DOF.DAT and DOF.INI, or of its BODIES.DAT. The
@@ -690,10 +687,8 @@ class Constructors:
             ValueError: as `Masonry` does.
 
         Warns:
-            UserWarning: of planes, spheres and other shapes, which are left out, and where one of the files is missing.
             Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances.
-            UserWarning: of the volume that hulls add.
+                as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
         """
 
     @classmethod
@@ -735,6 +730,5 @@ class Constructors:
 
         Warns:
             Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-                as little apart as twenty tolerances.
-            UserWarning: of the volume that hulls add.
+                as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
         """

@@ -146,8 +146,7 @@ def file_options(
 
     Warns:
         Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
-            as little apart as twenty tolerances.
-        UserWarning: of the volume that hulls add.
+            as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
     """
     if convex is not None:
         require_one_of("convex", convex, CONVEX)

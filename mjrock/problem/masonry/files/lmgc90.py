@@ -30,7 +30,8 @@ DRIVEN = re.compile(rf"^ *vlocy +(\d) +({NUMBER}) +({NUMBER})", re.MULTILINE)
 def read_lmgc90(path: AnyPath) -> list[Mesh]:
     """Blocks of the input of LMGC90: bodies RBDY3 with one polyhedron POLYR each. Driven bodies are fixed.
 
-    Joints are those of mjrock: laws of contact, loads and gravity of the folder are not read.
+    Joints are those of mjrock: laws of contact, loads and gravity of the folder are not read. A UserWarning names
+    planes, spheres and other shapes, which are left out, and a file that is missing.
 
     Args:
         path: of a folder DATBOX with BODIES.DAT, BULK_BEHAV.DAT, DRV_DOF.DAT and DOF.INI, or of its BODIES.DAT. The
@@ -38,9 +39,6 @@ def read_lmgc90(path: AnyPath) -> list[Mesh]:
 
     Raises:
         ValueError: for bodies of other kinds or of several polyhedra.
-
-    Warns:
-        UserWarning: of planes, spheres and other shapes, which are left out, and where one of the files is missing.
     """
     path = Path(path)
     bodies = path / "BODIES.DAT" if path.is_dir() else path
