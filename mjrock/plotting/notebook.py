@@ -66,7 +66,7 @@ def _run(answer: Response, said: str) -> Figure:
     figure = Picture(figsize=(6.4, 6.0), layout="constrained")
     (above,), (below,) = figure.subfigures(2, 1, squeeze=False, height_ratios=(2.0, 1.0))
     above.suptitle(wrapped(said, 6.0, 9), fontsize=9)
-    if len(answer.case.standing.solids) <= MOST_BLOCKS:
+    if len(answer.case.rest_geometry.solids) <= MOST_BLOCKS:
         blocks(above.subplots(subplot_kw={"projection": "3d"} if answer.in_space else None), answer)
     moved = displacement(below.subplots(), [answer])
     if answer.fallen:
