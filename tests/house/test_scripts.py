@@ -110,6 +110,7 @@ WRITES = {
     "result_files": {"result_files.csv", "result_files.txt"},
     "throughput": {"throughput.txt"},
     "first_minute": {"first_minute.csv", "first_minute.txt"},
+    "own_laws": {"own_laws.csv", "own_laws.txt"},
     "form_times": {"form_times.csv", "form_times.txt"},
     "stack_before_and_after": film("stack_before_and_after") | {"stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
