@@ -224,9 +224,9 @@ EXAMPLE = re.compile(r'<img alt="" (?=src="[^"]*sphx_glr_(?:\d+_)?(\w+)_thumb)')
 
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Load pictures below the first as they come into sight, and say what a link to a page shows."""
-    first, *others = re.split(r"(?=<img )", context.get("body") or "")
+    body = EXAMPLE.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', context.get("body") or "")
+    first, *others = re.split(r"(?=<img )", body)
     above, others = "".join([first, *others[:1]]), others[1:]
-    others = [EXAMPLE.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', part) for part in others]
     context["body"] = above + "".join(part.replace("<img ", '<img loading="lazy" ', 1) for part in others)
     title = re.sub(r"<[^>]*>", "", context.get("title", project))
     said = {"og:title": title, "og:site_name": project, "og:image": f"{app.config.html_baseurl}card.png"}
