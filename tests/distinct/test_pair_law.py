@@ -34,7 +34,7 @@ def scene(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
     springs = {name: np.ones(len(ends)) for name in ("k_n", "k_s", "retardation")}
     springs |= {"residual": residual, "pairs": None}
     return SimpleNamespace(
-        standing=SimpleNamespace(solids=blocks, joints=joints),
+        rest_geometry=SimpleNamespace(solids=blocks, joints=joints),
         springs=SimpleNamespace(**springs | {name: np.array(each) for name, each in known.items()}),
         freedom=SPACE if blocks[0].in_space else PLANE,
     )
