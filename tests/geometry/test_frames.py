@@ -38,6 +38,7 @@ from mjrock.geometry.kinematics import (
     where_friction_acts,
 )
 from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
+from mjrock.problem.masonry.laws.joint_law import LAW_ROW
 from mjrock.problem.wall.effect import LinkLaw
 from mjrock.quantities import frozen
 from mjrock.scene.course import Ground, push_ground
@@ -111,7 +112,9 @@ def tumbling():
         return np.where(bodies[:, None] < 0, 0.0, rest[bodies])
 
     between = origin(body) + at - origin(face_body) - face_at
-    law = np.zeros(5, dtype=np.int64), np.array([1e5, 2e5, 3e5, 1e5, 2e5]), *np.zeros((4, 5))
+    rows = np.zeros(5, dtype=LAW_ROW)
+    rows["k"] = [1e5, 2e5, 3e5, 1e5, 2e5]
+    law = np.zeros(5, dtype=np.int64), rows, rows["k"].copy(), *np.zeros((4, 5))
     places = Places(AXES, body, at, face_body, face_at, normal, between, 1e-3, *law)
     held, anchor_body = np.array([0, 1, 1]), np.array([-1, 0, -1])
     ends, anchors = rng.normal(0, 0.7, (2, 3, 3))
