@@ -56,7 +56,8 @@ def _is_imported() -> bool:
 
 
 def _register(numba: Any, function: Callable[..., Any]) -> None:
-    options, choose = {"forceinline": True, "no_cfunc_wrapper": True}, getattr(function, "choose", None)
+    options = {"forceinline": not getattr(function, "stays_apart", False), "no_cfunc_wrapper": True}
+    choose = getattr(function, "choose", None)
     if choose is None:
         numba.extending.register_jitable(**options)(function)
     else:
@@ -74,6 +75,12 @@ def inlined(function: Function) -> Function:
     else:
         _waiting.append(function)
     return function
+
+
+def called(function: Function) -> Function:
+    """The same as `inlined`, but the call stays: for what many places call that need not be fast."""
+    function.stays_apart = True  # type: ignore[attr-defined]
+    return inlined(function)
 
 
 def by_type(choose: Callable[[Any], Callable[..., Any]]) -> Callable[..., Any]:

@@ -1,4 +1,4 @@
-"""What the last digits of an answer depend on: the kernels of linear algebra, which differ between processors."""
+"""The machine: how many cores this process has, and the kernels of linear algebra, on which last digits depend."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import contextlib
 import ctypes
 import importlib.metadata
 import importlib.util
+import math
 import os
 import platform
 from functools import cache
@@ -46,3 +47,14 @@ def description() -> str:
     if name := os.environ.get("NUMBA_CPU_NAME"):
         versions.append(f"compiled for {name}")
     return ", ".join(versions)
+
+
+def cores() -> int:
+    """Cores that this process may use: those of the machine, its affinity, and the quota of its control group."""
+    count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    quotas = Path("/sys/fs/cgroup/cpu.max"), Path("/sys/fs/cgroup/cpu/cpu.cfs_quota_us")
+    for path, period in zip(quotas, (None, quotas[1].with_name("cpu.cfs_period_us")), strict=True):
+        with contextlib.suppress(OSError, ValueError):  # "max" and -1 stand for none
+            quota, *of = (path.read_text() + (period.read_text() if period else "")).split()
+            count = min(count, math.ceil(float(quota) / float(of[0]))) if float(quota) > 0 else count
+    return count

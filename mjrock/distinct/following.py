@@ -15,6 +15,7 @@ from ..compiled import for_types_of
 from ..quantities import Array, warn_of
 from ..result.motion import intervals
 from ..scene.explicit_step import stepping_seconds
+from .crew import Crew
 from .kinds.own import OwnLaws
 from .kinds.own_links import OwnLinks
 from .limit import LEAD, STABLE_AHEAD
@@ -103,16 +104,19 @@ class Stepping(NamedTuple):
 
 
 class Followed(NamedTuple):
-    """What was followed: the system at the end, how many steps it took, of how many samples, and what is remembered."""
+    """What was followed: the system at the end, how many steps it took, of how many samples, what is remembered, and
+    how many threads took part, with the processor time of all but the caller's [s]."""
 
     system: System
     steps: int
     samples: int
     memory: Memory | None
+    threads: int
+    processor: float
 
 
-def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> Followed:
-    """Make the steps, with a progress bar where they take more than some seconds.
+def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping, threads: int | None = None) -> Followed:
+    """Make the steps in some threads, see `Crew`, with a progress bar where they take more than some seconds.
 
     Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
 
@@ -133,7 +137,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     if memory is not None:
         clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
     at_once, ended, memory = max(1, FIRST_CALL // max(1, len(system.lines))), False, None
-    with Bar("explicit steps", "s", stepping.end) as bar:
+    with Bar("explicit steps", "s", stepping.end) as bar, Crew(threads) as crew:
         while clock.step < stop and not ended:
             if clock.step == stepping.last:
                 memory = remember(setup.of, system, clock, setup.blocks)
@@ -145,17 +149,17 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
             begun = time.perf_counter()
             ahead = (next_search if search is not None else stop, clock.step + at_once)
             clock = clock._replace(stop=min(stop if clock.step == stepping.last else stepping.last, *ahead))
-            step, row, ended = steps(system, books, samples, clock)
+            step, row, ended = crew.run(steps, system, books, samples, clock)
             took = time.perf_counter() - begun
             at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
             bar.to(step * clock.h)
             if steps is advance:  # what a search replaces has the same types
-                steps = for_types_of(advance, system, books, samples, clock)
+                steps = for_types_of(advance, system, books, samples, clock, crew.team)
             clock = clock._replace(step=step, row=row)
             for body in unsound(system.bodies)[:1].tolist():
                 moving = f"the motion of {setup.scene.bodies.names[body]}"
                 raise breakdown(next(broken_laws(setup, system), moving), step * clock.h)
-    return Followed(system, clock.step, clock.row, None if ended else memory)
+    return Followed(system, clock.step, clock.row, None if ended else memory, crew.used, crew.processor)
 
 
 def searched(search: ContactSearch, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:

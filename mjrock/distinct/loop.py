@@ -26,15 +26,17 @@ from ..geometry.vectors import (
 from ..problem.masonry.laws.joint_law import stored
 from ..quantities import GRAVITY, Array
 from ..scene.course import Ground, mean_acceleration
-from .contacts.contact import press_lines, settle_touches
+from .contacts.contact import settle_touches
 from .contacts.friction import book_rubbing, sheared, stick
 from .contacts.touches import in_transit, was_open
 from .gathering import keep_burden, keep_forces
 from .kinds.lists import act_all, hold_all, settle_all, stored_by_laws
 from .rows import Rows
 from .slowing import oppose, slow_down
+from .spans import bodies_of_span, list_touched, press_by_laws, press_own_lines, sum_up
 from .supports import move_supports
 from .system import Books, Samples, System
+from .team import Team, bring_together, end_all, has_ended, wait
 from .turning import (
     apply_inverse_inertia,
     in_body,
@@ -156,6 +158,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
         write_turn(body, pose)
         put(velocity, read(body.velocity))
         put(velocity[len(body.place) :], momentum_of(body))
+    sum_up(system, books)
     keep_account(books.dashpots, samples.dashpots[row])
     energy, totals = samples.energy[row], books.totals[0]
     energy.potential = energy.elastic = energy.driven = 0.0
@@ -226,56 +229,128 @@ def is_astray(bodies: Rows, ends: float) -> bool:
     return False
 
 
+class Step(NamedTuple):
+    """A step of a run.
+
+    Args:
+        t: when it begins [s].
+        before: length of the step before [s].
+        kick: time for which its forces act on the velocities [s].
+        sampled, checked: whether there is a sample, and a check of the energy, of its start.
+        kept: number of the sample that is written, the one that is not kept where there is a check alone.
+    """
+
+    t: float
+    before: float
+    kick: float
+    sampled: bool
+    checked: bool
+    kept: int
+
+
+@inlined
+def step_of(clock: Clock, n: int, row: int, samples: Samples) -> Step:
+    """Step n, with the number of the next sample."""
+    before = clock.h if n > 0 else clock.before
+    sampled = n % clock.every == 0 or n == clock.last
+    checked = n % clock.check == 0 or n == clock.last
+    kept = row if sampled else len(samples.pose) - 1
+    return Step(n * clock.h, before, 0.5 * (before + clock.h), sampled, checked, kept)
+
+
+@inlined
+def add_forces(system: System, books: Books, samples: Samples, clock: Clock, team: Team, step: Step) -> int:
+    """Add all forces at the pose but rigid friction. Returns how many lines stick rigidly."""
+    t, h, before = step.t, clock.h, step.before
+    if team.number == 0:
+        move_supports(system.supports, t, before)
+    push = scaled(h / step.kick, accelerated(system.ground, t, h, read(system.bodies[0].place)))
+    if t == 0:
+        push = plus(push, scaled(0.5 * before / step.kick, clock.pushed))
+    for span in range(team.own_bodies[0], team.own_bodies[1]):
+        some, own = bodies_of_span(system, books, team, span)
+        start_forces(some, own, push, before)
+    wait(team)
+    if has_links(samples):
+        if team.number == 0:
+            act_all(system.links, system, books, t, before)
+            if step.sampled:
+                keep_burden(system, samples, step.kept)
+        wait(team)
+    press_by_laws(system.laws, system, books, team, t, before)
+    sticking = press_own_lines(system, books, team, before, step.kick, clock.lead)
+    bring_together(team, books.apart, system.bodies)
+    return sticking
+
+
+@inlined
+def has_links(samples: Samples) -> bool:
+    """Whether there are links, whose forces are kept."""
+    return bool(samples.pulled.shape[1] > 0)
+
+
+@inlined
+def settle_step(
+    system: System, books: Books, samples: Samples, clock: Clock, step: Step, sticking: int, touched: int
+) -> None:
+    """What is left when all forces have acted but rigid friction, by one thread for all: this friction, touches and
+    links, and what is kept."""
+    energy, kick = samples.energy[step.kept], step.kick
+    stick(system, books.active, sticking, kick)
+    taken, put_in = settle_touches(system, books, touched, kick)
+    by_links, put_in_by_links = settle_all(system.links, system, books, kick)
+    energy.elastic += taken + by_links
+    energy.ground += put_in + put_in_by_links
+    if samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0:
+        rubbed, put_in = book_rubbing(system, books, sticking)
+        if step.before > 0:  # halves that belong to the time before the pose
+            energy.friction += rubbed
+            energy.ground += put_in
+    if clock.drag > 0:
+        slow_down(system, books, clock.drag * kick)
+    if step.sampled or step.checked:
+        keep_velocity(system.bodies, samples, step.kept, step.before)
+    if step.sampled:
+        keep_forces(system, samples, step.kept)
+
+
 @compiled_at_once
-def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
+def advance(system: System, books: Books, samples: Samples, clock: Clock, team: Team) -> tuple[int, int, bool]:
     """Steps up to that before which to stop. Samples and checks are made of every so many, and of the last.
 
-    Returns the number of the next step and of the next sample, and whether the run has ended.
+    Each thread of a run calls it. Returns the number of the next step and of the next sample, and
+    whether the run has ended.
     """
-    n, h, row, like = clock.step, clock.h, clock.row, read(system.bodies[0].place)
-    accounted = samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0
+    n, row = clock.step, clock.row
+    first, last = team.bodies[team.own_bodies[0]], team.bodies[team.own_bodies[1]]
+    own = system.bodies[first:last]
     while n < clock.stop:
-        before = h if n > 0 else clock.before
-        kick = 0.5 * (before + h)
-        sampled = n % clock.every == 0 or n == clock.last
-        checked = n % clock.check == 0 or n == clock.last
-        kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
-        move_supports(system.supports, n * h, before)
-        push = scaled(h / kick, accelerated(system.ground, n * h, h, like))
-        if n == 0:
-            push = plus(push, scaled(0.5 * before / kick, clock.pushed))
-        start_forces(system, books, push, before)
-        act_all(system.links, system, books, n * h, before)
-        if sampled:
-            keep_burden(system, samples, row)
-        act_all(system.laws, system, books, n * h, before)
-        sticking, touched = press_lines(system, books, before, kick, clock.lead)
-        if sampled or checked:
-            keep_pose(system, books, samples, kept, before)
-        if clock.local > 0:
-            oppose(system, books, clock.local, kick)
-        kick_bodies(system.bodies, kick)
-        stick(system, books.active, sticking, kick)
-        taken, put_in = settle_touches(system, books, touched, kick)
-        by_links, put_in_by_links = settle_all(system.links, system, books, kick)
-        samples.energy[kept].elastic += taken + by_links
-        samples.energy[kept].ground += put_in + put_in_by_links
-        if accounted:
-            rubbed, put_in = book_rubbing(system, books, sticking)
-            if before > 0:  # halves that belong to the time before the pose
-                samples.energy[kept].friction += rubbed
-                samples.energy[kept].ground += put_in
-        if clock.drag > 0:
-            slow_down(system, books, clock.drag * kick)
-        if sampled or checked:
-            keep_velocity(system.bodies, samples, kept, before)
-        if checked:
-            samples.checks[-(-n // clock.check)] = samples.energy[kept]
-        if sampled:
-            keep_forces(system, samples, row)
+        step = step_of(clock, n, row, samples)
+        sticking = add_forces(system, books, samples, clock, team, step)
+        touched = list_touched(books, team)
+        kept = step.sampled or step.checked
+        if kept or clock.local > 0:
+            wait(team)
+            if team.number == 0:
+                if kept:
+                    keep_pose(system, books, samples, step.kept, step.before)
+                if clock.local > 0:
+                    oppose(system, books, clock.local, step.kick)
+            wait(team)
+        kick_bodies(own, step.kick)
+        if kept or sticking > 0 or touched > 0 or clock.drag > 0 or has_links(samples):
+            wait(team)
+            if team.number == 0:
+                settle_step(system, books, samples, clock, step, sticking, touched)
+                if step.checked:
+                    samples.checks[-(-n // clock.check)] = samples.energy[step.kept]
+                if step.sampled and is_astray(system.bodies, clock.ends):
+                    end_all(team)
+            wait(team)
+        if step.sampled:
             row += 1
-            if is_astray(system.bodies, clock.ends):
+            if has_ended(team):
                 return n, row, True
-        move_bodies(system.bodies, h)
+        move_bodies(own, clock.h)
         n += 1
     return n, row, False

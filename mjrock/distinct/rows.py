@@ -39,6 +39,7 @@ class Kinds(NamedTuple):
         total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
             the work of ground and supports, and `TAKEN_BY_LAWS`; `push` is the acceleration of the ground in the last
             step [m/s2].
+        apart: force and moment of a line on a body that wait until all threads have pressed, see `team`.
     """
 
     body: np.dtype[np.void]
@@ -46,6 +47,7 @@ class Kinds(NamedTuple):
     edge: np.dtype[np.void]
     way: np.dtype[np.void]
     total: np.dtype[np.void]
+    apart: np.dtype[np.void]
 
 
 @lru_cache
@@ -58,6 +60,7 @@ def kinds(d: int) -> Kinds:
         _edge(d),
         _way(d, s),
         [*numbers("friction", "ground", *TAKEN_BY_LAWS), *vectors(d, "push")],
+        [*integers("body"), *vectors(d, "force"), *vectors(s, "moment")],
     )
     return Kinds(*(np.dtype(kind) for kind in fields))
 
@@ -70,6 +73,11 @@ def numbers(*names: str) -> Fields:
 def integers(*names: str) -> Fields:
     """Integers of a row."""
     return [(name, np.int64) for name in names]
+
+
+def short_integers(*names: str) -> Fields:
+    """Integers of a row that take half the room of a number. There is an even number of them side by side."""
+    return [(name, np.int32) for name in names]
 
 
 def vectors(size: int, *names: str) -> Fields:
@@ -97,26 +105,29 @@ def _body(d: int, s: int) -> Fields:
 
 def _line(d: int, s: int) -> Fields:
     return [
-        *integers("body", "face"),  # that carries the point, and of the face, -1 or POINT_ON_FIXED_BLOCK where fixed
-        *integers("support"),  # the support that moves a fixed block, -1 for none
-        *integers("group"),  # number of the account
-        *integers("fixed"),  # number of the fixed block of its face among these, -1 where that is a body
-        *numbers("sense"),  # 1 where its body is above its joint, -1 where it is below
+        # what each step reads and writes
+        *short_integers("body", "face"),  # that carries the point, and of the face, -1 or POINT_ON_FIXED_BLOCK
+        *short_integers("support"),  # the support that moves a fixed block, -1 for none
+        *short_integers("group"),  # number of the account
         *vectors(d, "at"),  # the point from the centroid of its body [m]
+        *vectors(d, "between"),  # from the point of the face to the point at rest, zero for a line of a joint [m]
         *vectors(d, "origin"),  # a point of the face from the centroid of its body [m]
-        *vectors(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
         *vectors(d, "normal"),  # unit vector out of the face, of a POINT_ON_FIXED_BLOCK into that of the body
         *numbers(*Law._fields, "c_s"),  # of the law, and the dashpot along the face [N s/m]
         *numbers("margin"),  # square of the least way from the origin to the end of the face, or infinite [m2]
-        *integers("first", "last"),  # the edges of the face
-        *integers("own_first", "own_last"),  # the edges of the face of its own body
-        *vectors(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
         *numbers("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
         *numbers("depth", "rate"),  # overlap, and growth of the gap, in the last step [m, m/s]
-        *numbers("due"),  # what its spring is still to do for a touch in this step, see `touches` [kg]
-        *integers("past"),  # 1 for a line that was past the end of its face then
         *vectors(s, "dragged"),  # friction of the shear spring in the last step [N]
+        *vectors(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
+        *short_integers("apart", "face_apart"),  # its rows of forces that wait, 0 for none, see `team`
+        *short_integers("past"),  # 1 for a line that was past the end of its face then
+        # what a step reads where a line touches or slides off
+        *short_integers("fixed"),  # number of the fixed block of its face among these, -1 where that is a body
+        *numbers("due"),  # what its spring is still to do for a touch in this step, see `touches` [kg]
         *numbers("widest"),  # largest gap so far [m]
+        *short_integers("first", "last"),  # the edges of the face
+        *short_integers("own_first", "own_last"),  # the edges of the face of its own body
+        *numbers("sense"),  # 1 where its body is above its joint, -1 where it is below
     ]
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from ..geometry.frames import PLANE, SPACE
 from ..quantities import Array, Integers
 from ..scene.course import Ground
-from .rows import TAKEN_BY_LAWS, Rows, kinds, rows
+from .rows import TAKEN_BY_LAWS, Rows, joined, kinds, rows
 from .supports import Supports
+from .team import Team, teams_of
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
@@ -46,15 +47,19 @@ class System(NamedTuple):
 
 
 class Books(NamedTuple):
-    """Work since the start [J].
+    """Work since the start [J], and what the lines of a step leave.
 
     Args:
         dashpots: by group, shape (g,).
         links: by account of the links, see `kinds.link.Kind`, shape (l,).
-        totals: a row of what is booked for all lines together, see `rows.Kinds`.
+        totals: a row for each span of lines or bodies of what is booked for all together, see `rows.Kinds`. What is
+            booked of the whole is in the first one.
         active, touched: room for the numbers of the lines that stick rigidly, and of those that met or left their face
             in the last step, shape (m,) each.
         struck, asked: what their springs did for that in this step, and what they still ask for [N s], likewise.
+        encounters: what the dashpots of lines book that a search has found, for each span but the first of these: that
+            of span c is the number c + group.
+        apart: forces of lines that wait until all threads have pressed, see `team.put_apart`.
     """
 
     dashpots: Array
@@ -64,21 +69,36 @@ class Books(NamedTuple):
     touched: Integers
     struck: Array
     asked: Array
+    encounters: Array
+    apart: Rows
 
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
         links = sum(len(table.rows) * len(table.booked) for table in system.links)
-        active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
-        totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros((2, len(active)))
-        return cls(np.zeros(groups), np.zeros(links), totals, active, touched, *struck)
+        none, integers, kind = np.zeros(0), np.zeros(0, dtype=np.int64), kinds(len(system.axes))
+        waiting = rows(kind.total, 1), integers, integers, none, none, none, rows(kind.apart, 1)
+        return cls(np.zeros(groups), np.zeros(links), *waiting).with_room(system)
 
-    def with_room(self, lines: int) -> Books:
-        """The books with room for so many lines."""
-        if lines <= len(self.active):
-            return self
-        active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
-        return self._replace(active=active, touched=touched, struck=np.zeros(lines), asked=np.zeros(lines))
+    def with_room(self, system: System) -> Books:
+        """The books with room for the lines of a system."""
+        return self.of_threads(system, 1)[0]
+
+    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Team, ...]]:
+        """The books with room for the lines of a system, and so many threads for them."""
+        (teams, apart), lines = teams_of(system.bodies, system.lines, count), len(system.lines)
+        books, spans = self._replace(apart=apart), len(teams[0].lines) - 1
+        if lines > len(self.active):
+            active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
+            books = books._replace(active=active, touched=touched, struck=np.zeros(lines), asked=np.zeros(lines))
+        more = max(spans, len(teams[0].bodies) - 1) - len(self.totals)
+        if more > 0:
+            books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, more)))
+        if spans + len(self.dashpots) > len(self.encounters):
+            encounters = np.zeros(spans + len(self.dashpots))
+            encounters[: len(self.encounters)] = self.encounters
+            books = books._replace(encounters=encounters)
+        return books, teams
 
     @property
     def size(self) -> int:

@@ -1,6 +1,7 @@
 """A bonded joint that is led along a path, for tests: what it pushes and drags at each pose."""
 
 import numpy as np
+from by_hand import alone
 
 import mjrock as mr
 from mjrock.distinct.loop import Clock, advance
@@ -66,7 +67,7 @@ class Led:
         """One step, at the end of which the forces are those of the new pose."""
         self.body["place"][0] = self.at
         clock = Clock(1, self.h, 1, 0, 2, 10**9, np.inf, self.h, (0.0,) * len(self.at))
-        advance(self.system, self.books, self.samples, clock)
+        advance(self.system, self.books, self.samples, clock, alone(self.system))
 
     def forces(self):
         push = sum(table["push"].sum() for table in self.tables)

@@ -7,6 +7,7 @@ from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
+from mjrock.distinct.team import teams_of
 from mjrock.distinct.turning import take_inverse_inertia, take_turn
 from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.problem.wall.rest_geometry import Solid, in_space
@@ -79,6 +80,11 @@ def stood(blocks):
         )
         for i, block in enumerate(blocks)
     ]
+
+
+def alone(system):
+    """The only thread of a run."""
+    return teams_of(system.bodies, system.lines, 1)[0][0]
 
 
 def books(system):

@@ -9,6 +9,7 @@ from by_hand import about, books, energy, matrix, system, velocity_at
 from mjrock.distinct.contacts import contact, friction, touches
 from mjrock.distinct.contacts.contact import Meeting
 from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK
+from mjrock.distinct.team import add_force
 
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
 ALONG = {2: np.array([0.8, -0.6]), 3: np.array([-0.8, 0.0, 0.6])}
@@ -72,8 +73,8 @@ def test_a_line_is_where_its_bodies_have_it(d, face, gap):
 @BOTH
 def test_a_force_adds_its_moment_about_the_centroid(d):
     body = system(d).bodies[1]
-    contact.add_force(body, tuple(AT[d]), tuple(ALONG[d]))
-    contact.add_force(body, tuple(ORIGIN[d]), tuple(NORMAL[d]))
+    add_force(body, tuple(AT[d]), tuple(ALONG[d]))
+    add_force(body, tuple(ORIGIN[d]), tuple(NORMAL[d]))
     np.testing.assert_allclose(body.force, ALONG[d] + NORMAL[d])
     np.testing.assert_allclose(body.moment, about(AT[d], ALONG[d]) + about(ORIGIN[d], NORMAL[d]))
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from by_hand import INERTIAS, MASSES, SPIN, VELOCITY, matrix, system
+from by_hand import INERTIAS, MASSES, SPIN, VELOCITY, alone, matrix, system
 
 import mjrock as mr
 from mjrock.distinct import loop
@@ -74,6 +74,11 @@ def total(samples, count):
     return held + accounts - each["ground"] - 2 * each["driven"]
 
 
+def advanced(whole, *given):
+    """The steps as plain Python, by one thread."""
+    return loop.advance.py_func(whole, *given, alone(whole))
+
+
 @BOTH
 def test_bodies_in_flight_have_the_motion_of_weight_and_ground(d):
     """Half a step after each pose the velocity is exact, and the poses are their sum. The energy stays."""
@@ -82,7 +87,7 @@ def test_bodies_in_flight_have_the_motion_of_weight_and_ground(d):
     place, velocity = whole.bodies["place"].copy(), VELOCITY[:, which]
     spins = whole.bodies["spin"].copy()
     account, samples = room(whole, count, checks=5)
-    ended = loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1, check=2))
+    ended = advanced(whole, account, samples, clock(d, count, last=count - 1, check=2))
     assert ended == (count, count, False)
     up = np.eye(d)[-1]
     before = velocity
@@ -111,7 +116,7 @@ def test_a_run_goes_on_from_a_step_before(d):
     """Its velocities are half that step before the pose, and the ground has moved the bodies since."""
     whole, before, pushed = flying(d), 0.004, (0.3, -0.7, 0.5)[:d]
     velocity, (account, samples) = whole.bodies["velocity"].copy(), room(whole, 1)
-    loop.advance.py_func(whole, account, samples, clock(d, 1, before=before, pushed=pushed))
+    advanced(whole, account, samples, clock(d, 1, before=before, pushed=pushed))
     changed = -moved(d, 0.5 * H) - 0.5 * before * np.array(pushed) - G * 0.5 * (before + H) * np.eye(d)[-1]
     np.testing.assert_allclose(whole.bodies["velocity"], velocity + changed, rtol=1e-12)
     np.testing.assert_allclose(samples.velocity[0, :, :d], velocity + 0.5 * changed, rtol=1e-12)
@@ -127,7 +132,7 @@ def test_a_run_in_two_parts_is_that_in_one(d):
         step = row = 0
         for stop in parts:
             options = {"step": step, "row": row, "every": 3, "check": 2, "last": 7}
-            step, row, ended = loop.advance.py_func(whole, account, samples, clock(d, stop, **options))
+            step, row, ended = advanced(whole, account, samples, clock(d, stop, **options))
             assert not ended
             numbers.append((step, row))
         runs.append(samples)
@@ -138,7 +143,7 @@ def test_a_run_in_two_parts_is_that_in_one(d):
         np.testing.assert_array_equal(run.checks, runs[0].checks)
     whole = flying(d)
     account, all_samples = room(whole, 8)
-    loop.advance.py_func(whole, account, all_samples, clock(d, 8, last=7))
+    advanced(whole, account, all_samples, clock(d, 8, last=7))
     np.testing.assert_array_equal(runs[0].pose[:4], all_samples.pose[[0, 3, 6, 7]])
     np.testing.assert_array_equal(runs[0].energy[:4], all_samples.energy[[0, 3, 6, 7]])
     np.testing.assert_array_equal(runs[0].checks["kinetic"][:5], all_samples.energy["kinetic"][[0, 2, 4, 6, 7]])
@@ -151,7 +156,7 @@ def test_a_check_leaves_the_samples_as_they_are(d):
     for options in ({"every": 3, "check": 2}, {"every": 3}):
         whole = flying(d)
         account, samples = room(whole, 2, checks=3)
-        loop.advance.py_func(whole, account, samples, clock(d, 6, **options))
+        advanced(whole, account, samples, clock(d, 6, **options))
         runs.append(samples)
     for one, other in zip(runs[0][:3], runs[1][:3], strict=True):
         np.testing.assert_array_equal(one[:2], other[:2])
@@ -163,7 +168,7 @@ def test_a_run_ends_where_a_body_is_astray(d):
     whole = flying(d)
     whole.bodies["velocity"][1, -1] = 1e8
     account, samples = room(whole, 5)
-    assert loop.advance.py_func(whole, account, samples, clock(d, 5, last=4)) == (1, 2, True)
+    assert advanced(whole, account, samples, clock(d, 5, last=4)) == (1, 2, True)
 
 
 @pytest.mark.parametrize(("lost", "astray"), [(0.99e6, False), (1e6, True), (-1.1e6, True), (math.nan, True)])
@@ -189,7 +194,7 @@ def test_a_motion_is_slowed_down_as_it_is_asked_to(d, drag, local):
     whole = flying(d)._replace(ground=Ground.of(None))
     velocity = whole.bodies["velocity"].copy()
     account, samples = room(whole, 4)
-    loop.advance.py_func(whole, account, samples, clock(d, 4, drag=drag, local=local))
+    advanced(whole, account, samples, clock(d, 4, drag=drag, local=local))
     for n in range(4):
         kick = H if n else 0.5 * H
         weight = -G * (1 + local * np.sign(velocity[:, -1]))
@@ -242,7 +247,7 @@ def test_the_energy_of_bodies_that_strike_and_slide_is_that_of_the_accounts(d, f
     """Bodies fall on a support that moves and rub on it; or one on the other one. What the touches leave is small."""
     (whole, count), names = (striking(d, face=face, **law), 16), ("kinetic", "elastic", "friction")
     account, samples = room(whole, count)
-    loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1))
+    advanced(whole, account, samples, clock(d, count, last=count - 1))
     ledger, (kinetic, elastic, friction) = total(samples, count), (samples.energy[name][:count].max() for name in names)
     np.testing.assert_allclose(ledger, ledger[0], rtol=0, atol=1e-8 * kinetic)
     assert elastic > 0.1
@@ -258,11 +263,11 @@ def test_what_friction_takes_is_kept_where_there_is_a_ledger_or_a_support(d, led
     whole.lines["support"], whole.lines["group"] = -1, 0
     whole = whole._replace(supports=no_supports(d))
     account, samples = room(whole, 9, ledger=ledger, groups=1)
-    loop.advance.py_func(whole, account, samples, clock(d, 9, last=8))
+    advanced(whole, account, samples, clock(d, 9, last=8))
     assert (samples.energy["friction"][8] > 0.1) == ledger
     other = striking(d)
     account, samples = room(other, 9, ledger=False)
-    loop.advance.py_func(other, account, samples, clock(d, 9, last=8))
+    advanced(other, account, samples, clock(d, 9, last=8))
     assert samples.energy["friction"][8] > 0.1
 
 
@@ -282,7 +287,7 @@ def test_links_act_and_are_booked_at_the_time_of_the_pose(d):
     whole = whole._replace(links=numbered((Actuators(drive, drives),)))
     whole.bodies["place"] = 0.0
     account, samples = room(whole, count)
-    loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1))
+    advanced(whole, account, samples, clock(d, count, last=count - 1))
     pose = samples.pose[:count, 0, 0]
     pulled = samples.pulled[:count, 0]
     target = np.interp(H * np.arange(count), [0.0, 0.1, 0.3], history[:, 0])
@@ -307,7 +312,7 @@ def test_a_tie_breaks_when_a_body_has_fallen_so_far(d):
     if d == 3:
         whole.bodies["momentum"][1] = 0.0
     account, samples = room(whole, count)
-    loop.advance.py_func(whole, account, samples, clock(d, count, last=count - 1))
+    advanced(whole, account, samples, clock(d, count, last=count - 1))
     fallen = -samples.pose[:count, 1, d - 1]
     broken = np.interp(1.0 / 300.0 + 0.05, fallen, H * np.arange(count))
     np.testing.assert_allclose(tie[0].broken, broken, atol=1e-4)

@@ -125,7 +125,7 @@ WRITES = {
     "first_pictures": {"effects.png", "tutorial.png", "record.png", "design.png"},
     "speed": {"speed.txt"},
     "step_cost": {"step_cost.csv", "step_cost.txt"},
-    "step_vectors": {f"step_vectors.{ending}" for ending in ("csv", "txt")},
+    "step_threads": {f"step_threads.{ending}" for ending in ("png", "csv", "txt")},
     "thresholds": {"thresholds.txt"},
     "damping_figures": {"damping_corners.png", "damping_figures.sqlite", "damping_figures.txt"},
     "calibrate": {"calibrated.toml", "calibrated_residuals_base.png"}
@@ -232,7 +232,7 @@ def main_of(name):
 LONG = {
     "speed",
     "step_cost",
-    "step_vectors",
+    "step_threads",
     "thresholds",
     "throughput",
     "calibrate",
@@ -244,7 +244,7 @@ LONG = {
 } | {
     "sensitivity",
     "step_cost",
-    "step_vectors",
+    "step_threads",
     "capacity_bands",
     "low_stop",
     "limit_analysis",

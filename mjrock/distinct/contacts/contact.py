@@ -14,11 +14,12 @@ import math
 from typing import NamedTuple
 
 from ...compiled import inlined
-from ...geometry.vectors import Vector, dot, increase, minus, moment, no_spin, plus, put, read, scaled, spun, vector
+from ...geometry.vectors import Vector, dot, minus, no_spin, plus, put, read, scaled, spun, vector
 from ...problem.masonry.laws.joint_law import normal_force, shear_limit, stored
 from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
 from ..supports import Supports
 from ..system import Books, System
+from ..team import press_apart
 from ..turning import in_body, in_world, may_face_away, rotation_change, strike_body
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction, turned_along
@@ -124,13 +125,6 @@ def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> Vect
 
 
 @inlined
-def add_force(body: Row, arm: Vector, force: Vector) -> None:
-    """Add a force at an arm from the centroid of a body [N]."""
-    increase(body.force, force)
-    increase(body.moment, moment(arm, force))
-
-
-@inlined
 def where_friction_rubs(meet: Meeting) -> Meeting:
     """The same meeting with arms to halfway into the overlap. The force along the normal turns the bodies alike there,
     and the gap has the same rate."""
@@ -218,9 +212,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
         if meet.gap == TURNED_OVER:
             line.k = line.c = line.friction = 0.0
         force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
-        add_force(bodies[line.body], meet.arm, force)
-        if line.face >= 0:
-            add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
+        press_apart(books.apart, bodies, line, (meet.arm, meet.face_arm), force)
     books.totals[0].friction += rubbed
     books.totals[0].ground += put_in
     return active, touched

@@ -6,9 +6,9 @@ from ...compiled import inlined
 from ...geometry.vectors import dot, plus, read
 from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
-from ..contacts.contact import add_force
 from ..rows import Row, Rows
 from ..system import Books, System
+from ..team import add_force
 from ..turning import rotation_change
 from .link import Columns, Kind, Named, Table
 

@@ -21,9 +21,9 @@ from ...problem.wall.effect import LinkLaw
 from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
-from ..contacts.contact import add_force
 from ..rows import Fields, Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
+from ..team import add_force
 from ..turning import rotation_change
 
 Named = tuple[tuple[str, ...], "Kind"]

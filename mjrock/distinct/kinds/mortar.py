@@ -21,10 +21,11 @@ from ...problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
 from ...problem.masonry.laws.joint_law import normal_force
 from ...quantities import Array, Flags
 from ...scene.scene import Scene
-from ..contacts.contact import add_force, meeting, relative, where_friction_rubs
+from ..contacts.contact import meeting, relative, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared, shortened, stretched
 from ..rows import Fields, Row, Rows, numbers
 from ..system import Books, System
+from ..team import press_apart
 from ..turning import in_body
 from .law import JointLaw
 from .link import Table
@@ -219,6 +220,4 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
     if bond.integrity > INTEGRITY_OF_CRACKED:
         bond.age += h
     force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
-    add_force(bodies[line.body], meet.arm, force)
-    if line.face >= 0:
-        add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
+    press_apart(books.apart, bodies, line, (meet.arm, meet.face_arm), force)

@@ -35,10 +35,11 @@ from ...problem.wall.user_law import (
 )
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ...scene.scene import Scene
-from ..contacts.contact import add_force, meeting, relative, where_friction_rubs
+from ..contacts.contact import meeting, relative, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sprung_friction
 from ..rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ..system import Books, System
+from ..team import press_apart
 from .law import JointLaw
 from .link import Table
 
@@ -328,6 +329,4 @@ def hold_by_law(system: System, books: Books, line: Row, own: Row, h: float) -> 
     line.widest = max(line.widest, meet.gap)
     put(own.dragged, drag)
     force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
-    add_force(bodies[line.body], meet.arm, force)
-    if line.face >= 0:
-        add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
+    press_apart(books.apart, bodies, line, (meet.arm, meet.face_arm), force)

@@ -190,7 +190,7 @@ class ContactSearch:
             of_gone = np.append(joints.left[joints.pairs], ~kept)
             if may_touch.any() or of_gone.any():
                 system = self._with_new_lines(system, books, motion.poses, found.only(may_touch), of_gone, h)
-                books = books.with_room(len(system.lines))
+                books = books.with_room(system)
         steps = max(1, int(validity.valid_for[validity.searched].min(initial=self.limits.interval) / h))
         state.since = steps * h
         return system, books, steps
@@ -278,7 +278,8 @@ class ContactSearch:
         books.totals[0].encounter_ends += before.energy + given - after.energy - late
         books.totals[0].ground += half * (before.carried - after.carried)
         books.totals[0].friction += half * (before.rubbed - after.rubbed) - given
-        books.dashpots[self.group] += half * (before.damped - after.damped)
+        books.dashpots[self.group] += half * (before.damped - after.damped) + float(books.encounters.sum())
+        books.encounters[:] = 0.0
 
     def _joints_of(self, pair: Integers) -> Integers:
         """Number of the first joint of each pair of blocks, -1 for a pair that has none."""

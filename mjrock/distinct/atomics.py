@@ -1,0 +1,67 @@
+"""Numbers that threads change and read together, in compiled loops. Importing this module imports numba."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba.core import types
+from numba.extending import intrinsic
+
+ORDERED = "seq_cst"
+"""What a thread has written before such a number is seen by those that read the number after."""
+WORD = 8
+"""Bytes of a number."""
+
+
+def _place(context: Any, builder: Any, kind: Any, numbers: Any, index: Any) -> Any:
+    """The address of a number of an array."""
+    return builder.gep(context.make_array(kind)(context, builder, numbers).data, [index])
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def _add(typing: Any, numbers: Any, index: Any, more: Any) -> Any:
+    signature = types.int64(numbers, types.int64, types.int64)
+
+    def generated(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        place = _place(context, builder, signature.args[0], given[0], given[1])
+        return builder.atomic_rmw("add", place, given[2], ORDERED)
+
+    return signature, generated
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def _look(typing: Any, numbers: Any, index: Any) -> Any:
+    signature = types.int64(numbers, types.int64)
+
+    def generated(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return builder.load_atomic(_place(context, builder, signature.args[0], *given), ORDERED, WORD)
+
+    return signature, generated
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def _rest(typing: Any, numbers: Any, address: Any) -> Any:
+    signature = types.int64(numbers, types.int64)
+
+    def generated(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        kind = ir.FunctionType(ir.IntType(32), [])
+        builder.call(builder.inttoptr(given[1], kind.as_pointer()), [])
+        return ir.Constant(ir.IntType(64), 0)
+
+    return signature, generated
+
+
+def add(numbers: Any, index: int, more: int) -> Any:
+    """Add to a number of an array. Returns what it was before."""
+    return _add(numbers, index, more)
+
+
+def look(numbers: Any, index: int) -> Any:
+    """A number of an array as another thread has left it."""
+    return _look(numbers, index)
+
+
+def rest(numbers: Any, address: int) -> Any:
+    """Let other threads have the core, by a function of C with an address. The numbers are left as they are."""
+    return _rest(numbers, address)

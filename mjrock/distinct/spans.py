@@ -1,0 +1,149 @@
+"""What a thread does span by span: its bodies and lines, with the books of each span, see `team`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from ..compiled import by_type, inlined, method
+from ..quantities import Array, Integers
+from .contacts.contact import press_lines
+from .rows import Row, Rows
+from .system import Books, System, Tables
+from .team import Team, bring_together, wait
+
+act = method("act")
+
+
+def _of_kind(table: Any) -> Callable[..., Any]:
+    kind: Any = getattr(table, "instance_class", type(table))
+    return _within(kind)
+
+
+@cache
+def _within(kind: Any) -> Callable[..., Any]:
+    def part(table: Any, first: int, last: int) -> Any:
+        count = len(table.rows)
+        return kind(table.rows[min(first, count) : min(last, count)])
+
+    return part
+
+
+rows_within = by_type(_of_kind)
+"""A table with its rows from one number to another, as far as there are any."""
+
+
+@inlined
+def books_of_span(books: Books, span: int, dashpots: Array, active: Integers, touched: Integers) -> Books:
+    """The books of a span, with these accounts of dashpots and this room in the lists."""
+    totals = books.totals[span : span + 1]
+    return Books(
+        dashpots, books.links, totals, active, touched, books.struck, books.asked, books.encounters, books.apart
+    )
+
+
+@inlined
+def with_rows(system: System, bodies: Rows, lines: Rows, ways: Rows) -> System:
+    """A system with some of its bodies, lines and ways."""
+    return System(
+        system.axes,
+        bodies,
+        lines,
+        system.edges,
+        ways,
+        system.laws,
+        system.links,
+        system.guided,
+        system.ground,
+        system.supports,
+    )
+
+
+@inlined
+def bodies_of_span(system: System, books: Books, team: Team, span: int) -> tuple[System, Books]:
+    """The bodies of a span, and its books."""
+    some = system.bodies[team.bodies[span] : team.bodies[span + 1]]
+    own = books_of_span(books, span, books.dashpots, books.active, books.touched)
+    return with_rows(system, some, system.lines, system.ways), own
+
+
+@inlined
+def books_of_lines(system: System, books: Books, team: Team, span: int, active: Integers, touched: Integers) -> Books:
+    """The books of a span of lines, with this room in the lists. Lines that share their group with the span before have
+    an account of their own, see `Books.encounters`."""
+    first, dashpots = team.lines[span], books.dashpots
+    if first > 0 and system.lines[first].group == system.lines[first - 1].group:
+        dashpots = books.encounters[span : span + len(dashpots)]
+    return books_of_span(books, span, dashpots, active, touched)
+
+
+@inlined
+def press_by_laws(laws: Tables, system: System, books: Books, team: Team, t: float, h: float) -> None:
+    """Let the laws of joints act on the lines of a thread at a time t, one after the other, and book what the last step
+    of length h took."""
+    if len(laws) > 0:
+        if len(laws[0].rows) > 0:
+            for span in range(team.own_lines[0], team.own_lines[1]):
+                first, last = team.lines[span], team.lines[span + 1]
+                some = with_rows(system, system.bodies, system.lines[first:last], system.ways)
+                own = books_of_lines(system, books, team, span, books.active, books.touched)
+                act(rows_within(laws[0], first, last), some, own, t, h)
+            bring_together(team, books.apart, system.bodies)
+            wait(team)
+        press_by_laws(laws[1:], system, books, team, t, h)
+
+
+@inlined
+def press_own_lines(system: System, books: Books, team: Team, h: float, kick: float, lead: float) -> int:
+    """`press_lines` for the lines of a thread. Returns how many stick rigidly."""
+    active, touched, ways = 0, 0, len(system.axes) - 1
+    start = team.starts[team.number]
+    for span in range(team.own_lines[0], team.own_lines[1]):
+        first, last = team.lines[span], team.lines[span + 1]
+        some = with_rows(system, system.bodies, system.lines[first:last], system.ways[ways * active :])
+        own = books_of_lines(system, books, team, span, books.active[active:], books.touched[start + touched :])
+        sticking, met = press_lines(some, own, h, kick, lead)
+        for i in range(sticking):
+            own.active[i] += first
+        for i in range(met):
+            own.touched[i] += first
+        active, touched = active + sticking, touched + met
+    team.touched[team.number] = touched
+    return active
+
+
+@inlined
+def list_touched(books: Books, team: Team) -> int:
+    """How many lines of all threads have met or left their face. The first thread lists them in their order."""
+    count = 0
+    for thread in range(team.threads):
+        start = team.starts[thread]
+        for i in range(team.touched[thread] if team.number == 0 else 0):
+            books.touched[count + i] = books.touched[start + i]
+        count += team.touched[thread]
+    return count
+
+
+@inlined
+def sum_up(system: System, books: Books) -> None:
+    """Add up what has been booked span by span."""
+    for span in range(1, len(books.totals)):
+        move_work(books.totals[0], books.totals[span])
+    if len(system.lines) > 0:
+        group = system.lines[len(system.lines) - 1].group
+        for account in range(group + 1, len(books.encounters)):
+            books.dashpots[group] += books.encounters[account]
+            books.encounters[account] = 0.0
+
+
+@inlined
+def move_work(whole: Row, part: Row) -> None:
+    """Add what a row of totals has booked to another, and let it begin anew."""
+    whole.friction, whole.ground = whole.friction + part.friction, whole.ground + part.ground
+    whole.tension, whole.slip = whole.tension + part.tension, whole.slip + part.slip
+    whole.crushing = whole.crushing + part.crushing
+    whole.joint_ends = whole.joint_ends + part.joint_ends
+    whole.encounter_ends = whole.encounter_ends + part.encounter_ends
+    part.friction = part.ground = part.tension = part.slip = part.crushing = 0.0
+    part.joint_ends = part.encounter_ends = 0.0
