@@ -11,7 +11,7 @@ import pytest
 
 import mjrock as mr
 from mjrock import machine
-from mjrock.distinct import crew
+from mjrock.distinct import crew, team
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.setup import setup_of
 from mjrock.distinct.team import LINES_TOGETHER, put_apart, spans_of, teams_of
@@ -22,7 +22,7 @@ RECORD = mr.GroundMotion.synthetic(6.0, 1.0, seed=3)
 WALL = (6.0, 2.8, (0.4, 0.2))
 
 TIE_AND_JACK = (
-    mr.Tie(height=2.7, stiffness=1e6, slack=1e-5, strength=1e4),
+    mr.Tie(height=2.7, stiffness=1e6, slack=1e-5, strength=1e4, block=210),
     mr.Actuator(217, (5.9, 2.7), 1, ([0.0, 1.0], [0.0, 0.1]), 1e6, damping=1e3),
 )
 
@@ -31,8 +31,8 @@ def wall(duration=0.02, **joints):
     return mr.MasonryCase(mr.Masonry.running_bond(*WALL, **JOINTS | joints), duration, motion=RECORD)
 
 
-def facade(duration=0.01, **options):
-    return mr.MasonryCase(mr.Masonry.facade(2.0, 1.5, 1.0, (0.5, 0.25), **JOINTS), duration, motion=RECORD, **options)
+def facade(duration=0.01):
+    return mr.MasonryCase(mr.Masonry.facade(2.0, 1.5, 1.0, (0.5, 0.25), **JOINTS), duration, motion=RECORD)
 
 
 def same(case, threads, **options):
@@ -133,12 +133,12 @@ def test_a_run_goes_on_with_one_thread_where_no_more_can_be_started(monkeypatch)
 
 
 def test_the_faster_number_of_threads_makes_the_steps():
-    team, clock = crew.Crew(None), crew.Clock(0, 1.0, 1, 0, 80, 100, np.inf, 0.0, (0.0, 0.0))
-    assert team._choice((2, 1), clock) == (2, 80)
-    team._pace[2] = 3.0
-    assert team._choice((2, 1), clock) == (1, 80)
-    team._pace[1] = 2.0
-    taken = [team._choice((2, 1), clock) for _ in range(crew.TRIED_AGAIN)]
+    threads, clock = crew.Crew(None), crew.Clock(0, 1.0, 1, 0, 80, 100, np.inf, 0.0, (0.0, 0.0))
+    assert threads._choice((2, 1), clock) == (2, 80)
+    threads._pace[2] = 3.0
+    assert threads._choice((2, 1), clock) == (1, 80)
+    threads._pace[1] = 2.0
+    taken = [threads._choice((2, 1), clock) for _ in range(crew.TRIED_AGAIN)]
     assert taken.count((1, 80)) == crew.TRIED_AGAIN - 1
     assert taken.count((2, 10)) == 1
 
@@ -171,14 +171,28 @@ def test_other_processes_run_in_threads_after_a_run_in_threads(method):
 
 @pytest.mark.slow
 def test_many_scenes_have_the_same_bits_in_any_number_of_threads():
-    """Dry, with mortar, in space, with a tie and a jack, on a support that moves, damped, and falling into a heap."""
-    scenes = [wall(0.05), wall(0.05, bond=MORTAR, points=3), facade(0.02), facade(0.02, tilt=([0, 1], [0, 0.3]))]
+    """Dry, with mortar, in space, with a tie and a jack, on a support that moves, and damped."""
+    scenes = [
+        wall(0.05),
+        wall(0.05, bond=MORTAR, points=3),
+        facade(0.02),
+        replace(facade(0.02), motion=None, tilt=([0.0, 1.0], [0.0, 0.3])),
+    ]
     scenes.append(replace(wall(0.05), effects=TIE_AND_JACK))
     moved = np.array([0.0, 1.0])
     scenes.append(replace(wall(0.05), supports={"ground": (moved, 0.05 * moved, 0.02 * moved)}))
     for case in scenes:
         same(case, (2, 4))
     same(wall(0.05), (2, 4), mass_damping=5.0, local_damping=0.2)
-    heap = replace(wall(0.6, friction=0.3), motion=mr.GroundMotion([15.0, 15.0], 1.0))
-    fallen = same(heap, (2, 4), output_step=0.01)
-    assert fallen.fallen
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:ground motion peaks")
+def test_blocks_that_fall_have_the_same_bits_in_any_number_of_threads(monkeypatch):
+    """Lines that are found have several spans, each with an account of its own."""
+    monkeypatch.setattr(team, "LINES_TOGETHER", 16)
+    monkeypatch.setattr(team, "BODIES_TOGETHER", 16)
+    pushed = mr.GroundMotion([40.0, 40.0, -40.0, -40.0], 0.3)
+    answer = same(replace(wall(0.8, friction=0.2), motion=pushed), (2, 4), output_step=0.01)
+    assert answer.fallen
+    assert answer.ledger.dashpots["encounters"][-1] > 0
