@@ -84,9 +84,9 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
         t = np.sort(np.append(motion.times, np.linspace(0.0, motion.duration, 400)))  # also where it has few samples
         histories = (motion.times, motion.accel), (t, motion.velocity(t)), (t, motion.displacement(t))
         for ax, (t, history), unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
-            said = f"{motion.name[:90]}: " if ax is axes[0] else f"ends at {history[-1]:.2g}, "
+            said = f"{motion.name[:90]}: " if ax is axes[0] else f"end {history[-1]:.2g}, "
             peak = float(np.abs(history).max())
-            label = f"{said}peak {peak:.3g}{f' {unit}' if ax is axes[0] else ''}"
+            label = f"{said}peak {peak:.3g} {unit}"
             ax.plot(t, history, color=PALETTE[i % len(PALETTE)], linewidth=0.8, label=label)
     for ax, label in zip(axes, ("acceleration [m/s²]", "velocity [m/s]", "displacement [m]"), strict=True):
         ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)

@@ -99,7 +99,7 @@ def wall(number: int) -> mr.Masonry:
 
 def drawn(found: dict[int, mr.Collapse]) -> Figure:
     """How each wall fails without dilatancy."""
-    figure, axes = several(len(found), min(3, len(found)), (2.46, 3.0))
+    figure, axes = several(len(found), min(3, len(found)), (2.46, 3.5))
     used = list(axes.flat[: len(found)])
     for ax, (number, collapse) in zip(used, found.items(), strict=True):
         plotting.mechanism(ax, collapse)

@@ -124,7 +124,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         ax = figure.add_subplot(places[i], projection=None if angle is None else "3d")
         plotting.mechanism(ax, found, share=0.06, forces=False)
         if angle is None:
-            ax.add_artist(AnchoredSizeBar(ax.transData, 1.0, "1 m", "center right", frameon=False, sep=4))
+            below = {"bbox_to_anchor": (0.5, 0.0), "bbox_transform": ax.transAxes}
+            ax.add_artist(AnchoredSizeBar(ax.transData, 1.0, "1 m", "upper center", frameon=False, sep=4, **below))
         ax.axis("off")
         ax.set_title(f"{name}\n$\\alpha_0$ = {alpha_0:.3f}", fontsize=10)
     plotting.save(figure, out / "mechanisms.png")

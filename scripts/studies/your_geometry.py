@@ -68,7 +68,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         except ValueError as error:
             lines.append(f"convex={convex}: {error}")
     shown = {"as it is": as_it_is, 'unit="cm", up="y"': turned, 'convex="parts"': found}
-    figure = Figure(figsize=(7.4, 2.6), layout="constrained")
+    figure = Figure(figsize=(7.4, 2.2), layout="constrained")
     for i, (title, each) in enumerate(shown.items(), 1):
         ax = figure.add_subplot(1, 3, i, projection="3d")
         ends = np.concatenate([each.blocks[k].corners for k in each.free])
