@@ -222,9 +222,15 @@ EXAMPLE = re.compile(r'<img alt="" (?=src="[^"]*sphx_glr_(?:\d+_)?(\w+)_thumb)')
 """The small picture of an example, whose file is named after it."""
 
 
+SHOWN = PUBLIC | {name: f"mjrock.blocks.{name}" for name in mjrock.blocks.__all__}
+BACK = re.compile(r"(?<=#)mjrock(?:\.[a-z_]+)*\.(\w+)(?=\">\[docs\])")
+"""From the source of a function or class back to its text. Sphinx takes one module for all names of a file."""
+
+
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Load pictures below the first as they come into sight, and say what a link to a page shows."""
     body = EXAMPLE.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', context.get("body") or "")
+    body = BACK.sub(lambda found: SHOWN.get(found[1], found[0]), body)
     first, *others = re.split(r"(?=<img )", body)
     above, others = "".join([first, *others[:1]]), others[1:]
     context["body"] = above + "".join(part.replace("<img ", '<img loading="lazy" ', 1) for part in others)

@@ -162,7 +162,7 @@ def section(found: re.Match[str]) -> str:
     text = text.replace("](docs/", "](").replace("](VERSIONING.md)", "](versions.md)")
     text = text.replace("](mjrock/examples/", "](../mjrock/examples/")
     text = re.sub(r"\[([^\]]*)\]\((CITATION\.cff)\)", r'<a href="\2">\1</a>', text)
-    text = re.sub(r"\[!\[\]\(figures/([\w./]+)\)\]", lambda found: f"[![]({thumbnail(found[1])})]", text)
+    text = re.sub(r"(\| \[!\[[^\]]*\]\()figures/([\w./]+)", lambda found: found[1] + thumbnail(found[2]), text)
     return LOOPED.sub(player, text)
 
 

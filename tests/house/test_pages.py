@@ -137,7 +137,7 @@ def test_what_the_readme_names_is_what_a_script_prints():
     assert (fallen, first) == (found[1], f"{float(found[2]):.1f}")
     theory, found = re.search(r"^ +1 \|.*?\| +(\S+) +(\S+) *\|", readme, re.MULTILINE).groups()
     told = " ".join(readme.split())
-    assert f"{found} of the angular velocity is left of the first impact below, {theory} by theory" in told
+    assert f"{found} of the angular velocity is left after the first impact below, {theory} by theory" in told
     page = (DOCS / "compared_with_tests.md").read_text(encoding="utf-8")
     walls = re.findall(r"^\| WS\.\d+\D.*?\| [\d.]+ \| ([\d.]+) / ([\d.]+) \(", page, re.MULTILINE)
     assert len(walls) == 4
