@@ -186,17 +186,19 @@ def drawn(pushes: Mapping[str, Array], turned: Array | None) -> Figure:
     wall.axis("off")
     for name, found in pushes.items():
         test = measured(name)
-        ax.plot(*test.T, color="0.65", linewidth=3)
-        ax.plot(*found.T, **look)
+        first = name == next(iter(pushes))
+        ax.plot(*test.T, color="0.65", linewidth=3, label="test, Vasconcelos (2005)" if first else None)
+        ax.plot(*found.T, **look | {"label": plotting.STYLES["explicit"]["label"] if first else None})
         sigma = 1e-3 * LOADS[name] / (LENGTH * THICK)
-        beside(ax, (float(found[-1, 0]), float(found[-1, 1])), rf"$\sigma$ = {sigma:.2f} MPa", "0.2", (8, 0))
-    ax.set(xlim=(0, 56), ylim=(0, 95))
+        beside(ax, (float(found[-1, 0]), float(found[-1, 1])), rf"$\sigma$ = {sigma:.2f} MPa", "0.2", (-2, 8))
+    ax.set(xlim=(0, 45), ylim=(0, 115))
+    ax.legend(frameon=False, loc="upper left", fontsize=SMALL)
     if turned is not None:
         below.plot(*measured("WS1100_cyclic_envelope").T, "o", color="0.4", markersize=4, label="test, envelope")
         below.plot(*turned.T, **look | {"label": plotting.STYLES["explicit"]["label"], "linewidth": 0.9})
         below.legend(frameon=False, loc="upper left", fontsize=SMALL)
     below.set_title(rf"to and fro, $\sigma$ = {1e-3 * LOADS['WS100'] / (LENGTH * THICK):.2f} MPa", fontsize=10)
-    ax.set_title("pushed to 40 mm: tests grey, explicit steps blue", fontsize=10)
+    ax.set_title("pushed to 40 mm", fontsize=10)
     for each in (ax, below):
         each.set(xlabel="displacement at 1.325 m [mm]", ylabel="horizontal force $V$ [kN]")
     return figure
