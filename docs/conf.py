@@ -228,13 +228,14 @@ BACK = re.compile(r"(?<=#)mjrock(?!\.plotting\.)(?:\.[a-z_]+)*\.(\w+)(?=\">\[doc
 
 
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
-    """Load pictures below the first as they come into sight, and say what a link to a page shows."""
+    """Load pictures of the gallery below the first as they come into sight, and say what a link to a page shows."""
     body = EXAMPLE.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', context.get("body") or "")
     body = re.sub(r"<td>(?=<p>[^\s<]{1,12}</p>)", '<td class="short">', body)  # 5.8e-04 is not broken at its hyphen
     body = BACK.sub(lambda found: SHOWN.get(found[1], found[0]), body)
     first, *others = re.split(r"(?=<img )", body)
     above, others = "".join([first, *others[:1]]), others[1:]
-    context["body"] = above + "".join(part.replace("<img ", '<img loading="lazy" ', 1) for part in others)
+    late = '<img loading="lazy" ' if page == "gallery" else "<img "  # elsewhere headings would move
+    context["body"] = above + "".join(part.replace("<img ", late, 1) for part in others)
     title = re.sub(r"<[^>]*>", "", context.get("title", project))
     said = {"og:title": title, "og:site_name": project, "og:image": f"{app.config.html_baseurl}card.png"}
     said |= {"og:description": SENTENCE, "twitter:card": "summary_large_image"}
