@@ -119,7 +119,7 @@ def drawn(study: Study, answers: Sequence[mr.Response]) -> Figure:
     figure = Figure(figsize=(7.4, 4.2), layout="constrained")
     masonry = answers[0].of_masonry.masonry
     for ax, peak, one in zip(figure.subplots(2, 1), study.peaks, answers, strict=True):
-        limits = [(-0.25 * study.length, 2.2 * study.length), (-0.3, 1.05 * study.height)]
+        limits = [(-0.75 * study.length, 2.2 * study.length), (-0.3, 1.05 * study.height)]
         plotting.blocks(ax, masonry, one.pose[-1], joints=False, limits=limits)
         for note in list(ax.texts):
             note.remove()  # how many lie outside, which the caption says
