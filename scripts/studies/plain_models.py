@@ -23,6 +23,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import Look
 from scripts.shared import cli, paper
 
 STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
@@ -171,20 +172,21 @@ def picture(
     """Errors of |e| at the first rebound against omega h."""
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     ax = figure.subplots()
-    for i, (name, solver) in enumerate((("plain model", "plain MuJoCo"), ("contact points", "MuJoCo"))):
+    for i, (name, solver) in enumerate((("contacts found by MuJoCo", "plain MuJoCo"), ("contact points", "MuJoCo"))):
         colour = plotting.STYLES[solver]["color"]
         at = np.array([each[0] for each in errors])
-        ax.loglog(
-            at, np.abs([each[1 + i] for each in errors]), ("s--", "o-")[i], color=colour, label=f"{name}, Figure 3"
-        )
-        for resolved, both in walls.items():
-            near = resolved * np.where(i, 1.04, 0.96) * np.ones(len(both[i]))
-            said = f"{name}, walls of Table 1" if resolved == RESOLVED[0] else None
-            ax.loglog(near, np.maximum(np.abs(both[i]), 1e-6), ".", color=colour, alpha=0.5, label=said)
+        off = np.abs([each[1 + i] for each in errors])
+        ax.loglog(at, off, ("s--", "o-")[i], color=colour, label=f"{name}: one wall")
+        near = np.array(list(walls)) * (0.93, 1.07)[i]
+        low, middle, high = np.transpose([np.quantile(np.abs(both[i]), (0.1, 0.5, 0.9)) for both in walls.values()])
+        look: Look = {"fmt": "_", "capsize": 4, "elinewidth": 1.5, "markersize": 9}
+        label = f"{name}: {len(next(iter(walls.values()))[i])} walls, median and 80 %"
+        ax.errorbar(near, middle, (middle - low, high - middle), color=colour, label=label, **look)
     ax.axhline(0.01, color="0.7", linewidth=0.8)
     ax.text(0.99, 0.011, "1 %", transform=ax.get_yaxis_transform(), ha="right", va="bottom", fontsize=9, color="0.3")
-    ax.set(xlabel=r"$\omega h$ [-]", ylabel="error of |e| at the first rebound [-]", ylim=(1e-5, 1))
-    ax.legend(frameon=False, fontsize=9)
+    ax.set(xlabel=r"time step times the highest frequency of the closed contacts, $\omega h$ [-]")
+    ax.set(ylabel=r"error of $|e|$ at the first rebound [-]", ylim=(3e-4, 2))
+    ax.legend(frameon=False, fontsize=9, loc="upper left")
     return figure
 
 
