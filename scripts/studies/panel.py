@@ -26,7 +26,7 @@ from mjrock import plotting
 from mjrock.plotting.style import BLACK
 from mjrock.problem.masonry.limit.statics import falling
 from scripts.shared import cli
-from scripts.shared.labels import SMALL
+from scripts.shared.labels import SMALL, beside
 
 LENGTH, HEIGHT, UNIT = 1.5, 1.75, (0.5, 0.25)
 FRICTIONS = (0.3, 0.45, 0.6, 0.75)
@@ -130,6 +130,9 @@ def drawn(measured: dict[float, float], answers: dict[float, mr.MasonryResponse]
         ax.text(*place, said, color="0.3", fontsize=SMALL, va="bottom", ha="right" if place[0] > 0.5 else "left")
     look = {"color": plotting.STYLES["MuJoCo"]["color"], "marker": "o", "linestyle": "", "markersize": 7}
     ax.plot(list(measured), list(measured.values()), label="MuJoCo", **look)
+    last = max(measured)
+    beside(ax, (last, measured[last]), f"{measured[last]:.3f}", look["color"], (0, -9), ha="center")
+    beside(ax, (last, limit(last)), f"{limit(last):.3f}", BLACK, (0, 9), ha="center")
     ax.set_ylim(0.15, 0.95)
     ax.set_xlabel(r"coefficient of friction $\mu$ [-]")
     ax.set_ylabel("multiple of $g$ at failure [-]")
