@@ -80,11 +80,11 @@ def test_its_lines_for_mjx_and_warp_keep_the_restitution(engine):
 
 
 def test_its_figures():
-    assert "0.372\ninstead of 0.451 at xi = 0.3" in PAGE
+    assert "0.372\ninstead of 0.451 at $\\xi$ = 0.3" in PAGE
     assert rebound_restitution(0.3) == pytest.approx(0.451, abs=5e-4)
     assert math.exp(-math.pi * 0.3 / math.sqrt(0.91)) == pytest.approx(0.372, abs=5e-4)
     assert rebound_damping(1e-3) == pytest.approx(16, abs=0.5)
-    assert "0.58 e xi omega h" in PAGE
+    assert "0.58\\, e \\xi \\omega h" in PAGE
     assert 2 / math.sqrt(12) == pytest.approx(0.58, abs=5e-3)
 
 
@@ -185,8 +185,7 @@ def test_its_table_is_what_the_script_prints():
         <geom name="ball" size=".1" mass="2"/></body></worldbody></mujoco>"""
     )
     (found,) = mr.inspect_contacts(model)
-    row = (found.k, found.k_loaded, found.c, found.mass, found.inertia, found.impedance, found.points, found.xi)
-    figures = (*row, found.restitution, found.restitution_at(1.0))
-    (line,) = re.findall(r"^ +floor  ball  geoms (.*)$", PAGE, re.MULTILINE)
+    figures = found.k, found.c, found.mass, found.points, found.restitution
+    (line,) = re.findall(r"^ +floor  ball  (.*)$", PAGE, re.MULTILINE)
     printed = [float(word) for word in line.split()[:-1]]
     assert printed == pytest.approx(figures, rel=4e-3)

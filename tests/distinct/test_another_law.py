@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from by_hand import system
+from by_hand import alone, system
 
 from mjrock.distinct import loop
 from mjrock.distinct.contacts import touches
@@ -60,7 +60,7 @@ def landing(d, h, c=0.0, fall=-0.5, k_s=math.inf):
     account, last = Books.empty(whole, 1), round(0.06 / h)
     samples = Samples.room(last + 1, whole, account, ledger=True)
     clock = Clock(0, h, 1, 0, last + 1, last, math.inf, 0.0, (0.0,) * d)
-    assert loop.advance.py_func(whole, account, samples, clock) == (last + 1, last + 1, False)
+    assert loop.advance.py_func(whole, account, samples, clock, alone(whole)) == (last + 1, last + 1, False)
     assert whole.lines["depth"].max() == 0.0
     return samples.taken(slice(-1)), whole.bodies["velocity"][0]
 

@@ -170,7 +170,8 @@ def covered(figure, ax, colour):
 
 
 def test_wide_ground_leaves_a_block_that_lies_on_it_large():
-    """The picture follows the bar as it stands and as it lies, and not the ground to its ends."""
+    """The picture follows the bar as it stands and as it lies, and not the ground to its ends. The still one reaches
+    from where the bar stood to where it lies."""
     run = lying(in_space=False)
     figure, update = animation.scene(Bodies.of(run).at(run.t[[0, -1]]), [], run.case)
     for frame in (0, 1):
@@ -178,7 +179,7 @@ def test_wide_ground_leaves_a_block_that_lies_on_it_large():
         assert covered(figure, figure.axes[0], STONE) > 0.03
     still = Figure(figsize=(4, 4))
     ax = plotting.blocks(still.subplots(), run)
-    assert covered(still, ax, STONE) > 0.06
+    assert covered(still, ax, STONE) > 0.05
 
 
 def test_wide_ground_in_space_leaves_a_block_that_lies_on_it_large():

@@ -139,7 +139,7 @@ CYCLE = np.sin(2 * np.pi * T / T[-1])
         (columns(T + 0.0005 * np.eye(50)[7], T), "g", "line [89]: uneven time steps, 0.0(10|09)5 s from 0.0[67]"),
         (columns(np.where(T < 0.25, T, 1.1 * T - 0.025), T), "g", "uneven time steps"),
         (columns(T[::-1], T), "g", "line 2: time does not increase, 0.49 s to 0.48 s"),
-        (columns([0, 0.01, 0.01], [0, 1, 2]), "g", "line 3: time does not increase, 0.01 s to 0.01 s"),
+        (columns([0, 0.01, 0.01], [0, 1, 2]), "g", "line 3: the time 0.01 s stands twice"),
         (columns([0, math.nan, 0.02], [0, 1, 2]), "g", "line 2: 'nan' is not a finite number"),
         (columns([0, 0.01, 0.02], [0, 1, math.inf]), "g", "line 3: 'inf' is not a finite number"),
         (columns([0, 10, 20], [0, 1, 2]), "g", "dt = 10 s is outside"),  # milliseconds

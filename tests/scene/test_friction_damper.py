@@ -231,7 +231,7 @@ def test_two_blocks_hold_each_other():
 def test_what_is_drawn_and_reported():
     case = held_case()
     texts = [text.get_text() for ax in mr.plotting.sketch(case).axes for text in ax.texts]
-    assert f"{NAME}: z = 3 m,\nk = 2 kN/mm, slips at 1.5 kN" in texts
+    assert "friction damper: z = 3 m,\nk = 2 kN/mm, slips at 1.5 kN" in texts
     asked = [text.get_text() for ax in mr.plotting.sketch(case, arguments=True).axes for text in ax.texts]
     assert "FrictionDamper(height, stiffness,\nslip_force, length)" in asked
 

@@ -114,9 +114,7 @@ def test_a_report_and_histories(tmp_path):
     ):
         assert said in text
     assert "block_1 at" in text
-    assert (
-        text.count("<img") == 5
-    )  # the masonry with the tie, and that of the runs; maxima, histories and ends of these
+    assert text.count("<img") == 4  # the masonry with the tie, as that of the runs is; maxima, histories and ends
     with pytest.raises(ValueError, match=r"responses\[0\] is of masonry, and the case of other masonry"):
         mr.report(dataclasses.replace(case, masonry=STOPS, effects=()), answers, tmp_path / "a.html")
     with pytest.raises(ValueError, match="leave e and contacts out"):
