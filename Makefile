@@ -8,12 +8,12 @@ OLDEST := .venv-oldest
 INSTALLED := out/installed
 CONTACTS := out/contacts
 
-.PHONY: demo docs test test-slow test-all test-processors test-oldest test-installed test-contacts mutants lint calibrate models figures robots clean stale
+.PHONY: demo docs test test-slow test-processors test-oldest test-installed test-contacts mutants lint calibrate models figures robots clean stale
 
 # Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
-test test-slow test-all test-processors test-oldest test-installed test-contacts mutants: export OPENBLAS_NUM_THREADS = 1
+test test-slow test-processors test-oldest test-installed test-contacts mutants: export OPENBLAS_NUM_THREADS = 1
 # Bytecode is stored: the processes that tests start then need not compile the package again, nor pytest rewrite its tests.
-test test-slow test-all test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
+test test-slow test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
 demo: $(READY)
 	$(BIN)/python -m mjrock demo --force --output out/demo
@@ -28,9 +28,6 @@ docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.
 
 test-slow: $(DOCS)
 	$(BIN)/pytest -n auto --dist worksteal -m slow
-
-test-all: $(DOCS) # both in one session, for .ci/run: modules are collected once, and no process waits at the end of the first
-	$(BIN)/pytest -n auto --dist worksteal -m 'slow or not slow'
 
 test-processors: $(TEST) # the everyday tests of the physics by the linear algebra of other processors; OTHERS=1 the few for .ci/run
 	$(BIN)/python tests/processors.py $(if $(OTHERS),--others)
