@@ -3,6 +3,7 @@
 import itertools
 import multiprocessing
 import os
+import signal
 import threading
 from dataclasses import replace
 
@@ -196,3 +197,16 @@ def test_blocks_that_fall_have_the_same_bits_in_any_number_of_threads(monkeypatc
     answer = same(replace(wall(0.8, friction=0.2), motion=pushed), (2, 4), output_step=0.01)
     assert answer.fallen
     assert answer.ledger.dashpots["encounters"][-1] > 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends Ctrl-C to the whole console")
+def test_ctrl_c_ends_a_run_in_several_threads_and_the_next_one_has_the_same_bits():
+    """The run of a minute ends within one batch of steps, and no thread is left."""
+    before = mr.solve_explicit(wall(0.004), threads=2)
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        mr.solve_explicit(wall(60.0), threads=2)
+    timer.join()
+    assert [one.name for one in threading.enumerate() if one.name.startswith("mjrock")] == []
+    np.testing.assert_array_equal(mr.solve_explicit(wall(0.004), threads=2).pose, before.pose)
