@@ -333,7 +333,9 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     pytest.importorskip("sphinx_gallery", reason="the extra docs is not installed; make docs installs it")
     source = tmp_path / "docs"
     shutil.copytree(DOCS, source, ignore=shutil.ignore_patterns("build", "auto_examples"))
-    shutil.copy(ROOT / "README.md", tmp_path)  # the home page has its text
+    for name in ("README.md", "VERSIONING.md", "CITATION.cff"):  # pages of the site have their text
+        shutil.copy(ROOT / name, tmp_path)
+    shutil.copytree(ROOT / "scripts", tmp_path / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
     command = [sys.executable, "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q"]
     command += ["-D", r"sphinx_gallery_conf.filename_pattern=/(0|1[0-8]|20)"]  # the church has a test of its own above
     command += ["-d", str(tmp_path / "doctrees"), str(source), str(tmp_path / "html")]
