@@ -106,11 +106,12 @@ def figure_of(rows: Sequence[Sequence[object]], numbers: Sequence[int]) -> Figur
         found = np.array([row[2:] for row in rows if row[0] == kind], dtype=float)
         for i, threads in enumerate(numbers):
             label = "1 thread" if threads == 1 else f"{threads} threads"
-            ax.loglog(found[:, 0], found[:, 0] * found[:, 2 + i] * 1e-3, "o-", ms=3, lw=1.2, label=label)
+            colour = plotting.PALETTE[i % len(plotting.PALETTE)]
+            ax.loglog(found[:, 0], found[:, 0] * found[:, 2 + i] * 1e-3, "o-", color=colour, ms=3, lw=1.2, label=label)
         ax.set_title(kind, fontsize=9)
-        ax.set_xlabel("contact lines")
+        ax.set_xlabel("contact lines [-]")
         ax.grid(alpha=0.3)
-    axes[0].set_ylabel("time of a step [us]")
+    axes[0].set_ylabel("time of a step [µs]")
     axes[0].legend(frameon=False, fontsize=8)
     return figure
 
