@@ -21,8 +21,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from filelock import FileLock
+
 ROOT = Path(__file__).resolve().parents[2]
-NAME = "made.toml"
+NAME, LOCK = "made.toml", "made.lock"
 HEAD = "# Written by scripts, see scripts/shared/figure_record.py. `make figures` makes what is stale.\n"
 PLAIN = {"scripts/shared/cli.py", "scripts/shared/figure_record.py"}
 """Modules by which no figure looks different: arguments, tables and this record."""
@@ -195,16 +197,22 @@ def command_of(script: Path, arguments: Sequence[str]) -> str:
 
 @contextlib.contextmanager
 def recorded(script: Path, arguments: Sequence[str]) -> Iterator[None]:
-    """Record the files that a script writes, where `--out` is a folder with a record, and print what has changed."""
+    """Record the files that a script writes, where `--out` is a folder with a record, and print what has changed. One
+    script at a time writes into such a folder: another one waits."""
     if (folder := recorded_folder(arguments)) is None:
         yield
         return
-    before, texts = files_of(folder), tables_of(folder)
-    yield
+    with FileLock(folder / LOCK):
+        before, texts = files_of(folder), tables_of(folder)
+        yield
+        record(folder, command_of(script, arguments), script, before, texts)
+
+
+def record(folder: Path, command: str, script: Path, before: Mapping[str, int], texts: Mapping[str, str]) -> None:
+    """Record the files of a folder that are not as before as those of a command, and print which numbers have moved."""
     from mjrock import __version__
 
     files = [name for name, when in files_of(folder).items() if before.get(name) != when]
-    command = command_of(script, arguments)
     every = {
         key: one._replace(files=tuple(name for name in one.files if name not in files))
         for key, one in read(folder).items()

@@ -1,6 +1,7 @@
 """Each figure of the pages is made by a script as it is now, and its record says which."""
 
 import re
+import threading
 import tomllib
 
 import pytest
@@ -40,6 +41,20 @@ def test_a_script_records_what_it_writes(repository):
     assert (row["command"], row["files"]) == ("scripts/studies/curve.py", ["curve.txt"])
     assert figure_record.read(folder)["scripts/studies/curve.py"].files == ("curve.txt",)
     assert figure_record.stale(folder) == {}
+
+
+def test_a_second_script_waits_until_the_first_has_written(repository):
+    """Else the files of the first would be recorded as those of the second."""
+    folder = repository / "docs" / "figures"
+    second = threading.Thread(target=made, args=(repository,))
+    with figure_record.recorded(repository / "scripts" / "studies" / "common.py", ["--out", str(folder)]):
+        second.start()
+        second.join(0.2)
+        assert second.is_alive()
+        cli.write_text(folder / "common.txt", "first")
+    second.join()
+    found = {command: one.files for command, one in figure_record.read(folder).items()}
+    assert found == {"scripts/studies/common.py": ("common.txt",), "scripts/studies/curve.py": ("curve.txt",)}
 
 
 CHANGES = {"print": "curve.py", "return 2": "common.py", "SIZE = 1": "common.py"}
