@@ -170,7 +170,6 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     elevation(right, case, left.get_ylim())
     notes = sorted(_effects(case, arguments=arguments), key=lambda note: note[0][1])
     _arrange(figure, title, _sizes(case), notes)
-    left.set_title("section; outwards is to the right", fontsize=9, loc="left")
     return figure
 
 
@@ -201,6 +200,8 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
     lines = len(said.splitlines())
     below, room = EDGE + LINE * lines + 0.5 * LINE * bool(lines), LINE * sum(2 + text.count("\n") for _, text in notes)
     room = max(scale * tall, room)
+    above = 72 * (room - scale * tall)
+    left.set_title("section; outwards is to the right", fontsize=9, loc="left", pad=6 + above)
     figure.set_size_inches(width, 1.0)
     height = below + room + 0.3 + titled(figure, title)
     figure.set_size_inches(width, height)
