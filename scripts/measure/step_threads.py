@@ -101,7 +101,7 @@ def measured(kind: str, blocks: int, numbers: Sequence[int], rounds: int) -> lis
 def figure_of(rows: Sequence[Sequence[object]], numbers: Sequence[int]) -> Figure:
     """Time of a step against the number of lines, a curve for each number of threads."""
     figure = Figure(figsize=(7.4, 3.2), layout="constrained")
-    axes = figure.subplots(1, len(KINDS), sharey=True)
+    axes = figure.subplots(1, len(KINDS), sharex=True, sharey=True)
     for ax, kind in zip(axes, KINDS, strict=True):
         found = np.array([row[2:] for row in rows if row[0] == kind], dtype=float)
         for i, threads in enumerate(numbers):

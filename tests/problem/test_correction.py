@@ -90,7 +90,7 @@ def test_the_picture_of_a_record_says_where_it_ends():
         t, drawn = ax.lines[0].get_data()
         np.testing.assert_allclose(drawn[np.searchsorted(t, MADE.times)], expected, atol=1e-12)
     (text, _) = displacement.get_legend().get_texts()
-    assert text.get_text().startswith(f"ends at {MADE.residual_displacement:.2g}, peak ")
+    assert text.get_text().startswith(f"end {MADE.residual_displacement:.2g}, peak ")
     assert len(mr.plotting.record(MADE).axes[0].get_legend().get_texts()) == 1
     with pytest.raises(TypeError, match="motions"):
         mr.plotting.record([3])
