@@ -29,6 +29,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from .machine import cores
 from .notice import notice
 
 Result = TypeVar("Result")
@@ -119,16 +120,12 @@ def as_plain_python(function: Callable[..., Result], arguments: tuple[object, ..
 
 def _hand_over(run: Run, function: Callable[..., object]) -> None:
     """Let another process make a run, for one of its loops, if there may be such a process."""
-    may_start = _here.started < MOST and _cores() > 1 and not hasattr(sys, "frozen")  # which would start the program
+    may_start = _here.started < MOST and cores() > 1 and not hasattr(sys, "frozen")  # which would start the program
     if _here.compiler is None and may_start:
         _here.started += 1
         _here.compiler = Compiler()
     if _here.compiler is not None:
         _here.compiler.take(run, function)
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def may_outlive() -> bool:

@@ -258,18 +258,28 @@ class ContactSearch:
             for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
                 joints[name][left_joints] = 0.0
             joints["margin"][left_joints] = np.inf  # no step takes such a line again
-        state.pair, state.slack = np.append(state.pair[kept], number), np.append(state.slack[kept], new.slack)
-        state.share = np.append(state.share[kept], share)
-        state.found = np.append(state.found[kept], self._searches_of(number))
-        pressing = found.gap < 0
-        for block in (found.face[pressing], found.other[pressing]):
-            np.minimum.at(state.least_share, block, share[pressing])
+        self._keep(kept, found, number, new.slack, share)
         lines = joined(joints, chosen(others, kept), np.asarray(new.rows))
         laws = tuple(each.with_found(count, kept, added) for each, added in own)
         system = system._replace(lines=lines, laws=laws).with_ways()
         after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
         self._book(books, before, after, 0.5 * h if state.since > 0 else 0.0)
         return system
+
+    def _keep(self, kept: Flags, found: Found, number: Integers, slack: Array, share: Array) -> None:
+        """Keep which lines there are now, and what they have been softened to.
+
+        Args:
+            kept: found lines that stay, shape (lines,).
+            found, number: places of the new lines, and numbers of their pairs.
+            slack, share: overlap of the new lines without force [m], and their stiffness over that of their law [-].
+        """
+        state, pressing = self.state, found.gap < 0
+        state.pair, state.slack = np.append(state.pair[kept], number), np.append(state.slack[kept], slack)
+        state.share = np.append(state.share[kept], share)
+        state.found = np.append(state.found[kept], self._searches_of(number))
+        for block in (found.face[pressing], found.other[pressing]):
+            np.minimum.at(state.least_share, block, share[pressing])
 
     def _book(self, books: Books, before: Account, after: Account, half: float) -> None:
         """Book what a search changes, whose forces change half a step before the pose [s]."""
