@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import background_compilation, compiled
+from mjrock import background_compilation, compiled, machine
 
 PACKAGE = Path(mr.__file__).parent
 pytest.importorskip("numba")
@@ -153,7 +153,7 @@ def test_the_second_start_takes_compiled_loops(fresh):
     counted = "print(sum(rocking_loop.stats.cache_hits.values()) if rocking_loop._loaded else 0)"
     first = started(fresh, THEORY + counted, at_home=True)
     told, said = first.communicate("")
-    if background_compilation._cores() == 1:
+    if machine.cores() == 1:
         pytest.skip("one core: nothing compiles behind a run")
     assert told.split()[-1] == "0"
     assert ended(said.split("process ")[1].split()[0])
