@@ -14,6 +14,7 @@ from ..bars import Bar
 from ..command_line import Answer, parser
 from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
+from ..machine import cores
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.ground.motion import GroundMotion
@@ -66,7 +67,7 @@ def carry_out(number: int) -> None:
 
 
 def answer(argv: Sequence[str]) -> Answer:
-    """Make all `RUNS`, in as many processes as there are cores.
+    """Make all `RUNS`, in as many processes as this one has cores.
 
     Raises:
         OSError: if no folder can be written.
@@ -81,7 +82,7 @@ def answer(argv: Sequence[str]) -> Answer:
     stored = folder().parent
     os.environ["MJROCK_INTERPRET"], begun = "0", perf_counter()
     with (
-        ProcessPoolExecutor(min(os.cpu_count() or 1, len(RUNS)), get_context("spawn")) as pool,
+        ProcessPoolExecutor(min(cores(), len(RUNS)), get_context("spawn")) as pool,
         Bar("compiling", "runs", len(RUNS)) as bar,
     ):
         for _ in pool.map(carry_out, range(len(RUNS))):

@@ -9,6 +9,7 @@ import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
+from importlib import import_module
 from multiprocessing import current_process
 from pathlib import Path
 
@@ -96,6 +97,16 @@ def test_the_same_table_whoever_does_it(tmp_path):
         assert done_once(marks, 30)
     assert tables[0] == tables[1] == tables[2]
     assert len(tables[0].splitlines()) == 31
+
+
+def test_as_many_workers_as_cores_that_the_process_may_use(tmp_path, monkeypatch):
+    """One core of eight: the tasks run in this process."""
+    monkeypatch.setattr(os, "cpu_count", lambda: 8)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0}, raising=False)
+    monkeypatch.setattr(import_module("mjrock.study.campaign.campaign"), "Workers", None)
+    path = mr.campaign(squares(tmp_path, 2), tmp_path / "c.sqlite")
+    with mr.Store(path) as store:
+        assert [row["status"] for row in store.rows()] == ["done", "done"]
 
 
 def test_it_goes_on_when_all_that_was_in_flight_is_done(tmp_path):

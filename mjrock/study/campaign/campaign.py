@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import signal
 import warnings
 from collections import deque
@@ -19,6 +18,7 @@ from typing import TypedDict, Unpack, cast
 
 from pebble import ProcessExpired
 
+from ...machine import cores
 from ...notice import collect_warnings
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
 from .pool import CHUNK_SECONDS, QUIT, Workers
@@ -76,9 +76,9 @@ def campaign(
         store: the SQLite file.
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
             None stands for processes of this machine, which are replaced if they die.
-        workers: how many processes, 1 to 10000, one for each processor by default. They import the script that calls
-            the campaign, which needs `if __name__ == "__main__":`. With workers=1 and no time limit tasks run in this
-            process, which a task that ends its process then ends.
+        workers: how many processes, 1 to 10000; None takes one for each core that this process may use. They import the
+            script that calls the campaign, which needs `if __name__ == "__main__":`. With workers=1 and no time limit
+            tasks run in this process, which a task that ends its process then ends.
         histories: a folder, made where there is none, for the time history of each case, `<key>.npz`.
         retry: whether tasks that have failed before are run again.
         time_limit: how long a case may take [s]; one that takes longer is ended and becomes a failed row that says so.
@@ -98,7 +98,7 @@ def campaign(
         KeyboardInterrupt: at Ctrl-C, once the worker processes have been ended; it says how many rows are kept.
     """
     path, tasks = require_path("store", store), required_tasks(tasks)
-    count = (os.cpu_count() or 1) if workers is None else require_whole("workers", workers, 1, MOST_WORKERS)
+    count = cores() if workers is None else require_whole("workers", workers, 1, MOST_WORKERS)
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise TypeError(f"executor = {shown(executor)} is not an executor of concurrent.futures")
     limit = None if time_limit is None else _required_limit(time_limit, executor)
