@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contacts.files import aligned
 from ...notebook import NotebookPicture
-from ...quantities import OneOf, is_iterable, listed, ratio_text, require_one_of, shown
+from ...quantities import OneOf, brief, is_iterable, listed, ratio_text, require_one_of, shown
 from .code import USUAL_CODE
 from .demand import Demand, required_demands
 from .dynamic_check import DynamicCheck
@@ -231,7 +231,7 @@ def _tried(build: Callable[[Any], Any], value: Any, demand: Any, options: Mappin
     try:
         built = build(value)
         named = built if isinstance(built, Mapping) else {"": built}
-        checks = {name: _checked(one, demand, options) for name, one in named.items()}
+        checks = {name: _checked(value, one, demand, options) for name, one in named.items()}
     except ValueError as error:
         return Trial(value, label_of(value), {}, str(error))
     if not checks:
@@ -239,11 +239,21 @@ def _tried(build: Callable[[Any], Any], value: Any, demand: Any, options: Mappin
     return Trial(value, label_of(value), checks, built=built)
 
 
-def _checked(built: Any, demand: Any, options: Mapping[str, Any]) -> Check:
-    """The check of what was built, or that which was built. A limit curve has a mechanism and what it bears."""
-    if isinstance(built, MechanismCheck | DynamicCheck | LoadCheck):
+def _checked(value: Any, built: Any, demand: Any, options: Mapping[str, Any]) -> Check:
+    """The check of what was built with a value, or the check that was built. A limit curve is a mechanism, and bears
+    loads."""
+    if isinstance(built, Check):
         return built
+    name = f"build({label_of(value)})"
+    if built is None:
+        raise TypeError(f"{name} is None; build has to return a mechanism, what bears a load, or a check")
     if isinstance(demand, int | float) or (demand is None and isinstance(built, Borne)):
+        if not isinstance(built, Borne):
+            raise TypeError(
+                f"demand = {demand:g} is a factor on loads, an acceleration over g or a force, and {name} = "
+                f"{brief(built)} bears none yet: let build return its collapse_multiplier, limit_curve, push or "
+                "pushover, or give the spectrum of the site as demand"
+            )
         return load_check(built, demand, **options)
     if demand is None:
         raise TypeError("demand is None, and build makes no check; give a demand")
