@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from matplotlib.axes import Axes
@@ -47,8 +48,12 @@ PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
 
 
 def png_of(shown: object) -> bytes | None:
-    """The picture of a problem or an answer as a PNG, below the line that it prints as; None where it has none."""
-    draw, said = next(draw for kind, draw in PICTURES.items() if isinstance(shown, kind)), repr(shown).strip("<>")
+    """The picture of a problem or an answer as a PNG; None where it has none.
+
+    Its title is the line that it prints as, without that of its wall or masonry, which the picture shows.
+    """
+    said = re.sub(r" of <[^<>]*>", "", repr(shown)).strip("<>")
+    draw = next(draw for kind, draw in PICTURES.items() if isinstance(shown, kind))
     drawn = draw(shown, said)
     if not isinstance(drawn, Axes):
         return None if drawn is None else png(drawn)

@@ -87,7 +87,7 @@ class Facade:
 
 ALONE = {
     "tie that yields": Facade(effects=(TIE,)),
-    "tie that does not": Facade(effects=(mr.Tie(TIE.height, TIE.stiffness, TIE.slack),)),
+    "tie that does not yield": Facade(effects=(mr.Tie(TIE.height, TIE.stiffness, TIE.slack),)),
     "thrust": Facade(effects=(mr.Thrust(height=8.0, force=6e3),)),
     "load": Facade(effects=(mr.Load(force=60e3, height=9.0, offset=-0.1),)),
     "added mass": Facade(effects=(mr.AddedMass(mass=3e3, height=9.0, offset=0.2),)),

@@ -84,7 +84,7 @@ def sensitivity(ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> 
     ax.axhline(1, color="0.6", linewidth=0.6)
     ax.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])
     ax.yaxis.set_minor_locator(NullLocator())
-    ax.set(xlabel="from the least (0) to the largest (1) of its range", ylabel=r"$\xi$ over its mean [-]")
+    ax.set(xlabel="parameter, from least (0) to largest (1)", ylabel=r"$\xi$ over its mean [-]")
     ax.set_ylim(min(TICKS) / 1.3, max(TICKS) * 1.3)
     ax.legend(frameon=False, fontsize=SMALL)
     return ax

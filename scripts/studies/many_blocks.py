@@ -57,7 +57,13 @@ LOOKS: dict[str, Look] = {
     "wall, k_s = k_n, one c/k": {"color": ORANGE, "marker": "^", "linestyle": ":"},
     "arch, rigid": {"color": GREEN, "marker": "D"},
 }
-NAMES = {scene: scene.replace("k_s = k_n", "$k_s = k_n$").replace("c/k", "$c/k$") for scene in LOOKS}
+NAMES = {
+    "wall, rigid": "wall, joints stick rigidly",
+    "wall, k_s = k_n": "wall, $k_s = k_n$",
+    "wall, k_s = k_n, one c/k": "wall, $k_s = k_n$, one damping for all sizes",
+    "arch, rigid": "arch, joints stick rigidly",
+}
+"""Labels of the scenes."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +130,7 @@ def drawn(points: Sequence[Point]) -> Figure:
         ax.xaxis.set_minor_formatter(NullFormatter())
         ax.set_xlabel("blocks that are free [-]")
         ax.set_title(f"CPU time of\n{title}", fontsize=9)
-    below_figure(figure, panels[0], ncols=4, fontsize=8)
+    below_figure(figure, panels[0], ncols=2, fontsize=8)
     return figure
 
 

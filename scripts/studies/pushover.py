@@ -116,12 +116,13 @@ def bases(ax: Axes, lines: int) -> Axes:
     here = at < curves["bed"].end
     closed = {"rigid": (at, rigid), "corner lines": (at, corners), "bed": (at[here], bed[here])}
     names = {
-        name: f"{name}: {curve.moment.max() / 1e3:.1f} kN m, falls at {curve.end:.3f} rad"
-        for name, curve in curves.items()
+        name: f"{name}: {curve.moment.max() / 1e3:.1f} kN m, {curve.end:.3f} rad" for name, curve in curves.items()
     }
     drawn = {names[name]: curve for name, curve in curves.items()}
     points = {names[name]: own for name, own in closed.items()}
-    plotting.moment_rotation(ax, drawn, points).legend(frameon=False, fontsize=8)
+    plotting.moment_rotation(ax, drawn, points).legend(
+        frameon=False, fontsize=8, title="largest moment, rotation at which it falls", title_fontsize=8
+    )
     ax.set_title(f"$k_n$ = {power_of_ten(SOFT)} N/m³", fontsize=10)
     return ax
 

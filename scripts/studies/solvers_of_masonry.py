@@ -24,6 +24,7 @@ import mjrock as mr
 from mjrock import plotting
 from scripts.measure.masonry_precision import PULSE, SAMPLE, Motion, column, motion_of
 from scripts.shared import cli
+from scripts.shared.labels import beside
 
 UNIT = (0.4, 0.2)
 """Size of a unit in running bond [m]."""
@@ -31,6 +32,10 @@ K_N = 1e10
 """Stiffness of its joints [N/m3]."""
 WEAK, STRONG, PERIOD = 3.0, 9.0, 0.3
 """Amplitudes [m/s2] and period [s] of the sine that shakes it."""
+WORDS = {"weak": f"{WEAK:g} m/s²", "strong": f"{STRONG:g} m/s²", "rigid": "joints stick", "sprung": "$k_s = 0.4\\,k_n$"}
+"""Settings in the figure."""
+RAISED = {"weak, rigid": 3, "weak, sprung": 2, "strong, sprung": -3}
+"""How far the label of a curve stands above its end [pt]."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +149,7 @@ def of_wall(study: Study, size: tuple[float, float], amplitude: float) -> list[P
 
 def drawn(walls: Sequence[Point]) -> Figure:
     """Time against blocks of the walls."""
-    figure = Figure(figsize=(6.4, 4.0), layout="constrained")
+    figure = Figure(figsize=(7.4, 4.0), layout="constrained")
     ax = figure.subplots()
     for solver in ("MuJoCo", "explicit"):
         look = plotting.STYLES[solver]
@@ -153,13 +158,13 @@ def drawn(walls: Sequence[Point]) -> Figure:
             dashes = "-" if setting.startswith("strong") else ":"
             marker = "s" if "sprung" in setting else "o"
             style = {"color": look["color"], "marker": marker, "linestyle": dashes, "markerfacecolor": "none"}
-            label = f"{look['label']}, {setting}"
-            ax.plot([one.blocks for one in own], [one.seconds for one in own], label=label, **style)
-    ax.set(xscale="log", yscale="log")
+            ax.plot([one.blocks for one in own], [one.seconds for one in own], **style)
+            label = ", ".join([str(look["label"]), *(WORDS[word] for word in setting.split(", "))])
+            end = own[-1].blocks, own[-1].seconds
+            beside(ax, end, label, look["color"], (10, RAISED.get(setting, 0)))
+    ax.set(xscale="log", yscale="log", xlim=(None, 1.04 * max(one.blocks for one in walls)))
     ax.set_xlabel("blocks that are free [-]")
     ax.set_ylabel("CPU time of a simulated second [s/s]")
-    ax.set_ylim(top=6 * ax.get_ylim()[1])
-    ax.legend(frameon=False, fontsize=8, ncols=2, loc="upper left")
     return figure
 
 

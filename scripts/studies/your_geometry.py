@@ -21,6 +21,8 @@ FACES: list[tuple[int, ...]] = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3,
 """Of a box whose corners have z fastest."""
 CRADLE = [(0, 0), (1.2, 0), (1.2, 0.6), (0.9, 0.6), (0.6, 0.3), (0.3, 0.6), (0, 0.6)]
 """Outline of a stone with a notch, x, z [m]."""
+APART = 0.5
+"""How far the centroids of parts are drawn apart, over how far they are [-]."""
 
 Mesh = tuple[Array, list[tuple[int, ...]]]
 
@@ -48,6 +50,16 @@ def notched() -> dict[str, Mesh]:
     return meshes
 
 
+def drawn_apart(masonry: mr.Masonry) -> mr.Masonry:
+    """The parts of its free blocks as blocks of their own, away from the middle of them all."""
+    parts = [part for i in masonry.free for part in getattr(masonry.blocks[i], "parts", (masonry.blocks[i],))]
+    centres = np.array([part.centroid for part in parts])
+    moves = APART * (centres - centres.mean(axis=0))
+    moves[:, 2] -= moves[:, 2].min()
+    blocks = [mr.Polyhedron(part.corners + move) for part, move in zip(parts, moves, strict=True)]
+    return mr.Masonry([*blocks, *(block for block in masonry.blocks if block.fixed)], k_n=1e9)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Read, draw and print what is said."""
     out = cli.folder(cli.parser(__doc__, "out/your_geometry").parse_args(argv).out)
@@ -67,7 +79,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             lines.append(f"convex={convex}: {sum(found.blocks[i].mass for i in found.free):.0f} kg")
         except ValueError as error:
             lines.append(f"convex={convex}: {error}")
-    shown = {"as it is": as_it_is, 'unit="cm", up="y"': turned, 'convex="parts"': found}
+    shown = {"as it is": as_it_is, 'unit="cm", up="y"': turned, 'convex="parts", drawn apart': drawn_apart(found)}
     figure = Figure(figsize=(7.4, 2.2), layout="constrained")
     for i, (title, each) in enumerate(shown.items(), 1):
         ax = figure.add_subplot(1, 3, i, projection="3d")

@@ -5,6 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from PIL import Image
 
 import mjrock as mr
@@ -56,6 +57,16 @@ def test_problems_and_answers_are_drawn(make):
     assert (drawn[: rows // 4] < 100).all(axis=2).any()
     below = drawn[rows // 10 :].astype(int)
     assert np.ptp(below, axis=2).max() > 20 or len(np.unique(below)) > 20
+
+
+@pytest.mark.parametrize("make", SHOWN.values(), ids=SHOWN)
+def test_the_title_has_two_lines_and_does_not_repeat_what_is_drawn(monkeypatch, make):
+    shown, figures = make(), []
+    monkeypatch.setattr(notebook, "png", figures.append)
+    notebook.png_of(shown)
+    texts = [text.get_text() for text in figures[0].findobj(Text) if text.get_text()]
+    assert any(text.split()[0].strip(":") in repr(shown) for text in texts)
+    assert not [text for text in texts if "<" in text or text.count("\n") > 1]
 
 
 def test_an_answer_of_masonry_shows_its_blocks_where_they_are_at_the_end():
