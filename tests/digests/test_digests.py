@@ -4,6 +4,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from mjrock.distinct import following, team
+from mjrock.distinct.crew import Crew
 from tests.digests.digest_answers import answers, elsewhere, moved, stored
 from tests.digests.digest_scenes import SCENES
 
@@ -20,6 +22,9 @@ SLOW = (
 EXACT = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "push-over", "check"))]
 INTERPRETED = [name for name in SCENES if name.startswith(("theory", "MuJoCo f", "rest", "push-over"))]
 """Scenes that are short as plain Python."""
+BY_EXPLICIT_STEPS = [name for name in SCENES if name.startswith("explicit") or name == "push"]
+RIGID = ["explicit, wall released"]
+"""Scenes whose friction is rigid, which one thread follows whatever it is given."""
 
 
 @pytest.mark.parametrize(
@@ -51,6 +56,20 @@ def test_equal_to_the_bit_in_another_process_and_order_and_in_threads():
     with ThreadPoolExecutor(2) as pool:
         for found in pool.map(lambda name: answers([name]), EXACT):
             assert found.items() <= here.items()
+
+
+@pytest.mark.slow
+def test_equal_to_the_bit_in_any_number_of_threads(monkeypatch):
+    """Explicit steps by 1, 2 and 4 threads, which share the lines by four and the blocks one by one."""
+    alone, runs = answers(BY_EXPLICIT_STEPS), []
+    monkeypatch.setattr(team, "LINES_TOGETHER", 4)
+    monkeypatch.setattr(team, "BODIES_TOGETHER", 1)
+    for count in (1, 2, 4):
+        monkeypatch.setattr(following, "Crew", lambda given, count=count: runs.append(Crew(count)) or runs[-1])
+        for name in BY_EXPLICIT_STEPS:
+            assert answers([name]) == {name: alone[name]}
+            assert {run.used for run in runs} == {1 if name in RIGID else count}, name
+            runs.clear()
 
 
 @pytest.mark.slow

@@ -8,6 +8,8 @@ import threading
 from dataclasses import replace
 
 import numpy as np
+import own_laws
+import own_links
 import pytest
 
 import mjrock as mr
@@ -32,8 +34,9 @@ def wall(duration=0.02, **joints):
     return mr.MasonryCase(mr.Masonry.running_bond(*WALL, **JOINTS | joints), duration, motion=RECORD)
 
 
-def facade(duration=0.01):
-    return mr.MasonryCase(mr.Masonry.facade(2.0, 1.5, 1.0, (0.5, 0.25), **JOINTS), duration, motion=RECORD)
+def facade(duration=0.01, **joints):
+    masonry = mr.Masonry.facade(2.0, 1.5, 1.0, (0.5, 0.25), **JOINTS | joints)
+    return mr.MasonryCase(masonry, duration, motion=RECORD)
 
 
 def same(case, threads, **options):
@@ -170,20 +173,39 @@ def test_other_processes_run_in_threads_after_a_run_in_threads(method):
             np.testing.assert_array_equal(pose, here)
 
 
+GLUE = own_laws.Cohesive(strength=2e4, toughness=1.0)
+HELD = {"block": "unit_13_0", "at": (0.0, 2.7)}
+OWN_LINKS = (
+    mr.Link(own=own_links.Slider(k=1e6, slips_at=2e3), anchor=(-0.6, 2.9), **HELD),
+    mr.Link(own=own_links.Relief(c=1e4, relief=2e3), anchor=(-0.6, 2.5), **HELD),
+    mr.Damper(c=2e4, anchor=(-0.6, 2.7), **HELD),
+)
+MOVED = {"ground": ([0.0, 1.0], [0.0, 0.05], [0.0, 0.02])}
+
+
 @pytest.mark.slow
-def test_many_scenes_have_the_same_bits_in_any_number_of_threads():
-    """Dry, with mortar, in space, with a tie and a jack, on a support that moves, and damped."""
-    scenes = [
-        wall(0.05),
-        wall(0.05, bond=MORTAR, points=3),
-        facade(0.02),
-        replace(facade(0.02), motion=None, tilt=([0.0, 1.0], [0.0, 0.3])),
-    ]
-    scenes.append(replace(wall(0.05), effects=TIE_AND_JACK))
-    moved = np.array([0.0, 1.0])
-    scenes.append(replace(wall(0.05), supports={"ground": (moved, 0.05 * moved, 0.02 * moved)}))
-    for case in scenes:
-        same(case, (2, 4))
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(lambda: wall(0.05), id="dry"),
+        pytest.param(lambda: wall(0.05, bond=MORTAR, points=3), id="mortar"),
+        pytest.param(lambda: wall(0.05, bond=own_laws.Stiffening(a=2e-5)), id="own law"),
+        pytest.param(lambda: wall(0.05, bond=GLUE, points=3), id="own law that remembers"),
+        pytest.param(lambda: replace(wall(0.05), effects=TIE_AND_JACK), id="tie and jack"),
+        pytest.param(lambda: replace(wall(0.05), effects=OWN_LINKS), id="own links and a damper"),
+        pytest.param(lambda: replace(wall(0.05), supports=MOVED), id="support that moves"),
+        pytest.param(lambda: facade(0.02), id="space"),
+        pytest.param(lambda: facade(0.02, bond=MORTAR, points=3), id="space, mortar"),
+        pytest.param(lambda: facade(0.02, bond=GLUE, points=3), id="space, own law that remembers"),
+        pytest.param(lambda: replace(facade(0.02), motion=None, tilt=([0.0, 1.0], [0.0, 0.3])), id="space, tilted"),
+    ],
+)
+def test_the_same_bits_in_any_number_of_threads(case):
+    same(case(), (2, 4))
+
+
+@pytest.mark.slow
+def test_damped_motion_has_the_same_bits_in_any_number_of_threads():
     same(wall(0.05), (2, 4), mass_damping=5.0, local_damping=0.2)
 
 

@@ -13,10 +13,12 @@ from concurrent.futures import ThreadPoolExecutor
 from copy import deepcopy
 from functools import cached_property, partial
 from typing import Any, NamedTuple
+from unittest.mock import patch
 
 import numpy as np
 
 import mjrock as mr
+from mjrock.distinct import team
 from mjrock.distinct.contacts.friction import SETTLED
 
 from .quantities import Scene, changed, moved, scaled, turned
@@ -167,6 +169,14 @@ def in_a_thread(trial: Trial) -> float:
     """The same scene in a thread."""
     with ThreadPoolExecutor(1) as pool:
         return trial.differs(pool.submit(trial.again).result())
+
+
+def in_threads(trial: Trial) -> float | None:
+    """Explicit steps by two and four threads, which share the lines by four and the blocks one by one."""
+    if trial.scene["solver"] != "explicit":
+        return None
+    with patch.multiple(team, LINES_TOGETHER=4, BODIES_TOGETHER=1):
+        return max(trial.differs(trial.again(threads=count)) for count in (2, 4))
 
 
 def other_samples(trial: Trial) -> float | None:
@@ -413,6 +423,7 @@ INVARIANCES = {
         Invariance(twice, BITS),
         Invariance(after_another, BITS),
         Invariance(in_a_thread, BITS),
+        Invariance(in_threads, BITS),
         Invariance(other_samples, BITS),
         Invariance(from_the_middle, "the end of a run has all that its steps keep", 1e-12, nudges=100),
         Invariance(zeros_after, BITS),

@@ -48,7 +48,7 @@ def test_rounding_decides_nothing(seed):
         assert INVARIANCES["elsewhere"].run(Trial(draw(seed))) < 10 * EQUAL
 
 
-SAME = ("twice", "after_another", "in_a_thread", "from_the_middle", "mirrored", "renumbered", "in_space", "elsewhere")
+SAME = ("twice", "after_another", "in_threads", "from_the_middle", "mirrored", "renumbered", "in_space", "elsewhere")
 
 
 @pytest.mark.parametrize("glued", [False, True])
