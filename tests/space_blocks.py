@@ -39,7 +39,7 @@ def free_body(mass, inertia, spin):
     links = [kind(kind.table(3, 0)) for kind in (Ties, Dampers, ConstantForces)]
     links.insert(2, Actuators(Actuators.table(3, 0), moving((), 1)))
     tables |= {"links": tuple(links), "laws": no_laws(3), "guided": np.zeros(0, dtype=np.int64)}
-    return System(axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), **tables)
+    return System(axes=SPACE.axes, bodies=body, ground=Ground.from_motions(None), supports=moving((), 3), **tables)
 
 
 def followed(system, duration, h, every):

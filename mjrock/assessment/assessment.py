@@ -358,10 +358,10 @@ def _trials(reader: Reader, top: Table, document: Mapping[str, Any]) -> dict[str
         replaced(document, place_of(found["key"]), None)
     except (LookupError, TypeError):
         unknown = "{place} = {key!r} is no key of the file; spell it effects[0].diameter"
-        reader.refusal(table.of("key"), unknown, key=found["key"])
+        reader.refusal(table.place_of("key"), unknown, key=found["key"])
     values = table.values.get("values")
     if not isinstance(values, list) or not values:
-        reader.refusal(table.of("values"), "{place} is no list of at least one value of that key")
+        reader.refusal(table.place_of("values"), "{place} is no list of at least one value of that key")
     return found | {"values": document["design"].get("values")}
 
 

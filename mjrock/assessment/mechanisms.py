@@ -213,21 +213,21 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
     table of the site has a table of."""
     if "site" not in table.values:
         if "floor" in table.values:
-            reader.refusal(table.of("floor"), "{place} is a floor of no [site]")
+            reader.refusal(table.place_of("floor"), "{place} is a floor of no [site]")
         return None
     site, code = reader.required_table(table, "site"), options.get("code", USUAL_CODE)
     rule = code_of(code)
     try:
         rule.confidence.checked(options.get("confidence_factor"))
     except ValueError as error:
-        place = reader.required_table(table, "check").of("confidence_factor")
+        place = reader.required_table(table, "check").place_of("confidence_factor")
         raise reader.refusal(place, "{place}: {cause} by {code}", cause=reason(error), code=rule.name) from None
     names = [*rule.states, *([] if rule.damage is None else [rule.damage.state])]
     states = [name for name in dict.fromkeys(names) if isinstance(site.values.get(name), Table)]
     for name in [key for key, value in site.values.items() if isinstance(value, Table) and key not in states]:
         known = ", ".join(dict.fromkeys(names))
         unknown = "{place} is no limit state of {code}; those are {known}"
-        raise reader.refusal(site.of(name), unknown, code=rule.name, known=known)
+        raise reader.refusal(site.place_of(name), unknown, code=rule.name, known=known)
     common = site.without(*states)
     if not states:
         return _spectrum(reader, common, table)

@@ -99,10 +99,10 @@ class Reader:
         keys = {key_named(key): key for name, key in maker.keys.items() if name not in arguments}
         for name, value in table.values.items():
             if name not in keys:
-                self.refuse(table.of(name), self._unknown(table.of(name), name, list(keys)))
+                self.refuse(table.place_of(name), self._unknown(table.place_of(name), name, list(keys)))
                 continue
             try:
-                arguments[keys[name].name] = self.value(keys[name], value, table.of(name))
+                arguments[keys[name].name] = self.value(keys[name], value, table.place_of(name))
             except RefusedError:
                 continue
         for key in maker.missing({*arguments, *(keys[name].name for name in keys.keys() & table.values.keys())}):
@@ -148,7 +148,7 @@ class Reader:
         value = table.values.get(name)
         if not isinstance(value, Table):
             it_takes = "{place} is {value}; it takes a table, [{place}]"
-            raise self.refusal(table.of(name), it_takes, value=spelt_value(value))
+            raise self.refusal(table.place_of(name), it_takes, value=spelt_value(value))
         return value
 
     def chosen(self, table: Table, kinds: Mapping[str, Makers], usual: str | None = None) -> tuple[Maker, Table]:
@@ -167,7 +167,7 @@ class Reader:
             near = difflib.get_close_matches(str(value), known, 1)
             remedy = Message("did you mean {near!r}?", near=near[0]) if near else one_of(known)
             values = {"value": shown(value), "remedy": remedy}
-            raise self.refusal(table.of(name), "{place} = {value} is not known; {remedy}", **values)
+            raise self.refusal(table.place_of(name), "{place} = {value} is not known; {remedy}", **values)
         return value
 
     def value(self, key: Key, value: Any, place: Place) -> Any:
@@ -256,7 +256,7 @@ class Reader:
         mapped = next((kind for kind in kinds if get_origin(kind) is not None and is_mapping(kind)), None)
         if mapped is not None:
             of, within = parted(get_args(mapped)[1], None)
-            return {name: self._of_kinds(of, within, one, table.of(name)) for name, one in table.values.items()}
+            return {name: self._of_kinds(of, within, one, table.place_of(name)) for name, one in table.values.items()}
         raise self._wrong(table.place, table, kinds, None)
 
     def _wrong(self, place: Place, value: Any, kinds: tuple[Any, ...], within: Within | None) -> RefusedError:
@@ -275,7 +275,7 @@ class Reader:
         """The key that an error of a class or function is about, and its message."""
         found, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
         place = _named_in(found, table, names)
-        key = next((one for one in maker.keys.values() if table.of(key_named(one)) == place), None)
+        key = next((one for one in maker.keys.values() if table.place_of(key_named(one)) == place), None)
         within = None if key is None else key.within
         return place, caused(place, error, table.values.get(str(place[-1])) if key else None, within)
 
@@ -309,7 +309,7 @@ def _named_in(message: str, table: Table, names: Mapping[str, str]) -> Place:
         name = names.get(word, word)
         if name not in table.values:
             continue
-        place, value = table.of(name), table.values[name]
+        place, value = table.place_of(name), table.values[name]
         if index and isinstance(value, list) and int(index) < len(value):
             value = value[int(index)]
             place = value.place if isinstance(value, Table) else (*place, int(index))

@@ -132,7 +132,7 @@ def _records(reader: Reader, table: Table, spectrum: object) -> tuple[GroundMoti
     found: list[GroundMotion] = []
     for one in tables:
         if not isinstance(one, Table):
-            raise reader.refusal(table.of("records"), "{place} is no table and no list of tables")
+            raise reader.refusal(table.place_of("records"), "{place} is no table and no list of tables")
         records = _read(reader, one.without("scaled_to"))
         if "scaled_to" in one.values:
             given = {"spectrum": _required(reader, one, spectrum)}
@@ -149,7 +149,7 @@ def _records(reader: Reader, table: Table, spectrum: object) -> tuple[GroundMoti
 def _required(reader: Reader, table: Table, spectrum: object) -> SpectrumOfCode:
     """The spectrum that records are scaled to."""
     if not isinstance(spectrum, SpectrumOfCode):
-        raise reader.refusal(table.of("scaled_to"), "{place} needs a [site], to scale to")
+        raise reader.refusal(table.place_of("scaled_to"), "{place} needs a [site], to scale to")
     return spectrum
 
 

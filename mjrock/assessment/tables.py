@@ -82,7 +82,7 @@ class Table:
         """The table without some keys."""
         return Table(self.place, {name: one for name, one in self.values.items() if name not in names}, self.places)
 
-    def of(self, name: str) -> Place:
+    def place_of(self, name: str) -> Place:
         """Where a key stands, or would stand."""
         return self.places.get(name, (*self.place, name))
 
@@ -96,7 +96,7 @@ class Table:
                 own = own.over(other)
             elif name == "effects" and isinstance(own, list) and isinstance(other, list):
                 own = [*other, *own]
-            values[name], places[name] = own, self.of(name)
+            values[name], places[name] = own, self.place_of(name)
             if own is False and isinstance(other, Table | list):
                 del values[name]
         return Table(self.place, values, places)

@@ -249,7 +249,7 @@ class Declaration(NamedTuple):
     computed: bool = False
 
     @classmethod
-    def of(cls, hint: object) -> Declaration | None:
+    def from_hint(cls, hint: object) -> Declaration | None:
         """What an annotation declares; None without a range."""
         within = next((one for one in getattr(hint, "__metadata__", ()) if isinstance(one, Within)), None)
         if within is None:
@@ -280,7 +280,7 @@ class Declaration(NamedTuple):
 def declared(kind: Callable[..., object]) -> dict[str, Declaration]:
     """What each field of a class, or argument of a function, declares that has a range."""
     hints = get_type_hints(kind, include_extras=True)
-    found = {name: Declaration.of(hint) for name, hint in hints.items()}
+    found = {name: Declaration.from_hint(hint) for name, hint in hints.items()}
     return {name: one for name, one in found.items() if one is not None}
 
 

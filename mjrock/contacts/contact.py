@@ -370,7 +370,9 @@ class PairContacts:
         others: list[tuple[GeomPair, ModelRow]] = []
         if switches or on_geoms or option.timestep != h:
             written = {frozenset(contact._pair_in(whole).geoms) for contact in contacts}
-            others = [(pair, ModelRow.of(pair)) for pair in every_pair(whole) if frozenset(pair.geoms) not in written]
+            others = [
+                (pair, ModelRow.from_pair(pair)) for pair in every_pair(whole) if frozenset(pair.geoms) not in written
+            ]
         for contact in contacts:
             contact.put_into(model, whole, on_geoms)
         for each in (option, whole.opt):
@@ -382,7 +384,7 @@ class PairContacts:
                 setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
             if iterations:
                 each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
-        found = [StiffnessChange(pair, before, ModelRow.of(pair)) for pair, before in others]
+        found = [StiffnessChange(pair, before, ModelRow.from_pair(pair)) for pair, before in others]
         changed = [each for each in found if not math.isclose(*each.stiffness, rel_tol=SAME)]
         changed = [each for each in changed if not (keep_others and _keep(model, each))]
         if changed:
@@ -499,7 +501,7 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     yield from duplicates(pair)
     if pair.explicit < 0 and (reason := kept_apart(pair)):
         yield f"MuJoCo keeps these geoms apart, since {reason}; an explicit <pair> overrides that and lets them collide"
-    mixed = Mixed.of(pair)
+    mixed = Mixed.from_pair(pair)
     if mixed.margin != 0:
         yield f"it has a margin of {mixed.margin:g} m, at which the spring begins; apply writes a margin of 0"
     if mixed.adhesion != 0:
@@ -582,7 +584,7 @@ def step_spoilers(contact: PairContact) -> Iterator[str]:
 
 def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     """What a model lacks that `apply` would write."""
-    option, mixed = pair.model.opt, Mixed.of(pair)
+    option, mixed = pair.model.opt, Mixed.from_pair(pair)
     names = ["solref", "solimp"] + (["friction"] if contact.condim > 1 else [])
     if pair.explicit < 0:
         yield "the model has no explicit <pair> of the geoms, so that MuJoCo mixes the parameters of the two geoms"
@@ -614,7 +616,7 @@ def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
 
 def _pyramidal(pair: GeomPair, contact: PairContact) -> str:
     """What the pyramidal cone does to a contact: all three numbers of the row grow, the mass and the step do not."""
-    factor, h, d = Mixed.of(pair).pyramid(float(pair.model.opt.impratio)), contact.timestep, contact.solimp[0]
+    factor, h, d = Mixed.from_pair(pair).pyramid(float(pair.model.opt.impratio)), contact.timestep, contact.solimp[0]
     dashpot = -contact.solref[1] / ((1 - d) * contact.inverse_weight)
     used = 0.0 if contact.integrator == "RK4" else 0.5 * h * dashpot
     inertia = factor * max(0.0, inertia_of(d, contact.inverse_weight) - used)

@@ -152,7 +152,7 @@ def inspect_contacts(
 
 def inspected(pair: GeomPair, pose: Pose, contacts: int | None = None, load: float | None = None) -> InspectedContact:
     """The contact of two geoms in a pose, see `inspect_contacts`."""
-    row = ModelRow.of(pair)
+    row = ModelRow.from_pair(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting_of_geoms(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
     force = load if load is not None else pose.load(pair, met.points, points)

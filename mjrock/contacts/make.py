@@ -388,7 +388,7 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
     option, pose = pair.model.opt, pose.along(request.normal)
     request = request.by_point(pair, pose)
     h = require_within("timestep", option.timestep if request.timestep is None else request.timestep, 1e-12, 1e3, "s")
-    grip, mixed = Grip.of(pair, request.friction), Mixed.of(pair)
+    grip, mixed = Grip.from_pair(pair, request.friction), Mixed.from_pair(pair)
     met = meeting_of_geoms(
         pair,
         pose,
@@ -439,7 +439,7 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
         remarks += weight_spoilers(contact)
     remarks += blow_spoilers(contact, pair)
     if request.k is None:
-        remarks += soft_spoilers(contact, ModelRow.of(pair).loaded(contact.load), pair.thickness)
+        remarks += soft_spoilers(contact, ModelRow.from_pair(pair).loaded(contact.load), pair.thickness)
     return replace(contact, remarks=tuple(remarks)), met.neighbours
 
 

@@ -158,7 +158,7 @@ class Bench:
     """
 
     def __init__(self, pose: Pose, pair: GeomPair) -> None:
-        self.pose, self.pair, self.model, self.row = pose, pair, pose.model, ModelRow.of(pair)
+        self.pose, self.pair, self.model, self.row = pose, pair, pose.model, ModelRow.from_pair(pair)
         self.pose, _ = self.at(0.0)
         self.contact = inspected(pair, self.pose)
 

@@ -54,7 +54,7 @@ class Mixed:
     adhesion: float
 
     @classmethod
-    def of(cls, pair: GeomPair) -> Mixed:
+    def from_pair(cls, pair: GeomPair) -> Mixed:
         """The parameters of a pair of geoms, by the rules of MuJoCo's manual (Modeling, Contact parameters).
 
         The geom of higher priority decides. At equal priority solref and solimp are averaged with the weights solmix,
@@ -149,12 +149,12 @@ class Grip(NamedTuple):
     impratio: float = 1.0
 
     @classmethod
-    def of(cls, pair: GeomPair, friction: object = None) -> Grip:
+    def from_pair(cls, pair: GeomPair, friction: object = None) -> Grip:
         """Friction of the model, in which one coefficient replaces the two of sliding, and five replace all.
 
         A contact without friction gets condim 3, and one whose sliding friction is zero gets condim 1.
         """
-        mixed = Mixed.of(pair)
+        mixed = Mixed.from_pair(pair)
         if friction is None:
             return cls(mixed.friction, mixed.condim)
         alone = [friction, friction, *mixed.friction[2:]]
@@ -238,9 +238,9 @@ class ModelRow:
         self.solimp = d, full, *(float(value) for value in solimp[2:5])
 
     @classmethod
-    def of(cls, pair: GeomPair) -> ModelRow:
+    def from_pair(cls, pair: GeomPair) -> ModelRow:
         """The row of two geoms."""
-        return cls(pair.model, pair.inverse_weight, Mixed.of(pair))
+        return cls(pair.model, pair.inverse_weight, Mixed.from_pair(pair))
 
     def loaded(self, load: float) -> float:
         """The load [N] over the indentation at which the row carries it [N/m]; 0 without a spring."""

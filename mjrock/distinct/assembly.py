@@ -33,7 +33,7 @@ def system_of(scene: Scene, *, ended: bool = False) -> System:
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if ended:
         edges = add_joints(lines, scene)
-    acting = (), np.zeros(0, dtype=np.int64), Ground.of(None), moving((), d)
+    acting = (), np.zeros(0, dtype=np.int64), Ground.from_motions(None), moving((), d)
     system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), no_laws(d), *acting)
     return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 

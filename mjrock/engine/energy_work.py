@@ -71,7 +71,7 @@ def contact_work(scene: Scene, steps: Steps) -> Work:
     """What the contacts take from a motion."""
     count = len(steps.t)
     work = Work(np.zeros((count, len(scene.contacts.joints))), np.zeros(count), np.zeros(2))
-    points, room = points_of(scene, steps.method), LedgerRoom.of(scene)
+    points, room = points_of(scene, steps.method), LedgerRoom.for_scene(scene)
     _contact_work(points, steps.record, steps.windows, steps.kinds, room, work)
     return work
 
@@ -170,7 +170,7 @@ class LedgerRoom(NamedTuple):
     inertia: Array
 
     @classmethod
-    def of(cls, scene: Scene) -> LedgerRoom:
+    def for_scene(cls, scene: Scene) -> LedgerRoom:
         """Room for a step of a scene."""
         freedom, coordinates, contacts = scene.freedom, len(scene.bodies.masses), len(scene.contacts.k)
         frames = (freedom.frames(len(scene.bodies.mass)) for _ in range(3))

@@ -59,7 +59,7 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
     room = np.zeros((len(chosen), len(frames.names), scene.freedom.nv)), np.zeros((len(chosen), len(frames.blocks), d))
     loads = Loads(chosen, scene.sense, frames.fixed, frames.rest, *room)
     points = points_of(scene, steps.method)
-    _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.of(scene), loads)
+    _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.for_scene(scene), loads)
     pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
     ties = motion_of_ties(Moving(case, steps.t, pose), plastic)
     of = chosen[sample]

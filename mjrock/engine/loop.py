@@ -57,7 +57,7 @@ class GroundResponse(NamedTuple):
     answer: Array
 
     @classmethod
-    def of(cls, setting: Setting) -> GroundResponse:
+    def at_start(cls, setting: Setting) -> GroundResponse:
         """Before the first step."""
         directions = len(setting.points.places.axes) if setting.splits else 0
         return cls(np.zeros(directions), np.zeros((directions, len(setting.masses))))
@@ -143,15 +143,15 @@ class Progress(NamedTuple):
     ground_response: GroundResponse
 
     @classmethod
-    def of(cls, memory: EngineArrays, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
+    def at_start(cls, memory: EngineArrays, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
         """The state before the first step."""
         places = setting.points.places
-        frames, touches = frames_of(memory.pose, places.freedom), Touches.of(places, setting.ties)
+        frames, touches = frames_of(memory.pose, places.freedom), Touches.with_room(places, setting.ties)
         count = len(touches.k)
         acceleration, rate, change, velocity_now, acceleration_now = np.zeros((5, len(memory.velocity)))
         rates = acceleration, rate, change, velocity_now, acceleration_now
-        touching = Openings.of(count), np.zeros(count, dtype=np.bool_), touches
-        return cls(*rates, frames, frames.copy(), *touching, joints, sliding, GroundResponse.of(setting))
+        touching = Openings.with_room(count), np.zeros(count, dtype=np.bool_), touches
+        return cls(*rates, frames, frames.copy(), *touching, joints, sliding, GroundResponse.at_start(setting))
 
 
 class StepClock(NamedTuple):

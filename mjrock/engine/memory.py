@@ -63,7 +63,7 @@ class EngineArrays(NamedTuple):
     upper: Integers
 
     @classmethod
-    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> EngineArrays:
+    def from_model(cls, model: mujoco.MjModel, data: mujoco.MjData) -> EngineArrays:
         """The memory of a model and its data, which have to outlive it.
 
         Raises:

@@ -180,7 +180,7 @@ class FixedRows(NamedTuple):
 def pair_rows(scene: Scene, timestep: float, newmark_beta: float = 0.25, method: Method = METHOD) -> FixedRows:
     """The rows of a scene at a fixed step."""
     points, m = points_of(scene, method), len(scene.contacts.k)
-    rows, step = ContactRows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
+    rows, step = ContactRows.with_room(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
     return FixedRows(rows, set_rows(points, step, rows), scene.links.law["c"])
 
 

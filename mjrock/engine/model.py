@@ -60,10 +60,10 @@ class Engine:
         Raises:
             SimulationError: if MuJoCo weighs a body otherwise, or numbers the contacts otherwise.
         """
-        return cls.of(mujoco.MjModel.from_xml_string(scene_mjcf(scene, TEXT_STEP)), scene)
+        return cls.from_model(mujoco.MjModel.from_xml_string(scene_mjcf(scene, TEXT_STEP)), scene)
 
     @classmethod
-    def of(cls, model: mujoco.MjModel, scene: Scene) -> Engine:
+    def from_model(cls, model: mujoco.MjModel, scene: Scene) -> Engine:
         """The engine of a model that was compiled from the text of a scene. It raises what `compile` raises."""
         inverse = body_weight(scene.bodies.mass, scene.freedom.translations)
         for j, name in enumerate(scene.bodies.names):
@@ -80,8 +80,8 @@ class Engine:
         return cls(
             model,
             data,
-            EngineArrays.of(model, data),
-            Record.of(CHUNK, (model.nq, model.nv), model.npair, len(scene.links.damped.names)),
+            EngineArrays.from_model(model, data),
+            Record.with_room(CHUNK, (model.nq, model.nv), model.npair, len(scene.links.damped.names)),
         )
 
     def follow(self, timestep: float, fixed: FixedRows) -> None:

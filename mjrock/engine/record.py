@@ -37,7 +37,7 @@ class Record(NamedTuple):
     damping: Array
 
     @classmethod
-    def of(cls, steps: int, coordinates: tuple[int, int], contacts: int, dampers: int = 0) -> Record:
+    def with_room(cls, steps: int, coordinates: tuple[int, int], contacts: int, dampers: int = 0) -> Record:
         """Room for a number of steps of bodies with given numbers of coordinates and velocities."""
         t, h = np.empty((2, steps))
         before, after = np.empty((2, steps, coordinates[1]))

@@ -105,7 +105,7 @@ class ContactRows(NamedTuple):
     solreffriction: Array
 
     @classmethod
-    def of(cls, contacts: int) -> ContactRows:
+    def with_room(cls, contacts: int) -> ContactRows:
         """Room for the rows of some contacts."""
         return cls(
             np.zeros((contacts, 2)), np.tile((0.0, 0.0, 0.001, 0.5, 2.0), (contacts, 1)), np.zeros((contacts, 2))

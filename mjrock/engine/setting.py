@@ -49,7 +49,7 @@ class Setting(NamedTuple):
     duration: float
 
     @classmethod
-    def of(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
+    def of_run(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
         """That of a run, whose ties yield in it alone."""
         ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.names))
         splits = len(scene.bodies.names) == 1 and any(len(shaking.accel) for shaking in course.ground)

@@ -57,7 +57,7 @@ class Sliding(NamedTuple):
     way: Array
 
     @classmethod
-    def of(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
+    def at_start(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
         """No contact slides at the start."""
         none, ways = np.zeros((2, len(points.rubs)), dtype=np.bool_), np.zeros_like(points.places.normal)
         rubs = coulomb and bool(points.rubs.any())

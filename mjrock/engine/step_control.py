@@ -67,7 +67,7 @@ class StepControl(NamedTuple):
     method: Method
 
     @classmethod
-    def of(cls, scene: Scene, course: Course, accuracy: float, method: Method = METHOD) -> StepControl:
+    def from_scene(cls, scene: Scene, course: Course, accuracy: float, method: Method = METHOD) -> StepControl:
         """The limits for a scene and what happens to it."""
         short, weight = short_step(scene, accuracy, method), points_of(scene, method).weight
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency

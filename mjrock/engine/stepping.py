@@ -41,16 +41,16 @@ def fitted_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    setting = Setting.of(scene, course, method)
+    setting = Setting.of_run(scene, course, method)
     if setting.splits:
         method = method.on_moving_ground()
-        setting = Setting.of(scene, course, method)
-    memory, control = engine.memory, StepControl.of(scene, course, accuracy, method)
+        setting = Setting.of_run(scene, course, method)
+    memory, control = engine.memory, StepControl.from_scene(scene, course, accuracy, method)
     places, released_on = setting.points.places, engine.closed
     engine.model.tendon_damping[:] = 0.0  # dampers act as applied forces, at the velocity of the pose
     settle_ties(memory, setting, frames_of(memory.pose, places.freedom))
-    sliding = Sliding.of(setting.points, coulomb=coulomb, method=method)
-    state = Progress.of(memory, setting, Joints.of_scene(scene), sliding)
+    sliding = Sliding.at_start(setting.points, coulomb=coulomb, method=method)
+    state = Progress.at_start(memory, setting, Joints.of_scene(scene), sliding)
     clock = StepClock.started(control, course.energy(scene))
 
     def advance(record: Record) -> tuple[int, float, bool]:
@@ -84,8 +84,8 @@ def fixed_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    memory, setting, done = engine.memory, Setting.of(scene, course, method, refines=False), 0
-    sliding, released_on = Sliding.of(setting.points, coulomb=coulomb, method=method), engine.closed
+    memory, setting, done = engine.memory, Setting.of_run(scene, course, method, refines=False), 0
+    sliding, released_on = Sliding.at_start(setting.points, coulomb=coulomb, method=method), engine.closed
     frames = frames_of(memory.pose, setting.points.places.freedom)
     if sliding.coulomb:
         release(memory, setting, sliding, frames, memory.velocity + 0.5 * timestep * memory.acceleration)

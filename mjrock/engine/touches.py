@@ -31,7 +31,7 @@ class Openings(NamedTuple):
     swept: Array
 
     @classmethod
-    def of(cls, count: int) -> Openings:
+    def with_room(cls, count: int) -> Openings:
         """Room for a number of openings."""
         return cls(*np.zeros((4, count)))
 
@@ -50,7 +50,7 @@ class Touches(NamedTuple):
     speed: Array
 
     @classmethod
-    def of(cls, places: Places, ties: Ties) -> Touches:
+    def with_room(cls, places: Places, ties: Ties) -> Touches:
         """Room for the touches of a scene."""
         k, c = np.append(places.k, ties.k), np.append(places.c, np.zeros_like(ties.k))
         return cls(k, c, *np.zeros((2, len(k))))

@@ -75,7 +75,7 @@ class BesidePoses(NamedTuple):
 
 def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion, *, released: bool = True) -> Reading:
     """Impacts, peaks and the ending of a wall. `released` is whether the motion starts with the release."""
-    uplift, theta, omega = Uplift.of(case, contacts), motion.theta[:, 0], motion.velocity[:, 0, 2]
+    uplift, theta, omega = Uplift.from_case(case, contacts), motion.theta[:, 0], motion.velocity[:, 0, 2]
     times, peaks, impacts = rocking_history(case, t, theta, omega, motion.energy, uplift, released=released)
     slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return Reading(

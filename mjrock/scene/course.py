@@ -34,7 +34,7 @@ class Shaking(NamedTuple):
     instants: Array
 
     @classmethod
-    def of(cls, motion: GroundMotion | None) -> Shaking:
+    def from_motion(cls, motion: GroundMotion | None) -> Shaking:
         """The arrays of a motion."""
         if motion is None:
             return cls(np.empty(0), np.empty(0), 1.0, np.empty(0))
@@ -49,14 +49,14 @@ class Ground(NamedTuple):
     y: Shaking
 
     @classmethod
-    def of(
+    def from_motions(
         cls,
         motion: GroundMotion | None,
         vertical: GroundMotion | None = None,
         transverse: GroundMotion | None = None,
     ) -> Ground:
         """The arrays of the motions."""
-        return cls(Shaking.of(motion), Shaking.of(vertical), Shaking.of(transverse))
+        return cls(Shaking.from_motion(motion), Shaking.from_motion(vertical), Shaking.from_motion(transverse))
 
 
 def instants_of(motion: GroundMotion) -> Array:
@@ -156,7 +156,7 @@ class Course:
     @property
     def ground(self) -> Ground:
         """The motions of the ground for compiled functions."""
-        return Ground.of(self.motion, self.vertical, self.transverse)
+        return Ground.from_motions(self.motion, self.vertical, self.transverse)
 
     @property
     def sampling(self) -> list[float]:

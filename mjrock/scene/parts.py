@@ -346,21 +346,21 @@ class Links:
             above, infinite = (0.0 if name in ("reach", "strength") else None), usual == math.inf
             require_values(f"{name} of the links", self.law[name], above, 0.0, infinite)
 
-    def of(self, some: Flags) -> Links:
+    def chosen(self, some: Flags) -> Links:
         """Some of the links."""
-        chosen = np.flatnonzero(some)
+        numbers = np.flatnonzero(some)
         arrays = (entry.name for entry in fields(self) if entry.name not in ("names", "user_laws"))
-        user_laws = tuple(self.user_laws[i] for i in chosen) if self.user_laws else ()
+        user_laws = tuple(self.user_laws[i] for i in numbers) if self.user_laws else ()
         return Links(
-            names=tuple(self.names[i] for i in chosen),
+            names=tuple(self.names[i] for i in numbers),
             user_laws=user_laws,
-            **{name: getattr(self, name)[chosen] for name in arrays},
+            **{name: getattr(self, name)[numbers] for name in arrays},
         )
 
     @cached_property
     def owned(self) -> Links:
         """The links with a law of their own."""
-        return self.of(self.are_owned)
+        return self.chosen(self.are_owned)
 
     @cached_property
     def are_owned(self) -> Flags:
@@ -370,17 +370,17 @@ class Links:
     @cached_property
     def sprung(self) -> Links:
         """The links with a spring."""
-        return self.of(self.law["k"] > 0)
+        return self.chosen(self.law["k"] > 0)
 
     @cached_property
     def bearing(self) -> Links:
         """The links that may have a force at rest: those with a spring that only pulls, or a law of their own."""
-        return self.of((self.law["k"] > 0) & (self.law["push"] == 0) | self.are_owned)
+        return self.chosen((self.law["k"] > 0) & (self.law["push"] == 0) | self.are_owned)
 
     @cached_property
     def damped(self) -> Links:
         """The links with a dashpot, and those without a spring and a law of their own."""
-        return self.of(((self.law["c"] > 0) | (self.law["k"] == 0)) & ~self.are_owned)
+        return self.chosen(((self.law["c"] > 0) | (self.law["k"] == 0)) & ~self.are_owned)
 
 
 @dataclass(frozen=True, eq=False)

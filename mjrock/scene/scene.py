@@ -174,7 +174,7 @@ class Scene:
             self.bodies.products,
         )
         points, weight = self.contacts, GRAVITY * float(self.bodies.mass.sum())
-        laws = OwnSprings.of(points.bonds, points.joint, np.asarray(points.area), weight)
+        laws = OwnSprings.from_joints(points.bonds, points.joint, np.asarray(points.area), weight)
         owned = np.flatnonzero(bearing.are_owned)
         user_laws = tuple(law for law in bearing.user_laws if law is not None)
         return Potential(structure, laws.and_links(len(points.k) + owned, user_laws))

@@ -336,11 +336,11 @@ def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: f
         least: an impact that leaves less energy than this leaves the wall at rest [J].
         rtol: sets the longest step, see NYSTROEM.
     """
-    law = RockingLaw.of(case)
+    law = RockingLaw.from_case(case)
     rules = Rules(case.one_sided, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clock = ArcClock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
-        take_changes(Toe.of(case, case.direction), law.ties, case.theta0, not case.released_outwards)
+        take_changes(Toe.from_case(case, case.direction), law.ties, case.theta0, not case.released_outwards)
     few = CHUNK // 4
     e, counts = restitutions(few), np.zeros(3, dtype=np.int64)
     room, parts = ArcRoom(e, np.empty((CHUNK, 4)), np.empty((few, 5)), np.empty(few), counts), []

@@ -40,7 +40,7 @@ class GroundArrays(NamedTuple):
     instants: Array
 
     @classmethod
-    def of(cls, motion: GroundMotion | None) -> GroundArrays:
+    def from_motion(cls, motion: GroundMotion | None) -> GroundArrays:
         """The arrays of a motion; empty ones stand for a base at rest."""
         if motion is None:
             return cls(np.empty(0), 1.0, np.empty(0))
@@ -65,7 +65,7 @@ class Toe(NamedTuple):
     Wz: float
 
     @classmethod
-    def of(cls, case: Case, side: float) -> Toe:
+    def from_case(cls, case: Case, side: float) -> Toe:
         """The wall of a case about one of its toes."""
         inertia = case.wall.inertia_about(side)
         moments = (*case.restoring.towards(side), *case.wall.restoring.towards(side))
@@ -86,7 +86,7 @@ class WallTies(NamedTuple):
     plastic: Array
 
     @classmethod
-    def of(cls, case: Case) -> WallTies:
+    def from_case(cls, case: Case) -> WallTies:
         """The ties of a case."""
         pulls = np.reshape(np.array(case.pulls, dtype=float), (-1, len(TiePull._fields)))
         return cls(pulls, np.full(len(pulls), SLACK), np.zeros(len(pulls)))
@@ -108,14 +108,14 @@ class RockingLaw(NamedTuple):
     ties: WallTies
 
     @classmethod
-    def of(cls, case: Case) -> RockingLaw:
+    def from_case(cls, case: Case) -> RockingLaw:
         """The law of a case."""
         return cls(
-            Toe.of(case, 1.0),
-            Toe.of(case, -1.0),
-            GroundArrays.of(case.motion),
-            GroundArrays.of(case.vertical),
-            WallTies.of(case),
+            Toe.from_case(case, 1.0),
+            Toe.from_case(case, -1.0),
+            GroundArrays.from_motion(case.motion),
+            GroundArrays.from_motion(case.vertical),
+            WallTies.from_case(case),
         )
 
     @property

@@ -214,7 +214,7 @@ def broken_promise(scene: Scene, *, wide: bool) -> str | None:
         return "the motion is not finite"
     assert run.ledger is not None
     standing = case.returns_from(run.theta)
-    uplift = Uplift.of(case, contacts)
+    uplift = Uplift.from_case(case, contacts)
     put_in = float(np.abs(np.diff(run.ledger.ground)).sum())
     slid = float(run.ledger.friction[standing].max(initial=0.0))  # thrusts and gravity pay for it
     scale = max(float(run.energy[0]) + put_in + slid, uplift.energy)
@@ -229,7 +229,7 @@ def misjudged(scene: Scene, case: mr.Case, contacts: mr.Contacts, run: mr.Respon
     sides = case.restoring[:1] if case.side_stop else case.restoring
     barrier = min(float(one.energy(one.alpha)) for one in sides)
     alpha = min(one.alpha for one in sides)
-    soft = contacts.base.points > 2 or Uplift.of(case, contacts).rotation > 0.01 * alpha
+    soft = contacts.base.points > 2 or Uplift.from_case(case, contacts).rotation > 0.01 * alpha
     safe = case.release_energy < 0.99 * barrier and abs(case.theta0) < 0.99 * alpha and not soft
     if safe and run.outcome is Outcome.OVERTURNED:
         return f"overturned with {case.release_energy / barrier:.3f} of the energy that it takes"

@@ -134,12 +134,12 @@ def finely(case: mr.MasonryCase, timestep: float) -> Motion:
     """Fixed steps so short that not all of them are kept."""
     scene, every, done, ended = mr.masonry_scene(case), round(SAMPLE / timestep), 0, False
     course = masonry_course(case, scene)
-    setting = Setting.of(scene, course)
+    setting = Setting.of_run(scene, course)
     peaks, samples = np.zeros(len(scene.bodies.names)), []
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, 0.25))
         engine.release(course)
-        sliding, frames = Sliding.of(setting.points, coulomb=False), frames_of(engine.memory.pose)
+        sliding, frames = Sliding.at_start(setting.points, coulomb=False), frames_of(engine.memory.pose)
         while not ended:
             ended, n = fixed_loop(engine.memory, setting, sliding, frames, engine.room, done, timestep)
             theta = engine.room.pose[:n, 2::3]

@@ -60,7 +60,7 @@ CHOICES: dict[str, Callable[[int, float, bool], mr.Masonry]] = {
 
 def lost(made: mr.Masonry, rotation: float = ROTATIONS[0], accuracy: float = 1e-4, impact: int = 1) -> float:
     """Energy that an impact takes after the stack has risen to a rotation, over that of theory [-]."""
-    pile = RigidStack.of(made)
+    pile = RigidStack.from_masonry(made)
     e, (velocity, swing) = as_one(pile), pile.rising(rotation)
     case = mr.MasonryCase(made, (impact + 0.75) * swing, velocity=velocity)
     found = restitutions(mr.simulate(case, accuracy=accuracy, output_step=SAMPLE_STEP * swing), pile)
@@ -77,7 +77,7 @@ def uppermost(made: mr.Masonry) -> mr.Masonry:
 
 def opens_below(made: mr.Masonry) -> float:
     """Largest opening of a joint below, over that of the uppermost, when its block alone is set rocking [-]."""
-    top = RigidStack.of(uppermost(made)).rising(ROTATIONS[0])
+    top = RigidStack.from_masonry(uppermost(made)).rising(ROTATIONS[0])
     velocity = np.zeros((len(made.free), 3))
     velocity[-1] = top[0][0]
     opening = mr.simulate(mr.MasonryCase(made, 1.75 * top[1], velocity=velocity), accuracy=1e-4).opening

@@ -105,7 +105,7 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
         started = time.perf_counter()
         scene = mr.wall_scene(case, contacts)
-        engine = Engine.of(mujoco.MjModel.from_xml_string(mr.wall_mjcf(case, contacts, h)), scene)
+        engine = Engine.from_model(mujoco.MjModel.from_xml_string(mr.wall_mjcf(case, contacts, h)), scene)
         model = engine.model
         model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
         if default_contacts:

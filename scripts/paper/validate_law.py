@@ -137,7 +137,7 @@ def possible(law: DampingLaw, one: Combination, wanted: float) -> bool:
     wall = one.wall
     low, high = law.reach(wall, one.k_base)
     peak = wall.rotation_at(wanted**2 * float(wall.potential_energy(one.amplitude * wall.alpha)))
-    uplift = Groups.of(wall, mr.Restitution.from_geometry(wall.alpha), one.k_base).softness * wall.alpha
+    uplift = Groups.from_wall(wall, mr.Restitution.from_geometry(wall.alpha), one.k_base).softness * wall.alpha
     return bool(low <= mr.Restitution.from_geometry(wall.alpha).base <= high and peak > uplift)
 
 

@@ -59,7 +59,7 @@ def system(d, lines=1, edges=0, still=False):
         laws=(Bonds(Bonds.table(d, lines)),),
         links=(),
         guided=np.zeros(0, dtype=np.int64),
-        ground=Ground.of(None),
+        ground=Ground.from_motions(None),
         supports=supports,
     )
 

@@ -24,7 +24,7 @@ RECORDS = [mr.GroundMotion(np.array(a), 0.04) for a in ([0.3, -0.5, 1.0], [-0.3,
 
 def ground(d):
     """The ground moves along every axis of the system."""
-    return Ground.of(RECORDS[0], RECORDS[1], RECORDS[2] if d == 3 else None)
+    return Ground.from_motions(RECORDS[0], RECORDS[1], RECORDS[2] if d == 3 else None)
 
 
 def moved(d, t):
@@ -191,7 +191,7 @@ def test_unless_it_is_asked_to_a_run_damps_nothing_and_looks_not_ahead():
 @pytest.mark.parametrize(("drag", "local"), [(0.0, 0.0), (0.4, 0.0), (0.0, 0.2)])
 def test_a_motion_is_slowed_down_as_it_is_asked_to(d, drag, local):
     """Mass-proportional damping lets velocities decay; local damping takes a share of a force against the motion."""
-    whole = flying(d)._replace(ground=Ground.of(None))
+    whole = flying(d)._replace(ground=Ground.from_motions(None))
     velocity = whole.bodies["velocity"].copy()
     account, samples = room(whole, 4)
     advanced(whole, account, samples, clock(d, 4, drag=drag, local=local))
@@ -275,7 +275,7 @@ def test_what_friction_takes_is_kept_where_there_is_a_ledger_or_a_support(d, led
 def test_links_act_and_are_booked_at_the_time_of_the_pose(d):
     """An actuator drives one of the bodies along a history."""
     whole, count = flying(d), 31
-    whole = whole._replace(ground=Ground.of(None))
+    whole = whole._replace(ground=Ground.from_motions(None))
     whole.bodies["inverse_inertia"] = 0.0
     whole.bodies["spin"] = 0.0
     if d == 3:
@@ -306,7 +306,7 @@ def test_a_tie_breaks_when_a_body_has_fallen_so_far(d):
     whole, count, up = flying(d), 31, np.eye(d)[-1]
     law = {"k": 300.0, "strength": 1.0, "ultimate": 0.05, "reach": 1.0, "broken": math.inf}
     tie = Ties.table(d, 1, body=1, between=-up, **law)
-    whole = whole._replace(ground=Ground.of(None), links=numbered((Ties(tie),)))
+    whole = whole._replace(ground=Ground.from_motions(None), links=numbered((Ties(tie),)))
     for name in ("place", "velocity", "spin", "inverse_inertia"):
         whole.bodies[name][1] = 0.0
     if d == 3:

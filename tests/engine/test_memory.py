@@ -21,7 +21,7 @@ def model(one_sided, contacts):
 
 def test_the_options_are_where_they_should_be(model):
     data = mujoco.MjData(model)
-    found = EngineArrays.of(model, data)
+    found = EngineArrays.from_model(model, data)
     assert (found.options[TIMESTEP], found.options[IMPRATIO]) == (model.opt.timestep, model.opt.impratio)
     assert model.opt.timestep == 1e-3
     found.options[TIMESTEP] = 5e-4
@@ -38,7 +38,7 @@ def test_options_elsewhere_are_refused_and_nothing_is_written(model, monkeypatch
     for name, wrong in (("gravity", 48), ("gravity", 64), ("gravity", 512), ("impratio", 16), ("timestep", 8)):
         monkeypatch.setattr(memory, "places", lambda there=right | {name: wrong}: there)
         with pytest.raises(RuntimeError, match=r"does not keep opt\.timestep and opt\.impratio where"):
-            EngineArrays.of(model, mujoco.MjData(model))
+            EngineArrays.from_model(model, mujoco.MjData(model))
     assert bytes(options) == before
 
 
@@ -75,7 +75,7 @@ def test_a_step_by_address_is_a_step(model):
     one, other = mujoco.MjData(model), mujoco.MjData(model)
     for data in (one, other):
         mujoco.mj_resetDataKeyframe(model, data, 0)
-    found = EngineArrays.of(model, one)
+    found = EngineArrays.from_model(model, one)
     for _ in range(50):
         found.step(found.model, found.data)
         mujoco.mj_step(model, other)

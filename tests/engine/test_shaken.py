@@ -30,7 +30,7 @@ def test_a_wall_on_ice_stays_where_it_is(accuracy):
     with engine_of(scene) as engine:
         engine.place(course)
         steps = fitted_steps(engine, scene, course, accuracy).record
-    shaking = Shaking.of(record)
+    shaking = Shaking.from_motion(record)
     ground = [ground_velocity(shaking, t + 0.5 * h) for t, h in zip(steps.t, steps.h, strict=True)]
     assert np.count_nonzero(np.diff(steps.h)) > 3
     assert np.abs(steps.after[:, 0] + ground).max() < 1e-5 * accuracy * np.abs(ground).max() / 1e-2 + 1e-9
@@ -39,7 +39,7 @@ def test_a_wall_on_ice_stays_where_it_is(accuracy):
 def test_touches_are_approached(two_sided, contacts):
     """A step on moving ground ends before a touch that is not near, and meets one that is."""
     scene = mr.scene_of(two_sided, contacts)
-    control = StepControl.of(scene, wall_course(two_sided, scene), 1e-3)
+    control = StepControl.from_scene(scene, wall_course(two_sided, scene), 1e-3)
     near = METHOD.near * control.short
     assert approached(control, 1.0, 10 * near) == (METHOD.approach * (10 * near), 0.0)
     assert approached(control, 5 * near, 10 * near) == (5 * near, 0.0)

@@ -159,7 +159,7 @@ def test_an_engine_that_weighs_contacts_otherwise_is_refused(two_sided, contacts
     )
     text = text.replace('qpos="', 'qpos="0 ').replace('qvel="', 'qvel="0 ')
     with pytest.raises(mr.SimulationError, match="inverse weight"):
-        Engine.of(mujoco.MjModel.from_xml_string(text), mr.wall_scene(two_sided, contacts))
+        Engine.from_model(mujoco.MjModel.from_xml_string(text), mr.wall_scene(two_sided, contacts))
 
 
 @pytest.mark.parametrize("timestep", [0.0, -1e-3, math.nan, 2.0])

@@ -90,7 +90,7 @@ def test_ringing_is_an_extra_dashpot():
 def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
     """A friction row has impratio times the inertia of its normal row, here 1 kg and 2 kg. It is 1 without friction."""
     c = np.array([1.0, 2.0]) * 2 / H
-    rows, none = ContactRows.of(2), np.zeros(2)
+    rows, none = ContactRows.with_room(2), np.zeros(2)
     wall = mr.Block(b=0.3, h=2.0)
     contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
     points = points_of(mr.wall_scene(mr.Case(wall, 0.0, 1.0, side_stop=False), contacts))

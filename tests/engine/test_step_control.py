@@ -35,10 +35,12 @@ def openings(count, of):
 
 def test_the_limits_of_a_wall(scene, wall, contacts):
     """The short step resolves the contacts, the longest the rocking; both go with the root of the accuracy."""
-    control = StepControl.of(scene, course(scene), 1e-4)
+    control = StepControl.from_scene(scene, course(scene), 1e-4)
     assert control.short == pytest.approx(math.sqrt(METHOD.short * 1e-4) / scene.highest_frequency)
     assert control.longest == pytest.approx(math.sqrt(METHOD.longest * 1e-4) / wall.p)
-    assert StepControl.of(scene, course(scene), 0.1).short == pytest.approx(METHOD.most / scene.highest_frequency)
+    assert StepControl.from_scene(scene, course(scene), 0.1).short == pytest.approx(
+        METHOD.most / scene.highest_frequency
+    )
     # two lines hold m g with their springs, m g / 2 each
     assert control.least_energy == pytest.approx(wall.weight**2 / contacts.base.stiffness.sum())
     np.testing.assert_allclose(control.ringing, [[0] * 4, [METHOD.ringing_borne] * 2 + [METHOD.ringing_open] * 2])
@@ -56,7 +58,7 @@ def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
         mr.Case(wall, 0.0, 1.0, vertical=motion),
     ):
         scene = wall_scene(shaken, contacts)
-        assert StepControl.of(scene, wall_course(shaken, scene), 1e-3).longest == 3e-3
+        assert StepControl.from_scene(scene, wall_course(shaken, scene), 1e-3).longest == 3e-3
     case = mr.Case(wall, 0.0, 1.0, side_stop=False)
     for xi, limited in ((0.08, False), (0.12, False), (0.2, True), (0.8, True)):
         damped = wall_scene(case, dataclasses.replace(contacts, base=dataclasses.replace(contacts.base, xi=xi)))
@@ -70,7 +72,7 @@ def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
 
 def test_a_step_is_judged_by_the_change_of_acceleration(scene):
     """Halved above what is tolerated, doubled after two steps in a row below a quarter of it."""
-    control = StepControl.of(scene, course(scene), 1e-3)
+    control = StepControl.from_scene(scene, course(scene), 1e-3)
     tolerated, h = (METHOD.change * 1e-3) ** 2, math.sqrt(control.short * control.longest)
     assert judged(control, h, 1.01 * tolerated, 1) == (0.5 * h, 0)
     assert judged(control, h, 0.99 * tolerated, 1) == (h, 0)
@@ -85,7 +87,7 @@ def test_a_step_is_judged_by_the_change_of_acceleration(scene):
 def test_a_loaded_point_stays_loaded(scene, sign):
     """h^2/2 |g2| = stays |g|; what has lifted off or bears nothing at rest does not count."""
     pressed, curve, points = scene.bears[0], 3.0, points_of(scene)
-    control = StepControl.of(scene, course(scene), 1e-3)._replace(short=1e-5)
+    control = StepControl.from_scene(scene, course(scene), 1e-3)._replace(short=1e-5)
     longest = math.sqrt(2 * METHOD.stays * pressed / curve)
     just, hardly = 1.01 * METHOD.loaded, 0.99 * METHOD.loaded
     for point, share, counts in ((0, 1.0, True), (1, just, True), (1, hardly, False), (3, 1, False)):
@@ -102,7 +104,7 @@ def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
     scene = two_blocks()
     ties = scene.ties._replace(k=np.ones(1), stretch=np.ones(1), reach=np.ones(1))
     longer = openings(5, {4: (-0.01, -0.3, 20.0, 10.0)})
-    control = StepControl.of(scene, course(scene), 1e-3)._replace(short=1e-4, taut=1.0)
+    control = StepControl.from_scene(scene, course(scene), 1e-3)._replace(short=1e-4, taut=1.0)
     assert while_taut(control, ties, longer, 0.02) == pytest.approx(0.01)
     assert while_taut(control._replace(short=0.015), ties, longer, 0.02) == 0.015
     assert while_taut(control, ties, longer, 0.009) == 0.009
@@ -122,7 +124,7 @@ def test_steps_on_a_taut_tie(wall, contacts):
 
     def taut(case):
         scene = wall_scene(case, contacts)
-        return StepControl.of(scene, wall_course(case, scene), 1e-3).taut
+        return StepControl.from_scene(scene, wall_course(case, scene), 1e-3).taut
 
     assert taut(free) == math.inf
     omega = math.sqrt(1e6 * (1 / wall.mass + wall.h**2 / wall.inertia))
@@ -228,7 +230,7 @@ def test_a_base_sticks_up_to_mu(share, slides):
 def test_between_blocks_the_extra_dashpot_is_only_what_the_joint_lacks():
     for xi in (0.0, 1e-4, 0.05):
         scene = two_blocks(xi=xi)
-        control = StepControl.of(scene, course(scene), 1e-3)
+        control = StepControl.from_scene(scene, course(scene), 1e-3)
         lacking = np.maximum(METHOD.ringing_borne - scene.contacts.c / scene.contacts.k / control.longest, 0)
         np.testing.assert_allclose(control.ringing[1], lacking)
         assert (lacking[0] == METHOD.ringing_borne, lacking[0] == 0) == (xi == 0, xi == 0.05)

@@ -41,14 +41,14 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
     """
     start = scene.at_rest + np.array([away, 0.0, 0.0])
     slides = course(scene, [[-SPEED, 0.0, 0.0]], 1.0, pose=start)
-    control, setting = StepControl.of(scene, slides, ACCURACY), Setting.of(scene, slides)
+    control, setting = StepControl.from_scene(scene, slides, ACCURACY), Setting.of_run(scene, slides)
     with engine_of(scene) as engine:
         engine.follow(h, pair_rows(scene, h, 0.25))
         engine.release(slides)
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
-        sliding = Sliding.of(setting.points, coulomb=True)
-        state = Progress.of(engine.memory, setting, Joints.of_scene(scene), sliding)
-        record = Record.of(1, (3, 3), len(scene.contacts.k))
+        sliding = Sliding.at_start(setting.points, coulomb=True)
+        state = Progress.at_start(engine.memory, setting, Joints.of_scene(scene), sliding)
+        record = Record.with_room(1, (3, 3), len(scene.contacts.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
         before = StepClock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
         values, n = fitted_loop(engine.memory, setting, control, state, before, record)
@@ -104,7 +104,7 @@ def test_when_a_gap_closes(curve):
     g, g1 = 0.01, -0.3
     t = min(root.real for root in np.roots([0.5 * curve, g1, g]) if root.real > 0)
     for parts in ((curve, 0.0), (3.0, curve - 3.0)):
-        openings, touches = Openings.of(2), Touches(np.ones(2), *np.zeros((3, 2)))
+        openings, touches = Openings.with_room(2), Touches(np.ones(2), *np.zeros((3, 2)))
         for i, opening in enumerate([(1.0, -0.3, 0.0, 0.0), (g, g1, *parts)]):
             openings.value[i], openings.rate[i], openings.linear[i], openings.swept[i] = opening
         assert predict(touches, openings, 1.01 * t, 1.0, 0.0) == pytest.approx(t)

@@ -467,7 +467,7 @@ def test_the_ground_pushes_every_body_along_its_two_directions(freedom):
     """-m times the mean accelerations, along x and upwards; what has no mass in these directions is not pushed."""
     x, z = (mr.GroundMotion([a, a], 0.5) for a in (2.0, -3.0))
     masses, applied = np.arange(1.0, 2 * freedom.nv + 1), np.zeros(2 * freedom.nv)
-    push_ground(Ground.of(x, z), masses, freedom.axes, 0.2, 0.1, applied)
+    push_ground(Ground.from_motions(x, z), masses, freedom.axes, 0.2, 0.1, applied)
     accelerations = np.zeros((2, freedom.nv))
     accelerations[:, 0], accelerations[:, freedom.translations - 1] = 2.0, -3.0
     np.testing.assert_allclose(applied, -masses * accelerations.ravel())

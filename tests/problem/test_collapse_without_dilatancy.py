@@ -270,7 +270,9 @@ def test_a_state_that_does_not_hold_is_none():
     masonry = study.masonry_of([[1], [0.5, 0.5]], 0.9)
     grown = np.zeros((3, 3))
     grown[:, 0] = [mr.GRAVITY * masonry.blocks[i].mass for i in masonry.free]
-    programme = Programme.of(masonry, weight_of(masonry), grown, masonry.lines.across, Pulls.of(masonry))
+    programme = Programme.from_forces(
+        masonry, weight_of(masonry), grown, masonry.lines.across, Pulls.from_forces(masonry)
+    )
     state = states_without_dilatancy(programme)[0]
     assert programme.holds(state)
     assert not programme.holds(state._replace(multiplier=state.multiplier + 1e-3))

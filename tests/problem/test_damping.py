@@ -84,7 +84,7 @@ def test_what_a_calibrated_law_depends_on(wall, e):
 
 @pytest.mark.parametrize("law", [CALIBRATED, CALIBRATED_BED])
 def test_the_formula_of_the_base_and_its_inverse(law, wall, e):
-    groups = Groups.of(wall, e, 5e8)
+    groups = Groups.from_wall(wall, e, 5e8)
     for loss in (0.02, 0.03, 0.035):
         assert law.base.loss(groups, law.base.xi(groups, loss)) == pytest.approx(loss)
     low, high = law.reach(wall, 5e8)

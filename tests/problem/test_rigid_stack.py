@@ -20,7 +20,7 @@ def stack(blocks, **options):
 
 @pytest.mark.parametrize("blocks", [1, 2, 5])
 def test_equal_blocks_are_their_wall(blocks):
-    pile = RigidStack.of(stack(blocks))
+    pile = RigidStack.from_masonry(stack(blocks))
     assert pile.masses.sum() == pytest.approx(WALL.mass)
     assert pile.inertia == pytest.approx(WALL.inertia)
     assert pile.centroid == pytest.approx([0, 2.1], abs=1e-12)
@@ -32,7 +32,7 @@ def test_equal_blocks_are_their_wall(blocks):
 
 def test_it_rises_to_the_rotation_that_was_asked_for():
     """The energy of the start is that of the wall at the rotation, and the time that of Housner's quarter period."""
-    pile = RigidStack.of(stack(3))
+    pile = RigidStack.from_masonry(stack(3))
     velocity, swing = pile.rising(0.4)
     rate = velocity[0, 2]
     assert (velocity[:, 2] == rate).all()
@@ -44,7 +44,7 @@ def test_it_rises_to_the_rotation_that_was_asked_for():
 
 def test_two_blocks_that_are_not_alike_and_not_in_line():
     parts = [box(-0.5, 0.5, 0, 1), box(-0.1, 0.5, 1, 3, density=1000.0)]
-    pile = RigidStack.of(mr.Masonry([GROUND, *parts]))
+    pile = RigidStack.from_masonry(mr.Masonry([GROUND, *parts]))
     assert pile.centroid == pytest.approx([0.2 * 1200 / 3200, (0.5 * 2000 + 2 * 1200) / 3200])
     x, z = pile.centroid
     far = 2000 * (x**2 + (z - 0.5) ** 2) + 1200 * ((0.2 - x) ** 2 + (2 - z) ** 2)
@@ -57,9 +57,12 @@ def test_two_blocks_that_are_not_alike_and_not_in_line():
 @pytest.mark.parametrize("blocks", [1, 3])
 def test_the_restitution_of_a_stack_is_that_of_its_wall(blocks, top):
     side_stop = True if top is None else mr.SideStop(top)
-    e, expected = as_one(RigidStack.of(stack(blocks, side_stop=side_stop))), mr.Restitution.from_geometry(WALL, top)
+    e, expected = (
+        as_one(RigidStack.from_masonry(stack(blocks, side_stop=side_stop))),
+        mr.Restitution.from_geometry(WALL, top),
+    )
     assert (e.base, e.side) == pytest.approx((expected.base, expected.side))
-    alone = as_one(RigidStack.of(stack(blocks)))
+    alone = as_one(RigidStack.from_masonry(stack(blocks)))
     assert (alone.base, alone.side) == (pytest.approx(expected.base), 0)
 
 
@@ -67,7 +70,7 @@ def test_a_side_stop_on_the_right_is_the_mirror_image():
     parts = [box(-0.3, 0.3, 0, 2), box(-0.3, 0.3, 2, 4)]
     left = mr.Masonry([GROUND, *parts, box(-1, -0.3, 0, 4, fixed=True, name="side")])
     right = mr.Masonry([GROUND, *parts, box(0.3, 1, 0, 4, fixed=True, name="side")])
-    one, other = RigidStack.of(left), RigidStack.of(right)
+    one, other = RigidStack.from_masonry(left), RigidStack.from_masonry(right)
     assert (one.outwards, other.outwards) == (1, -1)
     assert one.rising(0.5)[0] == pytest.approx(other.rising(0.5)[0] * [-1, 1, -1])
     assert as_one(one).base == pytest.approx(as_one(other).base)
@@ -77,7 +80,7 @@ def test_a_side_stop_on_the_right_is_the_mirror_image():
 def test_a_stack_that_stands_elsewhere_is_the_same():
     def moved(by):
         blocks = [mr.Polygon(b.corners + by, fixed=b.fixed, name=b.name) for b in stack(2, side_stop=True).blocks]
-        return RigidStack.of(mr.Masonry(blocks))
+        return RigidStack.from_masonry(mr.Masonry(blocks))
 
     here, there = moved(np.zeros(2)), moved(np.array([7.0, 11.0]))
     assert there.centroid == pytest.approx(here.centroid)
@@ -88,13 +91,13 @@ def test_a_stack_that_stands_elsewhere_is_the_same():
 
 def test_the_stack_without_its_side_stop():
     masonry = stack(2, side_stop=True, k_side=3e8, side_friction=0.4, friction=0.8)
-    pile = RigidStack.of(masonry)
+    pile = RigidStack.from_masonry(masonry)
     assert [masonry.joints[i].name for i in pile.sides] == ["side|block_0", "side|block_1"]
     alone = pile.free_standing
     assert alone.names == ("ground", "block_0", "block_1")
     assert (alone.joint_stiffness == 1e9).all()
     assert (alone.joint_friction == 0.8).all()
-    assert RigidStack.of(alone).free_standing is alone
+    assert RigidStack.from_masonry(alone).free_standing is alone
 
 
 @pytest.mark.parametrize(
@@ -113,8 +116,8 @@ def test_the_stack_without_its_side_stop():
 )
 def test_what_is_no_stack_is_refused(masonry, complaint):
     with pytest.raises(ValueError, match=complaint):
-        RigidStack.of(masonry())
+        RigidStack.from_masonry(masonry())
 
 
 def test_drums_flatter_than_wide_are_a_stack_too():
-    assert RigidStack.of(columns(14)).wall.h == pytest.approx(2.1)
+    assert RigidStack.from_masonry(columns(14)).wall.h == pytest.approx(2.1)

@@ -147,7 +147,7 @@ def test_a_wall_lifts_no_edge_while_its_energy_is_below_that_of_uplift(wall, sha
         lifted = gaps(wall_scene(case, undamped).places, run.pose[:, 0]).max()
         assert bool(lifted > 0) is (share > 1)
         if share < 1:
-            np.testing.assert_allclose(run.energy, share**2 * Uplift.of(run.case, undamped).energy, rtol=5e-3)
+            np.testing.assert_allclose(run.energy, share**2 * Uplift.from_case(run.case, undamped).energy, rtol=5e-3)
 
 
 @pytest.mark.parametrize(

@@ -136,13 +136,13 @@ def test_an_engine_whose_run_has_failed_is_not_used_again(wall, contacts):
 def test_the_push_of_the_ground_is_its_impulse():
     """The compiled velocity is that of the motion; its mean acceleration over a window is the exact one."""
     motion = mr.GroundMotion(np.random.default_rng(2).normal(0, 2, 50), 0.013)
-    ground = Shaking.of(motion)
+    ground = Shaking.from_motion(motion)
     for t in (-0.1, 0.0, 1e-4, 0.2, 0.3334, motion.duration, motion.duration + 1):
         assert ground_velocity(ground, t) == pytest.approx(float(motion.velocity(t)), abs=1e-14)
         for h in (1e-5, 0.02):
             exact = float(motion.velocity(t + h / 2) - motion.velocity(t - h / 2)) / h
             assert mean_acceleration(ground, t, h) == pytest.approx(exact, abs=1e-9)
-    assert mean_acceleration(Shaking.of(None), 1.0, 0.1) == 0.0
+    assert mean_acceleration(Shaking.from_motion(None), 1.0, 0.1) == 0.0
 
 
 def test_a_stack_at_rest_stays_at_rest():

@@ -26,7 +26,7 @@ def stack(blocks, k_n=1e9, **options):
 
 def lost(masonry, amplitude=0.5, accuracy=1e-4):
     """Energy lost at the first impact over that of theory."""
-    pile = RigidStack.of(masonry)
+    pile = RigidStack.from_masonry(masonry)
     e = as_one(pile)
     return 1 + excess(rebound(masonry, amplitude, accuracy), abs(e.lumped) if pile.sides else e.base)
 
@@ -114,7 +114,7 @@ def test_a_matched_stack_loses_what_theory_says(blocks, k_n, side_stop):
     assert (matched.blocks, matched.k_n, matched.friction) == (given.blocks, given.k_n, given.friction)
     assert matched.joints == given.joints
     if not side_stop:
-        pile = RigidStack.of(matched)
+        pile = RigidStack.from_masonry(matched)
         velocity, swing = pile.rising(0.5)
         answer = mr.simulate(mr.MasonryCase(matched, 2.75 * swing, velocity=velocity), accuracy=1e-4)
         assert restitutions(answer, pile)[1] == pytest.approx(as_one(pile).base, rel=5e-4)
@@ -170,7 +170,7 @@ def test_the_joints_above_stay_closed_on_strong_dashpots():
     matched = mr.matched_masonry(law)
     opening = []
     for masonry in (law, matched):
-        velocity, swing = RigidStack.of(masonry).rising(0.5)
+        velocity, swing = RigidStack.from_masonry(masonry).rising(0.5)
         opening.append(mr.simulate(mr.MasonryCase(masonry, 1.75 * swing, velocity=velocity), accuracy=1e-4).opening)
     assert opening[0][0] == pytest.approx(opening[1][0], rel=1e-3)
     assert opening[0][1] > 1e-3
@@ -180,7 +180,7 @@ def test_the_joints_above_stay_closed_on_strong_dashpots():
 def test_the_uppermost_block_alone_loses_what_theory_says_on_strong_dashpots():
     """Half as high as wide, where the law lies outside its fit and lets it bounce."""
     given = stack(7, law=lambda wall, e, k_n: (0.05, 0.01))
-    c_over_k = strong(RigidStack.of(given))
+    c_over_k = strong(RigidStack.from_masonry(given))
     one = mr.Masonry.stack([mr.Block(0.3, 0.3)], 1e9, friction=HOLDS, xi=0.5 * c_over_k, frequency=1.0)
     assert lost(one) == pytest.approx(1, abs=2e-3)
     with warnings.catch_warnings(action="ignore"):
@@ -203,7 +203,7 @@ def test_the_strong_dashpots_of_two_blocks():
     stiffness[1, 2] = stiffness[2, 1] = -turned
     rigid, lowest = np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)[:2]
     assert abs(rigid) < 1e-9 * lowest  # it turns about the edge
-    assert strong(RigidStack.of(stack(2))) == pytest.approx(2 * STRONG_ABOVE / math.sqrt(lowest), rel=1e-9)
+    assert strong(RigidStack.from_masonry(stack(2))) == pytest.approx(2 * STRONG_ABOVE / math.sqrt(lowest), rel=1e-9)
 
 
 def test_a_restitution_of_ones_own():

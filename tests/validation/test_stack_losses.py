@@ -42,7 +42,7 @@ def test_two_solvers_agree_on_what_a_stack_loses(blocks, matched, expected):
         masonry = mr.Masonry.stack([mr.Block(0.3, 2.1 / blocks)] * blocks, 1e9, friction=10.0, law="CALIBRATED")
     if matched:
         masonry = mr.matched_masonry(masonry)
-    pile = RigidStack.of(masonry)
+    pile = RigidStack.from_masonry(masonry)
     velocity, swing = pile.rising(0.5)
     case = mr.MasonryCase(masonry, 1.75 * swing, velocity=velocity)
     answer = mr.simulate(case, accuracy=1e-5)

@@ -56,7 +56,7 @@ class Pairs:
     held: float
 
     @classmethod
-    def of(cls, scene: Scene, pieces: list[Piece]) -> Pairs:
+    def in_scene(cls, scene: Scene, pieces: list[Piece]) -> Pairs:
         """The pairs of pieces between which the scene has contacts."""
         contacts, bodies = scene.contacts, scene.bodies
         first, second = _carriers(scene, pieces)

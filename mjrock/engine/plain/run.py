@@ -69,7 +69,7 @@ class PlainModel:
     @cached_property
     def pairs(self) -> Pairs:
         """The law of their contacts."""
-        return Pairs.of(self.scene, self.pieces)
+        return Pairs.in_scene(self.scene, self.pieces)
 
     @property
     def start(self) -> tuple[Array, Array]:

@@ -421,7 +421,7 @@ class Uplift(NamedTuple):
     energy: float
 
     @classmethod
-    def of(cls, case: Case, contacts: Contacts) -> Uplift:
+    def from_case(cls, case: Case, contacts: Contacts) -> Uplift:
         """The uplift of a case. Loads and thrusts that make the wall lean leave the energy as it is."""
         base, moment = contacts.base, case.restoring
         rotation = case.pressing / (float(base.stiffness.sum()) * case.block.half_base)

@@ -72,7 +72,9 @@ class Groups:
     side_loss: Numbers
 
     @classmethod
-    def of(cls, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5) -> Groups:
+    def from_wall(
+        cls, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+    ) -> Groups:
         """The groups of `wall` on a base of `k_n` [N/m3] against a side of `k_side`, the same where it is None."""
         softness = wall.weight / (2 * k_n * wall.base_length * wall.half_base**2) / wall.alpha
         return cls(
@@ -334,7 +336,7 @@ class DampingLaw:
         require_kind("e", e, Restitution)
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
-        groups = Groups.of(wall, e, k_n, k_side, amplitude)
+        groups = Groups.from_wall(wall, e, k_n, k_side, amplitude)
         if outside := self._outside(wall, e, k_n, k_side):
             warn_of(f"{self.name}: outside the range of the fit: {'; '.join(outside)}")
         xi_base = float(self.base.xi(groups, groups.base_loss))
@@ -364,7 +366,7 @@ class DampingLaw:
         loss = getattr(self.base, "loss", None)
         if loss is None:
             return 0.0, 1.0
-        groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
+        groups = Groups.from_wall(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
         return math.exp(-float(loss(groups, HIGHEST_XI))), math.exp(-float(loss(groups, LEAST_XI)))
 
     @within_ranges
@@ -461,7 +463,7 @@ def rebound_over_uplift(wall: Block, e: Restitution, k_n: float, amplitude: floa
     """
     released = float(wall.potential_energy(amplitude * wall.alpha))
     rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha
-    return float(rebound / Groups.of(wall, e, k_n, amplitude=amplitude).softness)
+    return float(rebound / Groups.from_wall(wall, e, k_n, amplitude=amplitude).softness)
 
 
 def _toml(value: object) -> str:

@@ -328,7 +328,7 @@ class Masonry(Constructors, NotebookPicture):
     def table(self) -> JointTable:
         """The properties of the joints, a row each, with the damping of the law where there is one."""
         given = {name: getattr(self, name) for name in PROPERTIES}
-        table = JointTable.of(self.joints, given)
+        table = JointTable.from_properties(self.joints, given)
         if self.law is None:
             return table
         if (known := table.frequency[~np.isnan(table.frequency)]).size:

@@ -28,7 +28,7 @@ class RigidStack:
     wall: Block
 
     @classmethod
-    def of(cls, masonry: Masonry) -> Self:
+    def from_masonry(cls, masonry: Masonry) -> Self:
         """The stack that a masonry is; a ValueError says if it is not one, is held both ways or too squat to rock."""
         blocks, joints = masonry.blocks, masonry.joints
         sides = tuple(i for i, joint in enumerate(joints) if is_side(blocks, joint))

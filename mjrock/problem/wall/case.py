@@ -237,7 +237,7 @@ class Case(Carrying):
     @cached_property
     def resisting(self) -> tuple[TiePull, ...]:
         """All that resists a push outwards with a spring: ties, which bring the wall back, and what slips both ways."""
-        return tuple(TiePull.of(tie, self.block) for tie in self.springs.values())
+        return tuple(TiePull.from_tie(tie, self.block) for tie in self.springs.values())
 
     def limits_of_ties(self, rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
         """Rotations [rad] at which ties yield, and at which they break, by name, within increasing `rotations` (n,)."""

@@ -140,7 +140,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
 def _of_effects(case: Any) -> list[str]:
     def room(link: Anchored) -> tuple[float, float]:
         b, far = case.block.b, max(case.restoring.outer.alpha, case.wall.alpha)
-        pull = TiePull.of(link, case.block)._replace(reach=link.span)
+        pull = TiePull.from_tie(link, case.block)._replace(reach=link.span)
         return 2 * b, float(pulled(pull, far, 1.0)[0])
 
     return of_effects(case.effects, Whole("wall", "the wall", case.block.mass, LEAST_OF_WALL), room)

@@ -131,7 +131,7 @@ class TiePull(NamedTuple):
     ultimate: float
 
     @classmethod
-    def of(cls, tie: Anchored, wall: Any) -> TiePull:
+    def from_tie(cls, tie: Anchored, wall: Any) -> TiePull:
         """A tie that holds the inner face of a wall, a `Block`."""
         law = tie.law
         shape = wall.inner_face(tie.height), tie.height, tie.length, tie.rise, wall.half_base, law.reach

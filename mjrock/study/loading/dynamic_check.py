@@ -262,7 +262,7 @@ def dynamic_check(
         case = cast(Case, cases[0])
         d_0, maxima = d_0_of(case), [displaced(case.wall, one * case.wall.alpha) for one in _peaks(given, store)]
     else:
-        centroid = MovingCentroid.of(curve)
+        centroid = MovingCentroid.from_curve(curve)
         d_0, maxima = centroid.d_0, [centroid.largest(one) for one in _masonry_runs(given, store, histories)]
         centroid.warn_of_weaker_way()
     found = tuple(
@@ -315,10 +315,10 @@ class MovingCentroid(NamedTuple):
     d_0: float
 
     @classmethod
-    def of(cls, curve: LimitCurve | Push) -> MovingCentroid:
+    def from_curve(cls, curve: LimitCurve | Push) -> MovingCentroid:
         """The blocks that move in a limit curve, or all free ones in a push."""
         if isinstance(curve, LimitCurve):
-            found = PartCurve.of("curve", curve)
+            found = PartCurve.from_curve("curve", curve)
             if not found.is_whole:
                 raise ValueError(
                     f"curve = {curve!r} ends where something is borne; give it up to where nothing is, or take the "

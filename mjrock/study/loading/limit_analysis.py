@@ -175,7 +175,7 @@ def collapse_multiplier(
     links = tuple(link_effects(given).values())
     spans, constant = [link.span for link in links], applied(masonry, given)
     strength = np.array([law.pulls_at(span) for law, span in zip(laws, spans, strict=True)])
-    ties = Pulls.of(masonry, pulls_of(masonry, links), strength)
+    ties = Pulls.from_forces(masonry, pulls_of(masonry, links), strength)
     if pose is not None:
         return limit_of(masonry, push, grown, constant, ties=ties, least=-math.inf)
     falls = falling(masonry, constant, ties)
@@ -451,7 +451,7 @@ def limit_curve(
     given = _required(masonry, effects)
     push = partial(collapse_multiplier, masonry, direction, angle=angle, loads=loads, effects=given)
     start = found = push()
-    path = Path.of(masonry, start)
+    path = Path.from_collapse(masonry, start)
     if to is None:
         step = path.reach(start, push) / poses
         to, most = math.inf, FARTHER * poses
@@ -520,7 +520,7 @@ class Path(NamedTuple):
     size: float
 
     @classmethod
-    def of(cls, masonry: Masonry, start: Collapse) -> Path:
+    def from_collapse(cls, masonry: Masonry, start: Collapse) -> Path:
         """That of masonry pushed along a direction, or by the loads alone with which it begins to move."""
         share = pushed(masonry, start.direction) if start.direction.any() else _forces(masonry, start.loads)
         total = float(np.linalg.norm(share[:, : len(start.direction)], axis=1).sum())
@@ -563,7 +563,7 @@ class Path(NamedTuple):
 
     def staying(self, pose: Array, found: Collapse) -> Stay:
         """Which lines stay in a mechanism."""
-        moves, lines, velocity = Moves.of(self.masonry, pose), self.masonry.lines, found.motion.ravel()
+        moves, lines, velocity = Moves.from_pose(self.masonry, pose), self.masonry.lines, found.motion.ravel()
         closed = gaps_of(lines, moves)[2] <= self.masonry.tolerance
         normal = self.rates(moves, lines.normal) @ velocity
         along = np.hypot.reduce([self.rates(moves, way) @ velocity for way in lines.across])
@@ -599,7 +599,7 @@ class Path(NamedTuple):
 
     def closes(self, before: Array, after: Array, stay: Stay) -> bool:
         """Whether a line that does not stay has gone behind its face, farther than it was."""
-        gap, was = (gaps_of(self.masonry.lines, Moves.of(self.masonry, pose))[2] for pose in (after, before))
+        gap, was = (gaps_of(self.masonry.lines, Moves.from_pose(self.masonry, pose))[2] for pose in (after, before))
         return bool((gap < np.minimum(was, 0.0) - BEHIND * self.masonry.tolerance)[~stay.closed].any())
 
     def projected(self, pose: Array, motion: Array, stay: Stay) -> Array:
@@ -607,7 +607,7 @@ class Path(NamedTuple):
         lines, goal = self.masonry.lines, self.relative(pose)
         after = self.turned(pose, motion)
         for _ in range(TURNS):
-            moves = Moves.of(self.masonry, after)
+            moves = Moves.from_pose(self.masonry, after)
             off = self.relative(after) - goal
             rows = [self.rates(moves, lines.normal)[stay.closed]]
             rows += [self.rates(moves, way)[stay.stuck] for way in lines.across]
@@ -622,7 +622,7 @@ class Path(NamedTuple):
 
     def relative(self, pose: Array) -> Array:
         """Where points of lines are from those of their faces, in the axes of the faces at rest [m], shape (m, d)."""
-        moves, lines = Moves.of(self.masonry, pose), self.masonry.lines
+        moves, lines = Moves.from_pose(self.masonry, pose), self.masonry.lines
         apart = moves.at(lines.body, lines.at) - moves.at(lines.face, lines.at)
         return np.asarray((np.swapaxes(moves.turn[lines.face], 1, 2) @ apart[..., None])[..., 0])
 
@@ -630,6 +630,6 @@ class Path(NamedTuple):
         """A pose after a motion, whose rotations are about the axes of the world in space."""
         if not self.masonry.in_space:
             return pose + motion
-        turn = Moves.of(self.masonry, pose).turn[list(self.masonry.free)]
+        turn = Moves.from_pose(self.masonry, pose).turn[list(self.masonry.free)]
         own = np.concatenate([motion[:, :3], (np.swapaxes(turn, 1, 2) @ motion[:, 3:, None])[..., 0]], axis=1)
         return moved(pose.ravel(), own.ravel(), SPACE).reshape(pose.shape)

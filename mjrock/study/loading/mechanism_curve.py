@@ -103,14 +103,14 @@ class PartCurve(NamedTuple):
     along: Array
 
     @classmethod
-    def of(cls, name: str, curve: LimitCurve) -> PartCurve:
+    def from_curve(cls, name: str, curve: LimitCurve) -> PartCurve:
         """That of a limit curve; a ValueError with its name says if it bears nothing or has been ended."""
         masonry, borne = curve.start.masonry, curve.multiplier
         if curve.start.loads:
             raise ValueError(f"{name} = {curve!r} has loads; the check is of a horizontal force: give them as effects")
         if masonry is None or not curve.start.moving or not borne[0] > 0:
             raise ValueError(f"{name} = {curve!r} has no mechanism: nothing gives way, or nothing is borne")
-        part = MovingPart.of(curve.start, masonry, curve.effects)
+        part = MovingPart.from_collapse(curve.start, masonry, curve.effects)
         moved, along = part.displacement(masonry, curve.pose), curve.displacement
         if borne[-1] > 0:
             return cls(part, masonry, moved, borne, along)
@@ -127,7 +127,7 @@ class PartCurve(NamedTuple):
 
 def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
     """Masonry of blocks, up to where nothing is borne, or where the mechanism cannot go on."""
-    found = PartCurve.of("case", curve)
+    found = PartCurve.from_curve("case", curve)
     part, d = found.part, found.displacement / found.part.participation
     alpha_0 = multiplier_of(curve.start, found.masonry, curve.effects)
     if not found.is_whole:

@@ -35,7 +35,7 @@ class MovingPart(NamedTuple):
     sway: Array
 
     @classmethod
-    def of(cls, found: Collapse, masonry: Masonry, effects: tuple[Effect, ...]) -> MovingPart:
+    def from_collapse(cls, found: Collapse, masonry: Masonry, effects: tuple[Effect, ...]) -> MovingPart:
         """That of the mechanism of masonry with its effects."""
         numbers = [masonry.names.index(name) for name in found.moving]
         masses = [effect for effect in effects if effect.mass_added and effect.block in numbers]
@@ -56,7 +56,7 @@ class MovingPart(NamedTuple):
 
     def displacement(self, masonry: Masonry, pose: Array) -> Array:
         """How far its centroid has gone along the force in poses of the free blocks [m], shape (n,)."""
-        places = np.array([Moves.of(masonry, one).at(self.block, self.at) for one in pose])
+        places = np.array([Moves.from_pose(masonry, one).at(self.block, self.at) for one in pose])
         return np.asarray(((places - self.at) @ self.way) @ self.weight / self.weight.sum())
 
 

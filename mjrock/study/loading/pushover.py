@@ -205,7 +205,7 @@ def pushover(
         multiplier, moment = _rigid(case, path)
         start = float(multiplier[0])
     else:
-        scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts).rotation
+        scene, uplift = wall_scene(case, contacts), Uplift.from_case(case, contacts).rotation
         rest = float(scene.at_rest[0, 2])
         path = np.unique(np.concatenate([_path(case, rest, uplift, points), requested]))
         held = tilted(scene, path)

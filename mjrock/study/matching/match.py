@@ -176,7 +176,7 @@ class Match:
     def groups(self) -> Groups:
         """The dimensionless groups that the damping ratio is regressed on."""
         combination = self.combination
-        return Groups.of(combination.wall, self.e, combination.k_base, combination.k_side, combination.amplitude)
+        return Groups.from_wall(combination.wall, self.e, combination.k_base, combination.k_side, combination.amplitude)
 
     @property
     def loss(self) -> float:

@@ -222,7 +222,7 @@ def matched_masonry(
     require_kind("e", e, Restitution, type(None))
     amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
     accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
-    pile = RigidStack.of(masonry)
+    pile = RigidStack.from_masonry(masonry)
     e = as_one(pile) if e is None else e
     if pile.sides:
         e.require_rebound()
@@ -257,7 +257,7 @@ def strong(pile: RigidStack) -> float:
     """
     stack = pile.free_standing
     lines = stack.lines
-    base = np.flatnonzero(lines.joint == RigidStack.of(stack).base)
+    base = np.flatnonzero(lines.joint == RigidStack.from_masonry(stack).base)
     edges = base[np.argsort(lines.at[base, 0])][[0, -1]]
     frequencies = []
     for edge in edges:
@@ -270,7 +270,7 @@ def strong(pile: RigidStack) -> float:
 
 def rebound(stack: Masonry, amplitude: float, accuracy: float) -> float:
     """|e| of the first rebound of a stack that rises as one to a rotation, a share of alpha; 0 without one."""
-    pile = RigidStack.of(stack)
+    pile = RigidStack.from_masonry(stack)
     velocity, swing = pile.rising(amplitude)
     for swings in (1.75, 3.5):  # a stack on soft joints rocks slower than a rigid one
         case = MasonryCase(stack, swings * swing, velocity=velocity)

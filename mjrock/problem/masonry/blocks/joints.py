@@ -181,7 +181,7 @@ class Edges(NamedTuple):
     number: Integers
 
     @classmethod
-    def of(cls, blocks: Sequence[Shape]) -> Edges:
+    def from_blocks(cls, blocks: Sequence[Shape]) -> Edges:
         """The edges of blocks."""
         count = np.array([len(block.sides) for block in blocks])
         starts, ends = np.array([side.corners for block in blocks for side in block.sides]).swapaxes(0, 1)
@@ -227,10 +227,12 @@ def joints_in_plane(
     is the largest overlap of blocks [m]. The joint lies halfway between them. Two fixed blocks make none. Pairs are the
     numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
-    names, edges = names_of(blocks), Edges.of(blocks)
+    names, edges = names_of(blocks), Edges.from_blocks(blocks)
     pairs = neighbours(blocks, gap) if pairs is None else pairs
     first, number = numbered_parts(blocks)
-    of_parts = edges if number.max() == 1 else Edges.of(list(chain.from_iterable(block.parts for block in blocks)))
+    of_parts = (
+        edges if number.max() == 1 else Edges.from_blocks(list(chain.from_iterable(block.parts for block in blocks)))
+    )
     joints: list[Joint] = []
     overlaps: list[tuple[float, int, int]] = []
     for some in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)):

@@ -328,7 +328,7 @@ class Bound(NamedTuple):
     of_hull: float
 
     @classmethod
-    def of(cls, body: Mesh) -> Bound:
+    def from_mesh(cls, body: Mesh) -> Bound:
         """A ValueError names a body whose vertices bound none."""
         with about(f"body {body.name}"):
             hull = hull_of(body.vertices)
@@ -382,7 +382,7 @@ def blocks_of(meshes: Sequence[Mesh], given: FileOptions) -> list[SolidBlock]:
         with about(f"body {body.name}"):
             require_near(body.vertices)
     middle = np.concatenate([body.vertices for body in bodies]).mean(axis=0)
-    bounds = [Bound.of(_support(body, middle)) for body in bodies]
+    bounds = [Bound.from_mesh(_support(body, middle)) for body in bodies]
     dented = sorted((bound for bound in bounds if not bound.is_convex), key=lambda bound: -bound.added)
     if dented and convex != "parts":
         _say_dented(dented, bounds, convex)

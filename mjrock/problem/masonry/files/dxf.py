@@ -253,7 +253,7 @@ def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, lengt
         if name not in known:
             raise ValueError(f"fixed = {name!r} is neither a layer nor a block; the layers are {named(list(layers))}")
 
-    def of(what: str, value: OfLayer, layer: str) -> float:
+    def of_layer(what: str, value: OfLayer, layer: str) -> float:
         if not isinstance(value, Mapping):
             return value
         if layer not in value:
@@ -264,7 +264,7 @@ def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, lengt
     dented: dict[str, tuple[Mesh, tuple[float, float]]] = {}
     for outline in drawing.outlines:
         counted, layer = outline.layer in fixed or outline.name in fixed, outline.layer
-        numbers = of("density", density, layer), of("length", length, layer)
+        numbers = of_layer("density", density, layer), of_layer("length", length, layer)
         corners = outline.corners @ turn.T
         begins = f"block {outline.name}, which begins at {corners[0, 0]:g}, {corners[0, 2]:g} m"
         if np.ptp(corners[:, 1]) > CLOSED_WITHIN * np.ptp(corners, axis=0).max():

@@ -225,7 +225,7 @@ class JointTable(NamedTuple):
     further: dict[str, Array]
 
     @classmethod
-    def of(cls, joints: Sequence[AnyJoint], given: Properties) -> JointTable:
+    def from_properties(cls, joints: Sequence[AnyJoint], given: Properties) -> JointTable:
         """The table of joints from their properties, a number or a function of the joint each.
 
         Raises:

@@ -195,7 +195,7 @@ class OwnSprings(NamedTuple):
     floor: Array
 
     @classmethod
-    def of(cls, bonds: tuple[Any, ...], joint: Integers, area: Array, weight: float) -> OwnSprings:
+    def from_joints(cls, bonds: tuple[Any, ...], joint: Integers, area: Array, weight: float) -> OwnSprings:
         """Those of contacts with these joints and areas, under a weight [N]."""
         some = np.array([isinstance(bonds[i], Own) for i in joint.tolist()]) if bonds else np.zeros(0, dtype=bool)
         contacts = np.flatnonzero(some)

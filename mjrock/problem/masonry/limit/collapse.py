@@ -140,7 +140,7 @@ def limit_of(
     weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
     turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
     across = axes_along(lines.normal, resultant) if turned else lines.across
-    state = masonry, weight + np.ravel(applied), grown, across, ties or Pulls.of(masonry)
+    state = masonry, weight + np.ravel(applied), grown, across, ties or Pulls.from_forces(masonry)
     found = _associated(*state, least) if associated else _without_dilatancy(*state)
     if found is None:
         return Collapse(math.inf, push, (), np.zeros_like(grown), masonry=masonry)
@@ -213,7 +213,7 @@ def _without_dilatancy(
     masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
 ) -> LimitForces | None:
     """The least state without dilatancy, None where nothing gives way."""
-    programme = Programme.of(masonry, constant, grown, across, ties)
+    programme = Programme.from_forces(masonry, constant, grown, across, ties)
     states = states_without_dilatancy(programme)
     if not states:
         return None

@@ -100,7 +100,9 @@ class Programme:
     method: str
 
     @classmethod
-    def of(cls, masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls) -> Programme:
+    def from_forces(
+        cls, masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+    ) -> Programme:
         """Those of masonry under forces that are constant, its weight among them, and forces that grow [N, N m], of all
         unknowns, and of ties.
 

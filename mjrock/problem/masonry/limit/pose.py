@@ -65,7 +65,7 @@ class Moves(NamedTuple):
     place: Array
 
     @classmethod
-    def of(cls, masonry: Masonry, pose: ArrayLike) -> Moves:
+    def from_pose(cls, masonry: Masonry, pose: ArrayLike) -> Moves:
         """Those of a pose of all blocks or of the free ones.
 
         Raises:
@@ -110,7 +110,7 @@ def posed(masonry: Masonry, pose: ArrayLike, effects: Sequence[Effect] = ()) -> 
         ValueError: for a pose of another shape, blocks that have moved into one another by more than a twentieth of a
             joint, and in space for points that have slid off their face.
     """
-    moves = Moves.of(masonry, pose)
+    moves = Moves.from_pose(masonry, pose)
     moved = object.__new__(type(masonry))
     keep(moved, **{each.name: getattr(masonry, each.name) for each in fields(masonry)}, table=masonry.table)
     lines = _in_the_plane(masonry, moves) if not masonry.in_space else _in_space(masonry, moves)
@@ -150,7 +150,7 @@ def _ends(masonry: Masonry, link: Anchored, moves: Moves) -> tuple[Array, Array]
 
 def spans_in(masonry: Masonry, link: Anchored, poses: Array) -> Array:
     """Length of a link in poses of the free blocks [m], shape (n,)."""
-    return np.array([math.dist(*_ends(masonry, link, Moves.of(masonry, pose))) for pose in poses])
+    return np.array([math.dist(*_ends(masonry, link, Moves.from_pose(masonry, pose))) for pose in poses])
 
 
 def gaps_of(lines: Lines, moves: Moves) -> tuple[Array, Array, Array]:

@@ -50,7 +50,7 @@ class Pulls(NamedTuple):
     strength: Array
 
     @classmethod
-    def of(cls, masonry: Masonry, pulls: Array | None = None, strength: Array | None = None) -> Pulls:
+    def from_forces(cls, masonry: Masonry, pulls: Array | None = None, strength: Array | None = None) -> Pulls:
         """Those of forces and moments of unit pulls on the free blocks, shape (t, free, 3), in space (t, free, 6);
         none without."""
         sizes, strength = sizes_of(masonry), np.zeros(0) if strength is None else strength
@@ -235,7 +235,7 @@ def _balanced(
             edges.append(cones(masonry, cone))
             cost.append(np.full(edges[-1].shape[1], price))
     missing = eye_array(len(weight))
-    (pulls, limits, _), ties = bonded(masonry), ties or Pulls.of(masonry)
+    (pulls, limits, _), ties = bonded(masonry), ties or Pulls.from_forces(masonry)
     limits = np.append(limits, ties.strength)
     columns = hstack([*edges, missing, -missing, pulls, ties.columns])
     prices = np.concatenate([*cost, np.ones(2 * len(weight)), np.zeros(len(limits))])
