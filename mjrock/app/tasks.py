@@ -31,11 +31,11 @@ from ..assessment.writing import toml_text
 from ..bars import Progress, progress_given_to
 from ..plotting.browser import view
 from ..quantities import Message, brief, reason, require_kind, shown
+from ..reporting.content import content_of
 from ..reporting.drawings import drawn
 from ..reporting.markup import Markup, element
 from ..reporting.page import Request, every_run, outcomes, required_runs
 from ..reporting.parts import parts_of
-from ..reporting.subject import content_of
 from ..reporting.texts import FOUND, Words, languages
 from ..reporting.verdicts import Mechanism, answers, kinematic_steps, ranked, required_checks
 from ..result.response import Response

@@ -30,16 +30,16 @@ from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
-from .bodies import Bodies, Update, frame_view, outlines, round_length, ties_of_masonry, together
+from .bodies import Bodies, Update, combined, draw_outlines, frame_view, round_length, ties_of_masonry
 from .forces import forces_on, require_shown
 from .histories import acceleration, rotation, ties
-from .solids import TITLED, Solids, fill, solids, ties_in_view
-from .style import Drawing, Look, titled
+from .solids import TITLED, Solids, draw_solids, fill_view, ties_in_view
+from .style import Drawing, Look, write_title
 from .wall import surroundings
 
 
 @dataclass(frozen=True)
-class FilmedWall:
+class WallFilm:
     """A wall as a film shows it, with its histories beside it."""
 
     case: Case
@@ -61,7 +61,7 @@ class FilmedWall:
 
 
 @dataclass(frozen=True)
-class FilmedMasonry:
+class MasonryFilm:
     """Masonry as a film shows it, with its histories below it as a strip."""
 
     case: MasonryCase
@@ -89,9 +89,9 @@ class FilmedMasonry:
         return [strip] if self.case.grounds else []
 
 
-def filmed(case: AnyCase) -> FilmedWall | FilmedMasonry:
+def film_of(case: AnyCase) -> WallFilm | MasonryFilm:
     """A case as a film shows it."""
-    return FilmedMasonry(case) if isinstance(case, MasonryCase) else FilmedWall(case)
+    return MasonryFilm(case) if isinstance(case, MasonryCase) else WallFilm(case)
 
 
 MOST_FRAMES = 20_000
@@ -131,7 +131,7 @@ class Stage:
         self.palette: Image.Image | None = None
 
     def keep_colours(self, update: Update, count: int) -> None:
-        """Take the colours of all pictures from some of so many, the first and the last among them."""
+        """Take the colours of all pictures from some of `count` frames, the first and the last among them."""
         taken = []
         for frame in sorted(set(np.linspace(0, count - 1, COLOURED, dtype=int).tolist())):
             update(frame)
@@ -273,12 +273,12 @@ def animate(
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     else:
         bodies = Bodies.of(response, magnify, limits)
-    case, histories = response.case, filmed(response.case).beside(response)
-    pressed = None
+    case, histories = response.case, film_of(response.case).beside(response)
+    acting = None
     if forces is not None:
         require_shown("forces", forces, response)
-        pressed = response, forces
-    return _film(bodies, path, histories, case, speed=speed, fps=fps, title=title, dpi=dpi, pressed=pressed)
+        acting = response, forces
+    return _film(bodies, path, histories, case, speed=speed, fps=fps, title=title, dpi=dpi, acting=acting)
 
 
 def animate_bodies(
@@ -315,7 +315,7 @@ def _film(
     fps: float,
     title: str,
     dpi: float,
-    pressed: tuple[Response, str] | None = None,
+    acting: tuple[Response, str] | None = None,
 ) -> Path:
     """Check, draw frame by frame, and write the file."""
     path = require_path("path", path)
@@ -324,7 +324,7 @@ def _film(
     times = frame_times(bodies.t, speed * interval)
     dpi = require_within("dpi", dpi, 20.0, 600.0)
     require_text("title", title)
-    figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title, pressed=pressed)
+    figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title, acting=acting)
     return write(figure, update, len(times), path, writer, dpi, title)
 
 
@@ -393,7 +393,7 @@ def scene(
     *,
     speed: float = 1.0,
     title: str = "",
-    pressed: tuple[Response, str] | None = None,
+    acting: tuple[Response, str] | None = None,
 ) -> tuple[Figure, Update]:
     """The picture, and what moves it to a frame.
 
@@ -402,13 +402,13 @@ def scene(
         histories: draw what stands beside the bodies, each on an Axes of its own, over the time.
         case: whose surroundings are drawn, or None.
         speed, title: as in `animate`.
-        pressed: the response whose forces are drawn, and how, or None.
+        acting: the response whose forces are drawn, and how, or None.
     """
     figure, ax, strips = _laid_out(bodies, case, len(histories))
     box = ax.figure.bbox
     updates = _standing(ax, bodies, case, box)
-    if pressed is not None:
-        updates.append(forces_on(ax, pressed[0], bodies.moving, pressed[1]))
+    if acting is not None:
+        updates.append(forces_on(ax, acting[0], bodies.moving, acting[1]))
     magnify = bodies.moving.magnify
     scale = "true to scale" if magnify == 1 else f"displacements x {magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
@@ -419,12 +419,12 @@ def scene(
         panel.set_xlim(bodies.t[0], max(bodies.t[-1], bodies.t[0] + 1e-9))
         updates.append(_marker(panel, bodies.t))
         panel.label_outer()
-    titled(figure, title, 10)
-    moved = together(updates)
+    write_title(figure, title, 10)
+    moved = combined(updates)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
-        fill(ax, bodies, box, TITLED)
+        fill_view(ax, bodies, box, TITLED)
         figure.draw_without_rendering()
 
     def update(frame: int) -> None:
@@ -436,8 +436,8 @@ def scene(
 
 
 def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tuple[Figure, Axes, Sequence[Axes]]:
-    """A figure as high as its bodies need, the Axes that shows them, and so many over the time."""
-    is_below, (wide, high) = case is not None and filmed(case).is_below, bodies.extent_seen
+    """A figure as high as its bodies need, the Axes that shows them, and `count` Axes over the time."""
+    is_below, (wide, high) = case is not None and film_of(case).is_below, bodies.extent_seen
     shown = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST)) if is_below else OTHERWISE
     figure = Figure(figsize=(WIDE, shown + is_below * STRIP * count), layout="constrained")
     kind = {"projection": "3d"} if isinstance(bodies, Solids) else None
@@ -451,12 +451,12 @@ def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tupl
 def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None, box: BboxBase) -> list[Update]:
     """Draw bodies and what they meet."""
     if isinstance(bodies, Solids):
-        return [solids(ax, bodies, box), *([] if case is None else [ties_in_view(ax, bodies)])]
-    updates = [outlines(ax, bodies)]
+        return [draw_solids(ax, bodies, box), *([] if case is None else [ties_in_view(ax, bodies)])]
+    updates = [draw_outlines(ax, bodies)]
     if case is None:
         frame_view(ax, bodies)
     else:
-        updates.append(filmed(case).around(ax, bodies))
+        updates.append(film_of(case).around(ax, bodies))
     return updates
 
 

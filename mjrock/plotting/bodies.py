@@ -58,7 +58,7 @@ def round_length(wide: float) -> float:
     return power * max(step for step in (1, 2, 5) if step * power <= most)
 
 
-def evened(rows: Sequence[Array]) -> Array:
+def padded_rows(rows: Sequence[Array]) -> Array:
     """Rows of points as one array; shorter ones repeat their last point."""
     most = max(map(len, rows))
     return np.array([np.concatenate([row, np.repeat(row[-1:], most - len(row), axis=0)]) for row in rows])
@@ -93,7 +93,7 @@ def _outlines(name: str, given: object) -> tuple[Array, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class Loose:
+class LooseBodies:
     """Bodies of the plane without joints, in place of a case.
 
     Args:
@@ -185,7 +185,7 @@ class Bodies:
             raise ValueError(f"t = {shown(t)} decreases; one row of increasing times [s] is needed")
         free, stays = _outlines("outlines", outlines), _outlines("fixed", fixed)
         magnify = require_within("magnify", magnify, 0.01, 1e4)
-        case = cast(AnyCase, Loose(free, require_array("rests", rests, (len(free), 2)), stays))
+        case = cast(AnyCase, LooseBodies(free, require_array("rests", rests, (len(free), 2)), stays))
         moving = Moving(case, times, require_array("poses", poses, (len(times), len(free), 3)), magnify)
         colours = np.array([TINTS[tint] for tint in distinct_tints(len(free), ())])
         return cls(moving, colours, required_limits(limits, "xz"))
@@ -250,10 +250,10 @@ class Bodies:
     @cached_property
     def _padded(self) -> Array:
         """The outlines as one array, shape (bodies, corners, 2)."""
-        return evened(self.outlines) if self.outlines else np.empty((0, 0, 2))
+        return padded_rows(self.outlines) if self.outlines else np.empty((0, 0, 2))
 
 
-def together(updates: Sequence[Update]) -> Update:
+def combined(updates: Sequence[Update]) -> Update:
     """One update that makes several."""
 
     def update(frame: int) -> None:
@@ -263,13 +263,13 @@ def together(updates: Sequence[Update]) -> Update:
     return update
 
 
-def still(ax: Axes, others: Sequence[Artist]) -> None:
+def make_static(ax: Axes, others: Sequence[Artist]) -> None:
     """Make all that is drawn part of a picture that does not move, but for what the axes had before."""
     for artist in set(ax.get_children()).difference(others):
         artist.set_animated(False)
 
 
-def outlines(ax: Axes, bodies: Bodies) -> Update:
+def draw_outlines(ax: Axes, bodies: Bodies) -> Update:
     """Draw the outlines of bodies true to scale."""
     moving, supports = bodies.moving, list[tuple[Polygon, Array]]()
     for number, outline in moving.case.fixed.items():
@@ -292,14 +292,14 @@ def outlines(ax: Axes, bodies: Bodies) -> Update:
     return update
 
 
-def named_line(ax: Axes, said: str, colour: str, width: float) -> None:
-    """A line of a width [pt], and what it stands for: below the label of the x axis, in space in the upper right."""
+def named_line(ax: Axes, label: str, colour: str, width: float) -> None:
+    """A legend of one line of a width [pt]: below the label of the x axis, in space in the upper right."""
     look: Look = {"loc": "upper right", "frameon": False, "fontsize": 8, "borderpad": 0.0}
     if ax.name != "3d":
         below = ScaledTranslation(0.0, -UNDER / 72, figure_of(ax).dpi_scale_trans)
         look |= {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "bbox_transform": ax.transAxes + below}
     line = Line2D([], [], color=colour, linewidth=width, solid_capstyle="butt")
-    ax.legend([line], [said], **look)
+    ax.legend([line], [label], **look)
 
 
 def frame_view(ax: Axes, bodies: Bodies) -> None:
@@ -320,7 +320,7 @@ def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
         ax.annotate(plain[name], place, (4, 4), textcoords="offset points", fontsize=8, color=tie.colour)
     if updates and bodies.limits is None:
         ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
-    return together(updates)
+    return combined(updates)
 
 
 def anchored(ax: Axes, moving: Moving, tie: Anchored, *, markersize: float, edge: float = -np.inf) -> Update:

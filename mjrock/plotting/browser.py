@@ -25,7 +25,7 @@ from ..result.bodies import bodies_of, frames_at
 from ..result.response import Response
 from ..result.ties import link_ends
 from .bodies import ends_of
-from .forces import LARGE, LONGEST, NOTHING, Acting, edges_of
+from .forces import LARGE, LONGEST, NOTHING, DrawnForces, edges_of
 from .picture import kind, picture
 
 Json = dict[str, object]
@@ -230,7 +230,7 @@ class Page:
 
     def _forces(self) -> Json:
         """Places and forces of the joints, forces over their scale, and how bars of them are drawn."""
-        acting = Acting(self.response, self.moving)
+        acting = DrawnForces(self.response, self.moving)
         frames = [acting.placed(frame) for frame in range(len(self.t))]
         places, shares = (in_space(np.stack(part, axis=1)) for part in zip(*frames, strict=True))
         if not self.response.in_space:  # on the front of the blocks

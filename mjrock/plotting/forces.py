@@ -68,7 +68,7 @@ def require_shown(name: str, value: object, response: Response) -> None:
     _ = response.forces
 
 
-class Acting:
+class DrawnForces:
     """The forces of the joints of a response where bodies are drawn.
 
     Args:
@@ -169,21 +169,21 @@ def edges_of(outline: Array) -> Array:
 
 def forces_on(ax: Axes, response: Response, bodies: Moving, how: str) -> Update:
     """Draw the forces of the joints on blocks that are drawn already, and write the force of the scale."""
-    acting = Acting(response, bodies)
+    drawn = DrawnForces(response, bodies)
     cracks = how == "cracks"
     colour, capstyle = (CRACKED, "butt") if cracks else (FORCE, "round")
     strokes = Strokes([], colors=colour, zorder=7, animated=True, capstyle=capstyle)
     ax.add_collection(strokes, autolim=False)
     if cracks:
-        named_line(ax, f"cracked, {1e3 * acting.widths.max():.2g} mm open", colour, CRACK)
+        named_line(ax, f"cracked, {1e3 * drawn.widths.max():.2g} mm open", colour, CRACK)
     elif how == "thrust":
-        named_line(ax, f"{acting.scale / 1e3:.3g} kN", colour, WIDEST)
+        named_line(ax, f"{drawn.scale / 1e3:.3g} kN", colour, WIDEST)
     else:
-        said = f"bar {LONGEST * acting.extent:.2g} m long: {acting.scale / 1e3:.3g} kN"
-        named_line(ax, said, colour, BAR)
-    drawn = {"thrust": acting.thrust, "bars": acting.bars, "cracks": acting.cracks}[how]
+        label = f"bar {LONGEST * drawn.extent:.2g} m long: {drawn.scale / 1e3:.3g} kN"
+        named_line(ax, label, colour, BAR)
+    strokes_of = {"thrust": drawn.thrust, "bars": drawn.bars, "cracks": drawn.cracks}[how]
 
     def update(frame: int) -> None:
-        strokes.put(*drawn(frame))
+        strokes.put(*strokes_of(frame))
 
     return update

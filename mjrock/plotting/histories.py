@@ -24,8 +24,8 @@ from .style import (
     Picture,
     below_figure,
     figure_of,
+    figure_of_panels,
     plain_names,
-    several,
     short,
     styles_of,
     wrapped,
@@ -45,7 +45,7 @@ def rotation(
     A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. A note gives
     the time from which that is so; the end of its run is in the message of the response. Responses have the lines of
     their solvers, or with `labels` colours of their own. A dotted line is the rotation that overturns a wall whose
-    effects move it from alpha, unless it is far beyond the motion. `top` shows rotations up to so many alpha.
+    effects move it from alpha, unless it is far beyond the motion. `top` is the largest rotation shown, over alpha.
     """
     fallen = [overturned_at(response) for response in responses]
     shares = [response.theta / response.of_wall[0].wall.alpha for response in responses]
@@ -65,16 +65,16 @@ def rotation(
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     ends = [(short(name), t) for name, t in zip(names, fallen, strict=True) if t is not None]
-    said = [f"{name}: beyond return from t = {t:.3g} s" for name, t in ends]
-    if top is not None or said:
+    notes = [f"{name}: beyond return from t = {t:.3g} s" for name, t in ends]
+    if top is not None or notes:
         high = float(top or max(1.2, 1.05 * max([*reached, *drawn])))
-        inwards, room = min(float(share.min()) for share in shares), _share_of(ax, len(said)) if said else 0.0
+        inwards, room = min(float(share.min()) for share in shares), _share_of(ax, len(notes)) if notes else 0.0
         bottom = -0.1 * high if top is not None else max(-high, min(-0.08 * high, 1.08 * inwards))
         ax.set_ylim(bottom, (high - room * bottom) / (1 - room))
         for line in lines:  # a wall that falls goes no farther, so that its line leaves the note alone
             line.set_clip_path(Rectangle((0, bottom), 1, high - bottom, transform=ax.get_yaxis_transform()))
-    if said:
-        text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
+    if notes:
+        text = "\n".join(notes) if len(responses) > 1 else notes[0].rsplit(": ", 1)[1]
         ax.text(0.02, 0.97, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
     return ax
 
@@ -142,18 +142,18 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
             drawn.setdefault(tie.force.tobytes(), []).append(name)
         for i, names in enumerate(drawn.values()):
             tie = response.ties[names[0]]
-            said = f"{short(style['label'])}, " if len(responses) > 1 else ""
-            said += f"{short(', '.join(plain[name] for name in names))}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
-            look = style | {"label": said, "zorder": 2} | ({"linestyle": ("-", "--", "-.", ":")[i % 4]} if i else {})
+            label = f"{short(style['label'])}, " if len(responses) > 1 else ""
+            label += f"{short(', '.join(plain[name] for name in names))}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
+            look = style | {"label": label, "zorder": 2} | ({"linestyle": ("-", "--", "-.", ":")[i % 4]} if i else {})
             (line,) = ax.plot(response.t, tie.force / 1e3, **look)
             if tie.broken < np.inf:
-                said += f", broke at {tie.broken:.3g} s"
+                label += f", broke at {tie.broken:.3g} s"
                 at = min(int(np.searchsorted(response.t, tie.broken)), len(response.t) - 1)
                 height = tie.force[max(at - 1, 0)] / 1e3
                 ax.plot(response.t[at], height, "x", color=line.get_color(), markersize=9, markeredgewidth=2, zorder=5)
             entries += 1
-            line.set_label(said if entries < MOST else "_")
-            last = line, said
+            line.set_label(label if entries < MOST else "_")
+            last = line, label
     if entries >= MOST:
         last[0].set_label(last[1] if entries == MOST else f"and {entries - MOST + 1} more")
     ax.set_ylim(bottom=0.0)
@@ -297,7 +297,7 @@ def grid(
     `top` cuts the panels off at a rotation in multiples of alpha, to show small rebounds large. `labels` are the names
     of the responses of each panel, in place of their solvers.
     """
-    figure, axes = several(len(panels), columns, (3.4, 2.2))
+    figure, axes = figure_of_panels(len(panels), columns, (3.4, 2.2))
     drawn = list(axes.flat[: len(panels)])
     for ax, (title, responses) in zip(drawn, panels, strict=True):
         rotation(ax, responses, labels, top)

@@ -24,10 +24,10 @@ from ..quantities import Array, require_flag, require_kind, require_within
 from ..result.bodies import Moving
 from ..result.motion import sample_at
 from ..result.response import Response
-from .bodies import FORCE, Bodies, named_line, outlines, required_limits, still, together
+from .bodies import FORCE, Bodies, combined, draw_outlines, make_static, named_line, required_limits
 from .forces import forces_on, require_shown
 from .picture import anything, picture
-from .solids import Solids, fill, solids
+from .solids import Solids, draw_solids, fill_view
 from .style import BEHIND, Look
 from .wall import surroundings
 
@@ -91,17 +91,17 @@ def blocks(
     moving = Moving(case, time, placed, magnified)
     if case.in_space:
         bodies = Solids(moving, camera, required_limits(limits, "xyz"))
-        solids(ax, bodies, ax.bbox)(0)
-        fill(ax, bodies, ax.bbox)
+        draw_solids(ax, bodies, ax.bbox)(0)
+        fill_view(ax, bodies, ax.bbox)
     else:
         flat = Bodies.of_moving(moving, limits)
-        outlines(ax, flat)(0)
+        draw_outlines(ax, flat)(0)
         if joints and pose is None:
             _joints(ax, case.masonry.plane_joints)
         _view(ax, flat)
     if run is not None and forces is not None:
         forces_on(ax, run, moving, forces)(0)
-    still(ax, others)
+    make_static(ax, others)
     return ax
 
 
@@ -136,8 +136,8 @@ def _view(ax: Axes, bodies: Bodies) -> None:
     corners = bodies.corners(0)
     outside = ((corners.max(axis=1) < low) | (corners.min(axis=1) > high)).any(axis=1).sum()
     if outside:
-        said = f"{outside} of {len(corners)} blocks lie outside"
-        ax.annotate(said, (0.02, 0.03), xycoords="axes fraction", fontsize=8, va="bottom", bbox=BEHIND)
+        note = f"{outside} of {len(corners)} blocks lie outside"
+        ax.annotate(note, (0.02, 0.03), xycoords="axes fraction", fontsize=8, va="bottom", bbox=BEHIND)
 
 
 @picture(limits=anything)
@@ -172,10 +172,10 @@ def thrust(
     require_shown("forces", "thrust", response)
     sample, others = sample_at(response.t, at), ax.get_children()
     bodies = Bodies.of(response, magnified, limits).at(response.t[sample : sample + 1])
-    updates = [outlines(ax, bodies), surroundings(ax, response.of_wall[0], bodies)]
+    updates = [draw_outlines(ax, bodies), surroundings(ax, response.of_wall[0], bodies)]
     updates.append(forces_on(ax, response, bodies.moving, "thrust"))
-    together(updates)(0)
-    still(ax, others)
+    combined(updates)(0)
+    make_static(ax, others)
     return ax
 
 
@@ -216,14 +216,14 @@ def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool 
         pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
     blocks(ax, masonry, pose)
     if not masonry.in_space:
-        laden(ax, masonry, collapse.effects, collapse.loads)
+        draw_loads(ax, masonry, collapse.effects, collapse.loads)
     if forces and not masonry.in_space:
         case = MasonryCase(masonry, 1.0)
-        _pressed(ax, Moving(case, np.zeros(1), pose[None]), masonry, collapse.forces)
+        _draw_joint_forces(ax, Moving(case, np.zeros(1), pose[None]), masonry, collapse.forces)
     return ax
 
 
-def _pressed(ax: Axes, moving: Moving, masonry: Masonry, forces: JointForces) -> None:
+def _draw_joint_forces(ax: Axes, moving: Moving, masonry: Masonry, forces: JointForces) -> None:
     """A line for each force of a joint, where the joint has moved."""
     normal, along = forces.normal, forces.eccentricity
     pressing = np.stack([normal, forces.shear], axis=1)
@@ -244,7 +244,7 @@ ARROW, SMALLEST, NAMED, NAME_ROOM = 0.16, 0.6, 6, 0.08
 constant loads whose size is written, and the room for it over the extent [-]."""
 
 
-def laden(
+def draw_loads(
     ax: Axes,
     masonry: Masonry,
     effects: Sequence[Effect],
@@ -256,12 +256,14 @@ def laden(
         if len(corners := effect.outline):
             colour, over = (LADEN, 0.3) if effect in growing else (EARTH, 0.2)
             ax.add_patch(Polygon(corners, facecolor=colour, edgecolor=colour, linewidth=0.6, zorder=over))
-    still = [arrow for effect in effects if (arrow := _pushing(masonry, effect)) is not None]
-    heavy = [arrow for effect in growing if (arrow := _pushing(masonry, effect)) is not None]
-    heavy += [_about(masonry, name, load) for name, load in loads.items()] if isinstance(loads, Mapping) else []
+    constant = [arrow for effect in effects if (arrow := _force_of(masonry, effect)) is not None]
+    growing_forces = [arrow for effect in growing if (arrow := _force_of(masonry, effect)) is not None]
+    growing_forces += (
+        [_line_of_action(masonry, name, load) for name, load in loads.items()] if isinstance(loads, Mapping) else []
+    )
     size = float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]), axis=0).max())
     seen = [effect.outline for effect in (*effects, *growing) if len(effect.outline)]
-    for arrows, width, named in ((still, 1.0, len(still) <= NAMED), (heavy, 2.0, True)):
+    for arrows, width, named in ((constant, 1.0, len(constant) <= NAMED), (growing_forces, 2.0, True)):
         largest = max((float(np.hypot(*force)) for _, force in arrows), default=0.0)
         for at, force in arrows:
             length = max(float(np.hypot(*force)) / largest, SMALLEST) * ARROW * size
@@ -274,17 +276,17 @@ def laden(
         ax.set_ylim(min(low, least[1] - room), max(high, most[1] + room))
 
 
-def _pushing(masonry: Masonry, effect: Effect) -> tuple[Array, Array] | None:
+def _force_of(masonry: Masonry, effect: Effect) -> tuple[Array, Array] | None:
     """Where an effect pushes [m] and its force [N], that of an axle on the ground; None where an arrow says nothing."""
-    told = effect.report_item
-    if isinstance(told, Axle):
-        return np.array([told.at, told.top]), np.array([0.0, -told.force])
+    item = effect.report_item
+    if isinstance(item, Axle):
+        return np.array([item.at, item.top]), np.array([0.0, -item.force])
     if len(effect.outline) or effect.force_vector is None:
         return None
     return np.array(place_in_world(masonry, effect)), np.array(effect.force_vector)[[0, 2]]
 
 
-def _about(masonry: Masonry, name: str, load: Sequence[float]) -> tuple[Array, Array]:
+def _line_of_action(masonry: Masonry, name: str, load: Sequence[float]) -> tuple[Array, Array]:
     """Where the line of a force passes the centroid of its block [m], from its moment about that, and the force [N]."""
     force, moment = np.array(load[:2]), load[2] if len(load) == 3 else 0.0
     aside = np.array([-force[1], force[0]]) * moment / max(float(force @ force), 1e-300)
@@ -302,8 +304,8 @@ def _arrow(ax: Axes, at: Array, force: Array, length: float, width: float, named
         down = force[1] < 0
         beside: Look = {"ha": "left" if along[0] > 0 else "right", "va": "center"}
         beside |= {"ha": "center", "va": "bottom"} if down else {}
-        said, end = f"{np.hypot(*force) / 1e3:.3g} kN", tail if down else tip
+        label, end = f"{np.hypot(*force) / 1e3:.3g} kN", tail if down else tip
         shift = (0, 2) if down else (3 * np.sign(along[0]), 0)
         beside |= {"textcoords": "offset points", "fontsize": 8, "color": LOAD, "zorder": 8, "bbox": BEHIND}
-        ax.annotate(said, tuple(end), shift, **beside)
+        ax.annotate(label, tuple(end), shift, **beside)
     return np.array([tail, tip])

@@ -31,18 +31,18 @@ MOST_BLOCKS = 3000
 """Blocks up to which masonry is drawn unasked, which takes some seconds."""
 PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Case: sketch,
-    MasonryCase: lambda case, said: _masonry(case.masonry),
-    Masonry: lambda masonry, said: _masonry(masonry),
-    Collapse: lambda found, said: None if found.forces is None else mechanism(found),
-    Response: lambda answer, said: history(answer, said) if answer.joints is None else _run(answer, said),
-    Comparison: lambda pair, said: history([pair.reference, pair.candidate], said),
-    Push: lambda curve, said: push({"": curve}),
-    PushoverCurve: lambda curve, said: pushover({"": curve}),
-    Fragility: lambda fit, said: fragility(fit),
-    Design: lambda found, said: design(found),
-    Sensitivity: lambda found, said: tornado(found),
-    Thresholds: lambda found, said: thresholds(found),
-    OverturningMap: lambda found, said: overturning_map(found),
+    MasonryCase: lambda case, title: _masonry(case.masonry),
+    Masonry: lambda masonry, title: _masonry(masonry),
+    Collapse: lambda found, title: None if found.forces is None else mechanism(found),
+    Response: lambda answer, title: history(answer, title) if answer.joints is None else _run(answer, title),
+    Comparison: lambda pair, title: history([pair.reference, pair.candidate], title),
+    Push: lambda curve, title: push({"": curve}),
+    PushoverCurve: lambda curve, title: pushover({"": curve}),
+    Fragility: lambda fit, title: fragility(fit),
+    Design: lambda found, title: design(found),
+    Sensitivity: lambda found, title: tornado(found),
+    Thresholds: lambda found, title: thresholds(found),
+    OverturningMap: lambda found, title: overturning_map(found),
 }
 """The function that draws each type, from it and the text that it prints as. It returns None for no picture."""
 
@@ -52,13 +52,13 @@ def png_of(shown: object) -> bytes | None:
 
     Its title is the line that it prints as, without that of its wall or masonry, which the picture shows.
     """
-    said = re.sub(r" of <[^<>]*>", "", repr(shown)).strip("<>")
+    title = re.sub(r" of <[^<>]*>", "", repr(shown)).strip("<>")
     draw = next(draw for kind, draw in PICTURES.items() if isinstance(shown, kind))
-    drawn = draw(shown, said)
+    drawn = draw(shown, title)
     if not isinstance(drawn, Axes):
         return None if drawn is None else png(drawn)
     figure = figure_of(drawn)
-    drawn.set_title(wrapped(said, figure.get_figwidth() - 0.6, 9), fontsize=9)
+    drawn.set_title(wrapped(title, figure.get_figwidth() - 0.6, 9), fontsize=9)
     return png(figure)
 
 
@@ -66,11 +66,11 @@ def _masonry(masonry: Masonry) -> Axes | None:
     return blocks(masonry) if len(masonry.blocks) <= MOST_BLOCKS else None
 
 
-def _run(answer: Response, said: str) -> Figure:
+def _run(answer: Response, title: str) -> Figure:
     """The blocks of masonry at the end of a run, above how far they have moved."""
     figure = Picture(figsize=(6.4, 6.0), layout="constrained")
     (above,), (below,) = figure.subfigures(2, 1, squeeze=False, height_ratios=(2.0, 1.0))
-    above.suptitle(wrapped(said, 6.0, 9), fontsize=9)
+    above.suptitle(wrapped(title, 6.0, 9), fontsize=9)
     if len(answer.case.rest_geometry.solids) <= MOST_BLOCKS:
         blocks(above.subplots(subplot_kw={"projection": "3d"} if answer.in_space else None), answer)
     moved = displacement(below.subplots(), [answer])

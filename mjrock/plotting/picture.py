@@ -24,7 +24,7 @@ from ..quantities import (
 )
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
-from .style import Drawing, Picture, several, wrapped
+from .style import Drawing, Picture, figure_of_panels, wrapped
 
 P = ParamSpec("P")
 Drawer = TypeVar("Drawer", bound=Callable[..., object])
@@ -40,7 +40,7 @@ def kind(*kinds: type) -> Check:
 
 
 def shaped(axes: int, needed: str) -> Check:
-    """A check for real numbers along so many axes, at least one number."""
+    """A check for an array of real numbers with a number of axes, of at least one number."""
 
     def checked(name: str, value: object) -> None:
         given = require_reals(name, value, needed)
@@ -69,7 +69,7 @@ def anything(name: str, value: object) -> None:
 
 
 def mapping(check: Check, least: int = 1) -> Check:
-    """A check for a mapping of at least so many names to values, each with a check of its own."""
+    """A check for a mapping of at least `least` names to values, each with a check of its own."""
 
     def checked(name: str, value: object) -> None:
         if not isinstance(value, Mapping) or len(value) < least:
@@ -137,7 +137,7 @@ CHECKS: dict[str, Check] = {
 """The check of each argument that means the same in every picture."""
 
 
-class OnAxes(Protocol[P]):
+class AxesDrawing(Protocol[P]):
     """A function that draws on an Axes, its first argument or `ax`, or on one of its own, and returns it."""
 
     @overload
@@ -147,11 +147,11 @@ class OnAxes(Protocol[P]):
     def __call__(self, *given: P.args, **options: P.kwargs) -> Axes: ...
 
 
-class Checked(Protocol):
+class PictureDecorator(Protocol):
     """The decorator that `picture` returns."""
 
     @overload
-    def __call__(self, draw: Callable[Concatenate[Axes, P], Axes], /) -> OnAxes[P]: ...
+    def __call__(self, draw: Callable[Concatenate[Axes, P], Axes], /) -> AxesDrawing[P]: ...
 
     @overload
     def __call__(self, draw: Drawer, /) -> Drawer: ...
@@ -167,7 +167,7 @@ def own_axes(about: object) -> Axes:
     return ax
 
 
-def picture(**own: Check) -> Checked:
+def picture(**own: Check) -> PictureDecorator:
     """Check the arguments of a function that draws, by `CHECKS` and by those of its own, before anything is drawn.
 
     One that draws on an Axes makes a figure where it is not given one.
@@ -191,7 +191,7 @@ def picture(**own: Check) -> Checked:
 
         return checked
 
-    return cast(Checked, decorated)
+    return cast(PictureDecorator, decorated)
 
 
 @picture()
@@ -208,7 +208,7 @@ def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
 
     Drawings in the plane that are to scale, such as those of `blocks`, have one scale and level.
     """
-    figure, axes = several(len(drawings), columns, (4.4, 3.4))
+    figure, axes = figure_of_panels(len(drawings), columns, (4.4, 3.4))
     drawn = [draw(ax) for ax, (_, draw) in zip(axes.flat, drawings, strict=False)]
     for ax, (title, _) in zip(drawn, drawings, strict=True):
         ax.set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)

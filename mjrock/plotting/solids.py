@@ -23,8 +23,8 @@ from ..result.bodies import Moving
 from ..result.response import Response
 from ..result.ties import link_ends
 from ..scene.tints import colours_of
-from .bodies import Update, ends_of, evened, link, placed_ends, required_limits, round_length, together
-from .depths import Ground, Surfaces, View
+from .bodies import Update, combined, ends_of, link, padded_rows, placed_ends, required_limits, round_length
+from .rasterizer import Ground, Surfaces, View
 from .style import figure_of
 
 AROUND, FARTHEST = 0.6, 3.0
@@ -40,7 +40,7 @@ MARGIN, TITLED = (0.2, 0.4), (0.2, 0.8)
 BELOW, BELOW_FLAT = 0.05, 0.02
 """How far a scale bar stands below what is seen, over its height, and at least over its width [-]."""
 FINE, DENSE = 2, 150
-"""Pixels that are drawn along each side of one of the picture, where it has fewer than so many to an inch."""
+"""Subpixels along each side of a pixel of the picture, and the resolution below which they are drawn [1/inch]."""
 EDGE, RIM = 0.55, 0.1
 """Width of edges [point], and of the rim of the box within which the picture fades [inch]."""
 
@@ -140,7 +140,7 @@ class Solids:
         """The faces of some blocks."""
         parts = [(block, part) for block in blocks.tolist() for part in self.case.rest_geometry.solids[block].parts]
         block = np.repeat([block for block, _ in parts], [len(part.faces) for _, part in parts])
-        corners = evened([part.corners[list(face)] for _, part in parts for face in part.faces])
+        corners = padded_rows([part.corners[list(face)] for _, part in parts for face in part.faces])
         normals = np.concatenate([part.normals for _, part in parts])
         offsets = np.concatenate([part.offsets for _, part in parts])
         planes = np.column_stack([block * PLANE_ROUNDING, normals, offsets / np.abs(corners).max()])
@@ -226,7 +226,7 @@ class Solids:
         return numbers
 
 
-class Rendered(Artist):
+class Rendering(Artist):
     """Blocks in space and the ground below them, drawn over a box of a figure.
 
     Args:
@@ -256,7 +256,7 @@ class Rendered(Artist):
         gc.restore()
 
     def _picture(self, view: View, fine: int, inch: float) -> Integers:
-        """Red, green, blue and opacity, 0 to 255, with so many pixels to an inch, which fade at the rim."""
+        """Red, green, blue and opacity, 0 to 255, at `inch` pixels to an inch; it fades at the rim."""
         line = max(1, round(fine * EDGE * inch / 72))
         colours = view.picture(*self.bodies.stage(self.frame), line, fine)
         rows, columns = (np.arange(count) + 0.5 for count in colours.shape[:2])
@@ -283,12 +283,12 @@ def in_three(ax: Axes) -> Axes3D:
     return ax
 
 
-def solids(ax: Axes, bodies: Solids, box: BboxBase) -> Update:
+def draw_solids(ax: Axes, bodies: Solids, box: BboxBase) -> Update:
     """Draw blocks in space, true to scale, with a scale bar, and the ground below them, over a box [pixel]."""
     space = in_three(ax)
     _frame(space, bodies)
     _scale_bar(space, bodies)
-    drawn = Rendered(ax, bodies, box)
+    drawn = Rendering(ax, bodies, box)
     space.add_artist(drawn)
 
     def update(frame: int) -> None:
@@ -297,7 +297,7 @@ def solids(ax: Axes, bodies: Solids, box: BboxBase) -> Update:
     return update
 
 
-def fill(ax: Axes, bodies: Solids, box: BboxBase, margin: tuple[float, float] = MARGIN) -> None:
+def fill_view(ax: Axes, bodies: Solids, box: BboxBase, margin: tuple[float, float] = MARGIN) -> None:
     """Enlarge a view until its blocks fill a box [pixel], such as that of its figure, but for a margin."""
     space = in_three(ax)
     figure, seen = figure_of(ax), bodies.seen
@@ -317,7 +317,7 @@ def ties_in_view(ax: Axes, bodies: Solids) -> Update:
     """Draw the links of blocks, each from the point that it holds to its anchor."""
     space, moving = in_three(ax), bodies.moving
     links = bodies.case.links.values()
-    return together([link(space, moving, one, placed_ends(moving, *link_ends(moving.case, one))) for one in links])
+    return combined([link(space, moving, one, placed_ends(moving, *link_ends(moving.case, one))) for one in links])
 
 
 def _frame(ax: Axes3D, bodies: Solids) -> None:

@@ -84,9 +84,9 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
         t = np.sort(np.append(motion.times, np.linspace(0.0, motion.duration, 400)))  # also where it has few samples
         histories = (motion.times, motion.accel), (t, motion.velocity(t)), (t, motion.displacement(t))
         for ax, (t, history), unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
-            said = f"{motion.name[:90]}: " if ax is axes[0] else f"end {history[-1]:.2g}, "
+            start = f"{motion.name[:90]}: " if ax is axes[0] else f"end {history[-1]:.2g}, "
             peak = float(np.abs(history).max())
-            label = f"{said}peak {peak:.3g} {unit}"
+            label = f"{start}peak {peak:.3g} {unit}"
             ax.plot(t, history, color=PALETTE[i % len(PALETTE)], linewidth=0.8, label=label)
     for ax, label in zip(axes, ("acceleration [m/s²]", "velocity [m/s]", "displacement [m]"), strict=True):
         ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
@@ -356,8 +356,8 @@ def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
             names = sorted(reached, key=reached.__getitem__)
             near = np.searchsorted(curve.rotation, [reached[name] for name in names])
             heights = [float(curve.multiplier[max(i - 2, 0) : i + 1].max()) for i in near.tolist()]  # before it falls
-            said = folded(f"{named([plain[name] for name in names])} {what}{'' if len(names) > 1 else 's'}")
-            look: Look = {"color": line.get_color(), "markersize": 6, "zorder": 5, "label": said}
+            text = folded(f"{named([plain[name] for name in names])} {what}{'' if len(names) > 1 else 's'}")
+            look: Look = {"color": line.get_color(), "markersize": 6, "zorder": 5, "label": text}
             ax.plot([reached[name] for name in names], heights, marker, linestyle="", **look)
     _named(ax)
 
@@ -398,7 +398,7 @@ def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = Non
         labels: what settings and the measure are called, such as {"k_n": "stiffness $k_n$"}; others have their names.
     """
     require_kind("found", found, Sensitivity)
-    said = {name: name for name in (*found.swings, found.measure)} | dict(labels or {})
+    called = {name: name for name in (*found.swings, found.measure)} | dict(labels or {})
     bars = dict(found.swings)
     if any(len(names) > 1 for names in found.changed):
         bars["together"] = found.range
@@ -418,13 +418,13 @@ def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = Non
         ax.axvline(found.base_value, color="0.15", linewidth=1.0)
     if not np.isfinite(found.values).all():
         ax.axvline(edge, color="0.15", linewidth=1.0, linestyle="--")
-    ax.set_yticks(range(len(bars)), [f"{said.get(name, name)}\n{_tried(found, name)}".strip() for name in bars])
+    ax.set_yticks(range(len(bars)), [f"{called.get(name, name)}\n{_tried(found, name)}".strip() for name in bars])
     ax.invert_yaxis()
     right = 0.12 if np.isfinite(found.values).all() else 0.4  # room for the word at the end of a bar
     ax.set_xlim(least - 0.2 * width, edge + right * width)
-    ax.set_xlabel(f"{said[found.measure]}{f' [{found.unit}]' if found.unit else ''}")
+    ax.set_xlabel(f"{called[found.measure]}{f' [{found.unit}]' if found.unit else ''}")
     governs = found.governs or ""
-    sentence = found.sentence.replace(f"governed by {governs}", f"governed by {said.get(governs)}")
+    sentence = found.sentence.replace(f"governed by {governs}", f"governed by {called.get(governs)}")
     ax.set_title(wrapped(sentence, 0.6 * figure_of(ax).get_figwidth(), 10), fontsize=10)  # names take the rest
     return ax
 
@@ -448,9 +448,9 @@ def design(ax: Axes, found: Design) -> Axes:
     for place, trial in zip(places, found.trials, strict=True):
         for condition in trial.conditions:
             lines.setdefault(condition.label, []).append((place, condition.verdict.ratio))
-    for number, (said, points) in enumerate(lines.items()):
+    for number, (name, points) in enumerate(lines.items()):
         marker = "osD^vP*X"[number % 8]
-        ax.plot(*np.transpose(points), marker=marker, markersize=5, linewidth=1.3, label=said)
+        ax.plot(*np.transpose(points), marker=marker, markersize=5, linewidth=1.3, label=name)
     ax.axhline(1.0, color="0.15", linewidth=1.0, linestyle="--")
     if found.marked is not None:
         at = places[found.trials.index(found.marked)]
@@ -485,7 +485,7 @@ def _tried(found: Sensitivity, setting: str) -> str:
 
 
 def _apart(found: Sensitivity, low: float, high: float) -> tuple[str, str]:
-    """Two ends of a bar as text, with so many digits that they differ."""
+    """Two ends of a bar as text, with as many digits as it takes to distinguish them."""
     texts = found.written(low), found.written(high)
     digits = 3
     while texts[0] == texts[1] and digits < 9:

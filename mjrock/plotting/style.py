@@ -161,15 +161,15 @@ def power_of_ten(value: float) -> str:
     return rf"${factor}10^{{{int(exponent)}}}$"
 
 
-def titled(figure: Figure, text: str, size: float = 11.0) -> float:
+def write_title(figure: Figure, text: str, size: float = 11.0) -> float:
     """Write a title [pt] above a figure on as many lines as its width needs; the height that it takes [inch]."""
     title = wrapped(text, figure.get_figwidth(), size)
     figure.suptitle(title, fontsize=size)
     return 1.3 * size * len(title.splitlines()) / 72
 
 
-def several(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, Any]:
-    """A figure with so many panels in rows of some columns, each of a size [inch], and its Axes, (rows, columns).
+def figure_of_panels(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, Any]:
+    """A figure with `count` panels of a size [inch] in rows of some columns, and its Axes, shape (rows, columns).
 
     Panels are narrower where the figure would be wider than `WIDEST`.
     """

@@ -17,9 +17,9 @@ from ..problem.wall.effect import Anchored, Effect, Point
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import require_flag, require_text
 from ..result.bodies import Moving
-from .bodies import FORCE, GROUND_COLOUR, STONE, Bodies, Update, anchored, outlines, still, together
+from .bodies import FORCE, GROUND_COLOUR, STONE, Bodies, Update, anchored, combined, draw_outlines, make_static
 from .picture import anything, picture
-from .style import BEHIND, WIDEST, Look, Picture, figure_of, plain_names, titled, width_of, wrapped
+from .style import BEHIND, WIDEST, Look, Picture, figure_of, plain_names, width_of, wrapped, write_title
 
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
@@ -73,7 +73,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     updates += [_mass(ax, added, moving) for added in case.wall.masses if added.report_item is not None]
     if bodies.limits is not None:
         ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
-    return together(updates)
+    return combined(updates)
 
 
 def _openings(ax: Axes, case: Case, moving: Moving) -> Update:
@@ -191,19 +191,19 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
         scale = min(scale, one)
     column = EDGE + scale * wide + EDGE
     beside = column + APART + EDGE + written
-    said = wrapped("\n".join(openings), max(1.5, WIDEST - beside), SMALL)
-    written = width_of(figure, said, SMALL)
+    sizes = wrapped("\n".join(openings), max(1.5, WIDEST - beside), SMALL)
+    written = width_of(figure, sizes, SMALL)
     smaller = min(scale, max(1.0, WIDEST - beside) / long)
     right.set_title("elevation" + f", {scale / smaller:.2g} times smaller" * (smaller < 0.999 * scale), fontsize=9)
     across = max(smaller * long, written)
     width = max(5.0, beside + across)
-    lines = len(said.splitlines())
+    lines = len(sizes.splitlines())
     below, room = EDGE + LINE * lines + 0.5 * LINE * bool(lines), LINE * sum(2 + text.count("\n") for _, text in notes)
     room = max(scale * tall, room)
     above = 72 * (room - scale * tall)
     left.set_title("section; outwards is to the right", fontsize=9, loc="left", pad=6 + above)
     figure.set_size_inches(width, 1.0)
-    height = below + room + 0.3 + titled(figure, title)
+    height = below + room + 0.3 + write_title(figure, title)
     figure.set_size_inches(width, height)
     middle = width - EDGE - 0.5 * across
     for ax, one, start in ((left, scale, EDGE), (right, smaller, middle - 0.5 * smaller * long)):
@@ -212,7 +212,7 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
         ax.set_position((start / width, bottom / height, one * (x1 - x0) / width, one * (high - low) / height))
         ax.axis("off")
     place, coordinates = (72 * middle, 72 * (EDGE + LINE * lines)), "figure points"
-    right.annotate(said, place, xycoords=coordinates, fontsize=SMALL, ha="center", va="top", annotation_clip=False)
+    right.annotate(sizes, place, xycoords=coordinates, fontsize=SMALL, ha="center", va="top", annotation_clip=False)
     _notes(left, notes, column, (below, below + room))
 
 
@@ -232,11 +232,11 @@ def section(ax: Axes, case: Case, stop: str = "stop") -> None:
     """The wall and all that it meets and carries, its thickness, and the height of the stop, which has a name."""
     wall, height, others = case.wall, 2 * case.block.h, ax.get_children()
     bodies = Bodies.of_moving(Moving(case, np.zeros(1), np.zeros((1, 1, 3))))
-    outlines(ax, bodies)(0)
+    draw_outlines(ax, bodies)(0)
     surroundings(ax, case, bodies)(0)
     for text in list(ax.texts):
         text.remove()  # it is in the notes
-    still(ax, others)
+    make_static(ax, others)
     half = case.block.b
     _across(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")
     if case.stop_top is not None and case.stop_top < height:
@@ -271,10 +271,10 @@ def _effects(case: Case, *, arguments: bool) -> list[Note]:
         if not effect.mass_added:
             named.setdefault(effect, []).append(name)
     for effect, names in [*named.items(), *((mass, []) for mass in case.wall.masses)]:
-        if (told := effect.report_item) is None:
+        if (item := effect.report_item) is None:
             continue
-        label = ", ".join(plain[name] for name in names) or told.label
-        note = f"{type(told).__name__}({told.arguments})" if arguments else f"{label}: {told.description}"
+        label = ", ".join(plain[name] for name in names) or item.label
+        note = f"{type(item).__name__}({item.arguments})" if arguments else f"{label}: {item.description}"
         if breaks := [breaking[name] for name in names if name in breaking and not arguments]:
             moved = float(case.wall.pose(np.array([min(breaks)]))[0, 0])
             note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"

@@ -16,8 +16,8 @@ from ..problem.wall.effects import link_effects
 from ..problem.wall.wedge import Corner
 from ..quantities import Array
 from ..study.loading.load_check import Borne
+from .content import content_of
 from .pictures import FAILS, SMALL, TALL, WIDE
-from .subject import content_of
 from .texts import FOUND, Words
 from .verdicts import Subject
 

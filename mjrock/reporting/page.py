@@ -29,12 +29,12 @@ from ..study.loading.design import Design
 from ..study.loading.dynamic_check import signals_of
 from ..study.loading.load_check import Borne
 from ..study.loading.mechanism_curve import case_of
-from . import inputs, subject, verdicts
+from . import content, inputs, verdicts
+from .content import Content, content_of
 from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .parts import Part, drawings_of, is_of, parts_of
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strips
-from .subject import Content, content_of
 from .texts import DASH, FOUND, MINUS, Words
 from .verdicts import REVERSED, Check, Mechanism, Subject, required_checks
 
@@ -323,7 +323,7 @@ def pictures_of_runs(part: Part, words: Words) -> list[Markup]:
         limits[words("limit_d_0")] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
-    solved = subject.solved_with([run.response for run in runs], words)
+    solved = content.solved_with([run.response for run in runs], words)
     found = [element("p", text) for text in solved]
     drawings = strips(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
     found += [picture(drawing, words(f"strip_{whole.KIND}"), words) for drawing in drawings]
@@ -344,7 +344,7 @@ def judgement_section(
         motions = [(run.response.case.motion, run.motion) for run in runs]
         records = {motion.name.removesuffix(REVERSED): called for motion, called in motions if motion is not None}
         parts += [element("h2", words("governing")), verdicts.governing(verdicts.ranked(mechanisms), records, words)]
-    if broken := subject.broken_ties(runs, words):
+    if broken := content.broken_ties(runs, words):
         parts.append(listed(broken))
     limits = [*verdicts.limits(mechanisms, words)]
     limits += dict.fromkeys(text for part in wholes for text in part.whole.limits(part.runs, words))
@@ -356,7 +356,7 @@ def judgement_section(
     used += [words.or_else(f"solver_{solver}", solver) for solver in solvers]
     codes = verdicts.codes_of(mechanisms, words.language) or [code_of()]
     heading = "; ".join(verdicts.sentences(codes, "program", words)) or words("program")
-    parts += [element("h2", heading), table((), subject.code_chapter(used, words), kind="block")]
+    parts += [element("h2", heading), table((), content.code_chapter(used, words), kind="block")]
     parts += by_hand(wholes, words)
     judgement = element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))
     return [*parts, element("div", *judgement, kind="whole")]
@@ -383,7 +383,7 @@ def by_hand(parts: Sequence[Part], words: Words) -> list[Markup]:
 def of_borne(name: str, result: Borne, words: Words) -> list[Markup]:
     """What a static answer bears: its picture and its numbers."""
     figure = borne_drawn(result, words)
-    rows = [(words(key), value) for key, value in subject.of_borne(result, words)]
+    rows = [(words(key), value) for key, value in content.of_borne(result, words)]
     return [*([] if figure is None else [picture(figure, name, words)]), table((), rows)]
 
 
@@ -403,9 +403,9 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
         elif isinstance(piece, Borne):
             parts += of_borne(name, piece, words)
         elif isinstance(piece, Fragility):
-            parts.append(subject.of_fragility({"": piece}, words))
+            parts.append(content.of_fragility({"": piece}, words))
         elif isinstance(piece, Mapping) and piece and all(isinstance(one, Fragility) for one in piece.values()):
-            parts.append(subject.of_fragility(dict(piece), words))
+            parts.append(content.of_fragility(dict(piece), words))
         elif callable(made := getattr(piece, "table", None)):
             parts += tables(made())
         else:
@@ -509,13 +509,13 @@ def every_run(parts: Sequence[Part], words: Words) -> list[Markup]:
     if called:
         keys = ("name", "direction", "peak", "peak_g", "duration", "step", "origin")
         heads = [words(f"motion_{key}") for key in keys]
-        rows = subject.of_motions(grounds, called, words)
+        rows = content.of_motions(grounds, called, words)
         found += [element("h2", words("motions")), table(heads, rows, right=(2, 3, 4, 5))]
     moved = [part for part in parts if part.runs]
     found.append(element("h2", words("every_run")))
     for part in moved:
         found += [*[element("h3", part.names_run)] * (len(moved) > 1), *runs_of(part.whole, part.runs, called, words)]
-    if forces := subject.forces_kept(runs, words):
+    if forces := content.forces_kept(runs, words):
         heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
         found.append(table(heads, forces, right=(1, 2)))
     return found
@@ -538,7 +538,7 @@ def runs_of(whole: Content, runs: Sequence[Run], called: Mapping[str, str], word
     for run, ground in zip(runs, grounds, strict=True):
         others = [called[ground[name].name.removesuffix(REVERSED)] if name in ground else DASH for name in beside]
         own = [run.variant] * variants + [run.label, *others, MINUS if run.turned else "+"]
-        rows.append([*own, *whole.result(run.response, words), *(subject.tied(run.response, words) if ties else [])])
+        rows.append([*own, *whole.result(run.response, words), *(content.tied(run.response, words) if ties else [])])
     heads = [words(f"run_{key}") for key in columns]
     left = {
         columns.index(name) for name in ("variant", "run", *beside, "polarity", "outcome", "fallen") if name in columns

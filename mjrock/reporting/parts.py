@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 from ..problem.masonry.case import AnyCase
 from ..study.loading.mechanism_curve import case_of
 from . import verdicts
+from .content import Content, content_of
 from .drawings import OTHERS, drawn
 from .markup import Markup, framed, image_of
 from .pictures import Run, by_variant
-from .subject import Content, content_of
 from .texts import Words
 from .verdicts import Mechanism, Subject
 

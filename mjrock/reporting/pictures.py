@@ -16,7 +16,7 @@ from matplotlib.transforms import Bbox
 from ..plotting.bodies import Bodies
 from ..plotting.masonry import mechanism
 from ..plotting.studies import design
-from ..plotting.style import OWN, Look, figure_of, legend_below, several, width_of
+from ..plotting.style import OWN, Look, figure_of, figure_of_panels, legend_below, width_of
 from ..plotting.wall import elevation, section
 from ..problem.masonry.limit.collapse import Collapse
 from ..problem.wall.case import Case
@@ -214,7 +214,7 @@ def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | N
     if not given:
         return None
     columns = min(3 if len(given) % 2 else 2, len(given))
-    figure, axes = several(len(given), columns, (WIDE / columns, 2.25))
+    figure, axes = figure_of_panels(len(given), columns, (WIDE / columns, 2.25))
     for ax, (name, check) in zip(axes.flat, given, strict=False):
         ax.locator_params(nbins=5 if columns > 2 else "auto")
         _curve(ax, check, words)
@@ -404,7 +404,7 @@ def _histories(
     """The panels of some records, in the scale of all runs."""
     lines = list(dict.fromkeys(run.line for run in runs))
     few = len(lines) <= NAMED
-    figure, axes = several(
+    figure, axes = figure_of_panels(
         len(records), min(2, len(records)), (WIDE / min(2, len(records)), 1.32 if len(records) > 4 else 1.8)
     )
     finite = [float(np.abs(path).max()) for run, path in zip(runs, moved, strict=True) if math.isfinite(run.largest)]

@@ -27,7 +27,7 @@ from .ledger import Ledger
 from .motion import Motion, sample_at
 from .origin import Origin
 from .rocking import Impact, Rocking, largest_rotations, restitution_of
-from .saved import read_answer, write_answer
+from .storage import read_answer, write_answer
 from .ties import Plastic, TieMotion, motion_of_ties
 from .variables import attributes_of, record_of, variables_of
 

@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.style import several
+from mjrock.plotting.style import figure_of_panels
 from scripts.shared import cli
 from scripts.shared.labels import without_axes
 
@@ -99,7 +99,7 @@ def wall(number: int) -> mr.Masonry:
 
 def drawn(found: dict[int, mr.Collapse]) -> Figure:
     """How each wall fails without dilatancy."""
-    figure, axes = several(len(found), min(3, len(found)), (2.46, 3.5))
+    figure, axes = figure_of_panels(len(found), min(3, len(found)), (2.46, 3.5))
     used = list(axes.flat[: len(found)])
     for ax, (number, collapse) in zip(used, found.items(), strict=True):
         plotting.mechanism(ax, collapse)

@@ -22,8 +22,8 @@ from mjrock.plotting.style import (
     WIDEST,
     Look,
     Picture,
+    figure_of_panels,
     legend_below,
-    several,
 )
 from scripts.shared.labels import SMALL, beside
 
@@ -64,7 +64,7 @@ def work_precision(
     all others are thin and grey.
     """
     cases, methods = list(dict.fromkeys(p[0] for p in points)), list(dict.fromkeys(p[1] for p in points))
-    figure, axes = several(len(cases), min(2, len(cases)), (4.2, 3.4))
+    figure, axes = figure_of_panels(len(cases), min(2, len(cases)), (4.2, 3.4))
     for ax, case in zip(axes.flat, cases, strict=False):
         _errors(ax, {m: sorted(p[2:] for p in points if p[:2] == (case, m)) for m in methods}, told)
         ax.set_xlabel(cost)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 from numpy.typing import ArrayLike
 
-from mjrock.plotting.style import BLUE, GREEN, ORANGE, OWN, figure_of, several, titled
+from mjrock.plotting.style import BLUE, GREEN, ORANGE, OWN, figure_of, figure_of_panels, write_title
 from scripts.shared.labels import SMALL
 
 SYMBOLS = {
@@ -65,7 +65,7 @@ def parity(ax: Axes, matched: ArrayLike, predicted: ArrayLike, color: ArrayLike)
 
 def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[ArrayLike, str]]) -> Figure:
     """Predicted over matched damping ratio against each variable; a variable is its values and its scale."""
-    figure, axes = several(len(variables), min(4, len(variables)), (2.3, 2.3))
+    figure, axes = figure_of_panels(len(variables), min(4, len(variables)), (2.3, 2.3))
     for ax, (name, (values, scale)) in zip(axes.flat, variables.items(), strict=False):
         ax.plot(values, residual, linestyle="", marker="o", markersize=2, markeredgewidth=0, alpha=0.6, color=BLUE)
         ax.axhline(1, color="0.5", linewidth=0.8)
@@ -73,7 +73,7 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
         ax.xaxis.set_minor_formatter(NullFormatter())
     for ax in axes[:, 0]:
         ax.set_ylabel(r"predicted $\xi$ / matched $\xi$ [-]", fontsize=9)
-    titled(figure, title, 10)
+    write_title(figure, title, 10)
     return figure
 
 

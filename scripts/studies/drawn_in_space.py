@@ -27,7 +27,7 @@ from matplotlib.text import Text
 import mjrock as mr
 from mjrock import plotting
 from mjrock.geometry.poses import rotations
-from mjrock.plotting import animation, depths
+from mjrock.plotting import animation, rasterizer
 from mjrock.plotting.solids import Solids
 from mjrock.quantities import Array, Integers
 from mjrock.result.bodies import Body, bodies_of
@@ -98,7 +98,7 @@ def wrong(view: View, frame: int) -> float:
     true, solids = draw(frame) // 16, view.solids
     scene.close()
     surfaces, pixel = solids.stage(frame)[0], 2 * view.half / SIZE[1]
-    seen = depths.View(np.array([*view.axes.T, solids.eye]), view.middle, SIZE, pixel)
+    seen = rasterizer.View(np.array([*view.axes.T, solids.eye]), view.middle, SIZE, pixel)
     number = np.append(np.searchsorted(solids.shown, solids.facets.block), -1)[seen.drawn(surfaces)[1].clip(-1)][::-1]
     inside = (true != 15).any(axis=-1)
     for shift in ((0, 1), (1, 0), (0, -1), (-1, 0)):  # edges fall on one pixel or the next

@@ -15,7 +15,7 @@ from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.style import several
+from mjrock.plotting.style import figure_of_panels
 from scripts.shared import cli
 
 UNIT = (0.5, 0.25)
@@ -36,7 +36,7 @@ def drawn(answer: mr.Response) -> Figure:
     masonry = answer.of_masonry.masonry
     length, height = np.concatenate([masonry.blocks[i].corners for i in masonry.free]).max(axis=0)
     limits = [(-0.3 * length, 3.6 * length), (-0.3, height + 0.5)]
-    figure, axes = several(FRAMES, 2, (3.7, 1.6))
+    figure, axes = figure_of_panels(FRAMES, 2, (3.7, 1.6))
     for ax, row in zip(axes.flat, np.linspace(0, len(answer.t) - 1, FRAMES).astype(int), strict=True):
         plotting.blocks(ax, masonry, answer.pose[row], joints=False, limits=limits)
         ax.set_title(f"{answer.t[row]:.1f} s", fontsize=9)

@@ -176,7 +176,7 @@ def test_a_film_of_masonry_fills_its_frame_above_the_motion_of_the_ground(wide, 
     case = mr.MasonryCase(masonry, 0.1, mr.GroundMotion.sine(2.0, 0.05))
     response = mr.solve_explicit(case)
     bodies = Bodies.of(response).at(response.t[[0, -1]])
-    figure, _ = animation.scene(bodies, animation.filmed(case).beside(response), case)
+    figure, _ = animation.scene(bodies, animation.film_of(case).beside(response), case)
     shown, strip = figure.axes
     wanted = np.clip(8.0 * np.divide(*bodies.extent_seen[::-1]), 2.0, 6.0)
     assert figure.get_size_inches() == pytest.approx((8.0, wanted + animation.CLOCK + animation.STRIP), abs=0.02)

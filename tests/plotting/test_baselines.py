@@ -219,7 +219,7 @@ def test_a_picture_is_readable(name, tmp_path):
     assert plotting.save(PICTURES[name](), tmp_path / "a.rgba").exists()  # pixels as they are: nothing is packed
 
 
-@pytest.mark.parametrize("missing", ["elevation", "outlines", "surroundings"])
+@pytest.mark.parametrize("missing", ["elevation", "draw_outlines", "surroundings"])
 def test_a_sketch_without_its_wall_or_what_it_meets_is_another_picture(missing, monkeypatch):
     sketches = importlib.import_module("mjrock.plotting.wall")
     monkeypatch.setattr(sketches, missing, lambda *given: lambda frame: None)

@@ -9,7 +9,7 @@ from matplotlib.patches import FancyArrowPatch, Polygon
 import mjrock as mr
 from mjrock import plotting
 from mjrock.geometry.convex import area
-from mjrock.plotting.solids import Rendered
+from mjrock.plotting.solids import Rendering
 
 BLOCK = mr.Masonry.stack([mr.Block.from_size(0.4, 1.6)], k_n=1e9, friction=0.9)
 
@@ -52,7 +52,7 @@ def test_masonry_in_space_moves_along_the_force():
     box = mr.Masonry.box((0.4, 0.4, 0.2), friction=0.3)
     collapse = mr.collapse_multiplier(box, associated=False)
     ax = plotting.mechanism(Figure().add_subplot(projection="3d"), collapse, share=0.5)
-    assert any(isinstance(child, Rendered) for child in ax.get_children())
+    assert any(isinstance(child, Rendering) for child in ax.get_children())
 
 
 def test_what_has_no_mechanism_has_no_picture():

@@ -11,8 +11,8 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation
-from mjrock.plotting.depths import FLOOR, INK, SHADED, View
-from mjrock.plotting.solids import Rendered, Solids
+from mjrock.plotting.rasterizer import FLOOR, INK, SHADED, View
+from mjrock.plotting.solids import Rendering, Solids
 from mjrock.result.bodies import Moving
 
 GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")
@@ -31,7 +31,7 @@ def posed(masonry, pose, magnify=1.0, camera=None):
 
 
 def drawn_on(ax):
-    (drawn,) = (child for child in ax.get_children() if isinstance(child, Rendered))
+    (drawn,) = (child for child in ax.get_children() if isinstance(child, Rendering))
     return drawn
 
 

@@ -9,7 +9,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
-from mjrock.plotting.solids import Rendered
+from mjrock.plotting.solids import Rendering
 from mjrock.plotting.wall import tie_texts
 from mjrock.result.bodies import bodies_of
 from mjrock.result.compare import paired, taken_by
@@ -65,7 +65,7 @@ def test_blocks_with_an_added_mass_turn_about_their_common_centroid(in_space):
     expected, ax = block.placed(block.corners)[-1], plotting.blocks(answer)
     if in_space:
         (drawn,) = (
-            child.bodies.corners(0).reshape(-1, 3) for child in ax.get_children() if isinstance(child, Rendered)
+            child.bodies.corners(0).reshape(-1, 3) for child in ax.get_children() if isinstance(child, Rendering)
         )
     else:
         expected, drawn = expected[:, [0, 2]], ax.collections[0].get_paths()[0].vertices

@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 import mjrock as mr
-from mjrock.reporting.subject import content_of
+from mjrock.reporting.content import content_of
 from mjrock.reporting.texts import Words
 
 COLUMN = mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 3)

@@ -18,7 +18,7 @@ import scipy
 from matplotlib.figure import Figure
 
 from .._version import __version__
-from ..plotting.masonry import blocks, laden, mechanism
+from ..plotting.masonry import blocks, draw_loads, mechanism
 from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.limit.collapse import Collapse
@@ -195,7 +195,7 @@ class MasonryContent:
         figure = self._drawn([(masonry, words("at_rest") if moved else ""), *moved])
         if not masonry.in_space:
             growing = [one.loads for one in borne if isinstance(one, Collapse) and one.masonry == masonry]
-            laden(figure.axes[0], masonry, self.case.effects, *growing[:1])
+            draw_loads(figure.axes[0], masonry, self.case.effects, *growing[:1])
             sized(figure, len(figure.axes), TALLEST_BLOCKS)
         return figure, words("drawing_masonry_mechanism" if moved else "drawing_masonry")
 
