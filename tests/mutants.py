@@ -45,7 +45,7 @@ OTHERS = (
 """Modules of the method without compiled functions."""
 TOOLS = ("contact", "make", "geoms", "inspect", "effective_mass", "row_of_model", "meeting", "notes")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
-STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "turning")
+STEPS = ("contacts/contact", "contacts/faces", "contacts/friction", "loop", "rotation")
 """Modules of the explicit steps, whose tests are their own."""
 LINKS = (
     "distinct/kinds/lists.py",
@@ -74,13 +74,13 @@ OWN = {
     "geometry/poses.py": ("scene_in_space",),
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
     "distinct/contacts/touches.py": ("touches_inside_a_step", "books_close"),
-    **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py")},
+    **{name: ("forces",) for name in ("distinct/force_record.py", "engine/forces.py")},
     **{
         f"problem/{kind}/rest_geometry.py": ("joint_frames", "files_of_motion", "rest_geometry")
         for kind in ("wall", "masonry")
     },
     "result/forces.py": ("joint_frames", "forces"),
-    "distinct/slowing.py": ("push",),
+    "distinct/motion_damping.py": ("push",),
     "distinct/kinds/mortar.py": ("bonds", "bonded_masonry"),
     "problem/masonry/laws/bond_law.py": ("bond_law", "bonds", "bonded_masonry"),
     "problem/masonry/laws/bond.py": ("bond_law", "bonds", "first_cracks", "masonry_inputs"),
@@ -129,7 +129,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/contacts/faces.py": ("outlines",),
     "distinct/search/finder.py": ("finder",),
     "distinct/contacts/friction.py": ("friction_of_lines",),
-    "distinct/gathering.py": ("forces_of_lines",),
+    "distinct/force_record.py": ("forces_of_lines",),
     "distinct/search/handover.py": ("handing_over",),
     "distinct/limit.py": ("impacts",),
     **{name: ("pulls_of_links",) for name in LINKS},
@@ -138,11 +138,11 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/loop.py": ("loop_of_steps",),
     "distinct/search/overlap.py": ("overlap_of_blocks",),
     "distinct/search/pair_law.py": ("pair_law",),
-    "distinct/slowing.py": ("slowing",),
+    "distinct/motion_damping.py": ("motion_damping",),
     "distinct/search/softening.py": ("softening",),
     "distinct/search/solids.py": ("solids", "finder", "handing_over", "overlap_of_blocks"),
     "distinct/contacts/touches.py": ("touches_of_lines", "another_law"),
-    "distinct/turning.py": ("turning",),
+    "distinct/rotation.py": ("rotation_of_bodies",),
     "geometry/vectors.py": ("contact_lines", "friction_of_lines", "clipping", "pulls_of_links"),
     "problem/masonry/actuator.py": ("actuator_inputs",),
     "problem/masonry/laws/bond_law.py": ("bond_law", "bonds_of_lines"),
@@ -212,12 +212,12 @@ EQUIVALENT = {
     },
     "reading.py: early = t[-1] <= case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to "
     "the duration": "no sample is half a step before the end to the last bit",
-    "turning.py: SPIN_PASSES = 6": "more passes take time only",
-    "turning.py: SLOW_TURN, PASSES_OF_SLOW = 1e-3, 4": "more passes take time only",
-    "turning.py: SLOW_TURN, PASSES_OF_SLOW = 0.002, 2": "two passes are within the error of the step there, too",
-    "turning.py: SERIES_ANGLE = 0.0002": "the first term of the series that is left out is below rounding there, too",
+    "rotation.py: SPIN_PASSES = 6": "more passes take time only",
+    "rotation.py: SMALL_ROTATION, PASSES_IF_SMALL = 1e-3, 4": "more passes take time only",
+    "rotation.py: SMALL_ROTATION, PASSES_IF_SMALL = 0.002, 2": "two passes are within the error of the step there, too",
+    "rotation.py: SERIES_ANGLE = 0.0002": "the first term of the series that is left out is below rounding there, too",
     **{
-        f"turning.py: {line}": "the term is below rounding there"
+        f"rotation.py: {line}": "the term is below rounding there"
         for line in (
             "sine, versine = 1 - square / 6, 0.5 - square / 48",
             "sine, versine = 1 - square / 6, 0.5 + square / 24",

@@ -17,10 +17,10 @@ from ..scene.scene import Scene
 from .contacts.faces import edges_of, margins
 from .contacts.touches import FIRST_OPENING
 from .kinds.lists import no_laws
+from .rotation import is_flat, set_rotations_and_spins
 from .rows import Rows, joined, kinds, rows
 from .supports import moving
 from .system import System
-from .turning import is_flat, start_turning
 
 
 def system_of(scene: Scene, *, ended: bool = False) -> System:
@@ -35,7 +35,7 @@ def system_of(scene: Scene, *, ended: bool = False) -> System:
         edges = add_joints(lines, scene)
     acting = (), np.zeros(0, dtype=np.int64), Ground.from_motions(None), moving((), d)
     system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), no_laws(d), *acting)
-    return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
+    return at_pose(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
 
 def lines_of(scene: Scene) -> Rows:
@@ -82,7 +82,7 @@ def add_joints(lines: Rows, scene: Scene) -> Rows:
     return edges
 
 
-def begin_open(lines: Rows, scene: Scene) -> None:
+def open_slightly(lines: Rows, scene: Scene) -> None:
     """Let the lines of joints as drawn begin a little open, see `touches.FIRST_OPENING`. Those of bonds that pull begin
     as drawn: they hold both ways."""
     sizes = np.array([solid.size for solid in scene.rest_geometry.solids])
@@ -92,17 +92,17 @@ def begin_open(lines: Rows, scene: Scene) -> None:
     lines["between"] += opening[:, None] * lines["normal"]
 
 
-def started(system: System, pose: Array, velocity: Array | None = None) -> System:
+def at_pose(system: System, pose: Array, velocity: Array | None = None) -> System:
     """The system with its bodies at a pose, shape (n, nq), with velocities, shape (n, nv), or at rest."""
     bodies, d = system.bodies, len(system.axes)
     if velocity is None:
         velocity = np.zeros((len(bodies), 3 * d - 3))
     bodies["place"], bodies["velocity"] = pose[:, :d], velocity[:, :d]
-    start_turning(bodies, pose, velocity)
+    set_rotations_and_spins(bodies, pose, velocity)
     return system
 
 
-def moved_by(system: System, scene: Scene, supports: Sequence[Support]) -> System:
+def with_supports(system: System, scene: Scene, supports: Sequence[Support]) -> System:
     """The system with supports that move fixed blocks, and the links that are anchored on these."""
     names, joints = [solid.name for solid in scene.rest_geometry.solids], scene.rest_geometry.joints
     numbers = {names.index(support.block): i for i, support in enumerate(supports)}
@@ -139,7 +139,7 @@ def copied(system: System) -> System:
     return system._replace(**tables)
 
 
-def take_grips(lines: Rows, drag: Array) -> None:
+def set_initial_friction(lines: Rows, drag: Array) -> None:
     """Let lines start with the friction at rest along the ways of their faces [N], shape (m, d - 1)."""
     force = drag
     if drag.shape[1] == 2:

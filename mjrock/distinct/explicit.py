@@ -19,11 +19,11 @@ from ..result.problem import problem_of, required_start
 from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
 from ..scene.explicit_step import warn_if_tiny
-from .following import Followed, Stepping, follow, warn_if_long
-from .reading import Run, response_of
+from .response import Run, response_of
 from .search.overlap import checked_overlap
-from .setup import Setup, carried_on, setup_of_problem, slowed
+from .setup import Setup, continued, setup_of_problem, with_motion_damping
 from .system import Books, Samples
+from .time_integration import Integration, TimeGrid, integrate, warn_if_long
 
 MOST_THREADS = 256
 """Most threads of a run."""
@@ -106,48 +106,50 @@ def solve_explicit(
     if start is None:
         warn_if_still(case, forces=forces)
     with first_answer(solve_shortly, case=case, contacts=contacts):
-        setup = slowed(carried_on(setup_of_problem(problem, contacts, state), start), mass_damping, local_damping)
+        setup = with_motion_damping(
+            continued(setup_of_problem(problem, contacts, state), start), mass_damping, local_damping
+        )
     scene, limit = setup.scene, setup.limit
-    steps = Stepping.of(setup, timestep, spacing)
-    count, bodies = steps.samples, len(scene.bodies.names)
+    grid = TimeGrid.of(setup, timestep, spacing)
+    count, bodies = grid.samples, len(scene.bodies.names)
     require_size("the samples of this answer", count * bodies, "raise output_step or follow it for less")
-    books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.is_slowed)
+    books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.has_motion_damping)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    samples = Samples.room(count, setup.system, books, ledger=ledger, checks=len(steps.checks(steps.last + 1)))
+    samples = Samples.room(count, setup.system, books, ledger=ledger, checks=len(grid.checks(grid.last + 1)))
     if forces:
         joints, fixed, _, actuators = required_room(case, count)
         samples = samples.with_forces(joints, fixed, actuators)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
-    warn_if_long(setup, steps)
+    warn_if_long(setup, grid)
     stepping = Stopwatch()
-    followed = follow(setup, books, samples, steps, threads)
-    stats = step_stats(setup, steps, followed, stepping.stepping())
-    kept = slice(followed.samples)
+    integration = integrate(setup, books, samples, grid, threads)
+    stats = step_stats(setup, grid, integration, stepping.stepping())
+    kept = slice(integration.samples)
     samples = samples.taken(kept).since_the_start()
     if setup.search is not None:
-        stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
-    checked = steps.checks(followed.steps)
-    run = Run(setup, followed, books, samples, steps.times()[kept], checked)
-    response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
+        stats["overlap"] = checked_overlap(setup, case, samples.pose, grid.times()[kept], grid.h)
+    checked = grid.checks(integration.steps)
+    run = Run(setup, integration, books, samples, grid.times()[kept], checked)
+    response = response_of(run, ledger=ledger, stride=grid.stride, stats=stats)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
-    response.stats["processor_time"] += followed.processor
+    response.stats["processor_time"] += integration.processor
     return recorded(response, given)
 
 
-def step_stats(setup: Setup, steps: Stepping, followed: Followed, took: dict[str, float]) -> dict[str, Any]:
+def step_stats(setup: Setup, grid: TimeGrid, integration: Integration, took: dict[str, float]) -> dict[str, Any]:
     """What the steps took, of all threads, and what they were."""
     return took | {
-        "stepping_processor_time": took["stepping_processor_time"] + followed.processor,
-        "steps": followed.steps,
-        "timestep": steps.h,
+        "stepping_processor_time": took["stepping_processor_time"] + integration.processor,
+        "steps": integration.steps,
+        "timestep": grid.h,
         "stable_timestep": setup.limit,
-        "share": steps.h / setup.limit,
-        "threads": followed.threads,
-        "friction": "springs" if np.isfinite(followed.system.lines["k_s"]).any() else "rigid",
+        "share": grid.h / setup.limit,
+        "threads": integration.threads,
+        "friction": "springs" if np.isfinite(integration.system.lines["k_s"]).any() else "rigid",
     }
 
 

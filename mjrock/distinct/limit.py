@@ -26,13 +26,13 @@ from ..problem.masonry.blocks.joints_in_space import axes_across
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
 from ..scene.explicit_step import stable_step
+from .rotation import roots_of_masses
 from .rows import Rows
 from .system import System
-from .turning import roots_of_masses
 
 LEAD = 0.5
 """By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
-In long steps what is foreseen at a contact is worse than that velocity, see `Setup.foresees`."""
+In long steps what is foreseen at a contact is worse than that velocity, see `Setup.looks_ahead`."""
 STABLE_AHEAD = 0.5
 """Step up to which a dashpot that looks ahead by half a step is stable, over the longest one in which it is stable
 otherwise [-]: it acts as one of twice its strength."""

@@ -29,26 +29,26 @@ from ..scene.course import Ground, mean_acceleration
 from .contacts.contact import settle_touches
 from .contacts.friction import book_rubbing, sheared, stick
 from .contacts.touches import in_transit, was_open
-from .gathering import keep_burden, keep_forces
+from .force_record import record_forces, record_guide_loads
 from .kinds.lists import act_all, hold_all, settle_all, stored_by_laws
+from .motion_damping import damp_unbalanced, damp_velocities
+from .rotation import (
+    apply_angular_impulse,
+    apply_impulse,
+    apply_inverse_inertia,
+    in_body,
+    momentum_of,
+    rotate_body,
+    rotation_within,
+    take_inverse_inertia,
+    update_rotation,
+    write_rotation,
+)
 from .rows import Rows
-from .slowing import oppose, slow_down
 from .spans import bodies_of_span, list_touched, press_by_laws, press_own_lines, sum_up
 from .supports import move_supports
 from .system import Books, Samples, System
 from .team import Team, bring_together, end_all, has_ended, wait
-from .turning import (
-    apply_inverse_inertia,
-    in_body,
-    kick_place,
-    kick_spin,
-    momentum_of,
-    take_inverse_inertia,
-    take_turn,
-    turn_body,
-    turns_within,
-    write_turn,
-)
 
 BROKEN_DOWN = 1e6
 """Displacement beyond which a run has broken down [m]."""
@@ -68,7 +68,7 @@ class Clock(NamedTuple):
         before: length of the step that led to the start, zero for a start that no step led to [s].
         pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
         check: steps from one check of the energy to the next.
-        drag, local: mass-proportional damping [1/s] and local damping [-] of the motion, see `slowing`.
+        drag, local: mass-proportional damping [1/s] and local damping [-] of the motion, see `motion_damping`.
         lead: by how many steps dashpots look ahead, see `touches.foreseen`.
     """
 
@@ -118,7 +118,7 @@ def start_forces(system: System, books: Books, push: Vector, before: float) -> N
     weight = plus(push, upwards(GRAVITY, push))
     for b in range(len(system.bodies)):
         body = system.bodies[b]
-        take_turn(body)
+        update_rotation(body)
         if len(system.ways) > 0:
             take_inverse_inertia(body)
         done -= before * body.mass * dot(mean, read(body.velocity))
@@ -133,8 +133,8 @@ def kick_bodies(bodies: Rows, kick: float) -> None:
     """Let forces and moments act for a time [s]."""
     for b in range(len(bodies)):
         body = bodies[b]
-        kick_place(body, scaled(kick, read(body.force)))
-        kick_spin(body, scaled(kick, read(body.moment)))
+        apply_impulse(body, scaled(kick, read(body.force)))
+        apply_angular_impulse(body, scaled(kick, read(body.moment)))
 
 
 @inlined
@@ -143,23 +143,23 @@ def move_bodies(bodies: Rows, h: float) -> None:
     for b in range(len(bodies)):
         body = bodies[b]
         increase(body.place, scaled(h, read(body.velocity)))
-        turn_body(body, h)
+        rotate_body(body, h)
 
 
 @inlined
-def keep_pose(system: System, books: Books, samples: Samples, row: int, before: float) -> None:
+def record_pose(system: System, books: Books, samples: Samples, row: int, before: float) -> None:
     """Keep pose and velocities before it, the potential and elastic energy, and the accounts of work.
 
-    In place of the spins the angular momenta are kept for now, see `keep_velocity`. `before` is the length of the last
-    step [s]."""
+    In place of the spins the angular momenta are kept for now, see `record_velocity`. `before` is the length of the
+    last step [s]."""
     for b in range(len(system.bodies)):
         body, pose, velocity = system.bodies[b], samples.pose[row, b], samples.velocity[row, b]
         put(pose, read(body.place))
-        write_turn(body, pose)
+        write_rotation(body, pose)
         put(velocity, read(body.velocity))
         put(velocity[len(body.place) :], momentum_of(body))
     sum_up(system, books)
-    keep_account(books.dashpots, samples.dashpots[row])
+    record_account(books.dashpots, samples.dashpots[row])
     energy, totals = samples.energy[row], books.totals[0]
     energy.potential = energy.elastic = energy.driven = 0.0
     hold_all(system.links, system, books, energy, samples.pulled[row])
@@ -177,18 +177,18 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
     energy.friction, energy.ground = totals.friction - along_faces, totals.ground
     energy.tension, energy.slip, energy.crushing = totals.tension, totals.slip, totals.crushing
     energy.joint_ends, energy.encounter_ends = totals.joint_ends, totals.encounter_ends
-    keep_account(books.links, samples.links[row])
+    record_account(books.links, samples.links[row])
 
 
 @inlined
-def keep_account(account: Array, kept: Array) -> None:
+def record_account(account: Array, kept: Array) -> None:
     """Keep an account, for which there is room where there is a ledger."""
     for i in range(len(kept)):
         kept[i] = account[i]
 
 
 @inlined
-def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float) -> None:
+def record_velocity(bodies: Rows, samples: Samples, row: int, before: float) -> None:
     """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy.
 
     Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]. The
@@ -224,7 +224,7 @@ def is_astray(bodies: Rows, ends: float) -> bool:
         for i in range(len(body.place)):
             if not abs(body.place[i]) < BROKEN_DOWN:
                 return True
-        if not turns_within(body, ends):
+        if not rotation_within(body, ends):
             return True
     return False
 
@@ -275,7 +275,7 @@ def add_forces(system: System, books: Books, samples: Samples, clock: Clock, tea
         if team.number == 0:
             act_all(system.links, system, books, t, before)
             if step.sampled:
-                keep_burden(system, samples, step.kept)
+                record_guide_loads(system, samples, step.kept)
         wait(team)
     press_by_laws(system.laws, system, books, team, t, before)
     sticking = press_own_lines(system, books, team, before, step.kick, clock.lead)
@@ -307,16 +307,16 @@ def settle_step(
             energy.friction += rubbed
             energy.ground += put_in
     if clock.drag > 0:
-        slow_down(system, books, clock.drag * kick)
+        damp_velocities(system, books, clock.drag * kick)
     if step.sampled or step.checked:
-        keep_velocity(system.bodies, samples, step.kept, step.before)
+        record_velocity(system.bodies, samples, step.kept, step.before)
     if step.sampled:
-        keep_forces(system, samples, step.kept)
+        record_forces(system, samples, step.kept)
 
 
 @compiled_at_once
 def advance(system: System, books: Books, samples: Samples, clock: Clock, team: Team) -> tuple[int, int, bool]:
-    """Steps up to that before which to stop. Samples and checks are made of every so many, and of the last.
+    """Steps up to that before which to stop. Samples and checks are made at fixed numbers of steps, and at the last.
 
     Each thread of a run calls it. Returns the number of the next step and of the next sample, and
     whether the run has ended.
@@ -333,9 +333,9 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock, team: 
             wait(team)
             if team.number == 0:
                 if kept:
-                    keep_pose(system, books, samples, step.kept, step.before)
+                    record_pose(system, books, samples, step.kept, step.before)
                 if clock.local > 0:
-                    oppose(system, books, clock.local, step.kick)
+                    damp_unbalanced(system, books, clock.local, step.kick)
             wait(team)
         kick_bodies(own, step.kick)
         if kept or sticking > 0 or touched > 0 or clock.drag > 0 or has_links(samples):

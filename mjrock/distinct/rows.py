@@ -86,8 +86,8 @@ def vectors(size: int, *names: str) -> Fields:
 
 
 def _body(d: int, s: int) -> Fields:
-    flat = [*numbers("angle"), *vectors(2, "turn")]
-    deep = [*vectors(4, "quaternion"), ("turn", float, (3, 3)), *vectors(3, "momentum")]
+    flat = [*numbers("angle"), *vectors(2, "rotation")]
+    deep = [*vectors(4, "quaternion"), ("rotation", float, (3, 3)), *vectors(3, "momentum")]
     deep += [("inverse_in_world", float, (3, 3))]  # inverse inertia in the axes of the world at the pose [1/(kg m2)]
     return [
         *numbers("mass"),  # [kg]
@@ -95,7 +95,7 @@ def _body(d: int, s: int) -> Fields:
         ("inverse_inertia", float, (s, s)),  # in its axes [1/(kg m2)]
         *vectors(d, "rest"),  # centroid at rest [m]
         *vectors(d, "place"),  # displacement from there [m]
-        *(flat if d == 2 else deep),  # rotation from rest, see `turning`
+        *(flat if d == 2 else deep),  # rotation from rest, see `rotation`
         *vectors(d, "velocity"),  # half a step before the pose [m/s]
         *vectors(s, "spin"),  # likewise, in the axes of the world at the pose [rad/s]
         *vectors(d, "force"),  # at the pose [N]

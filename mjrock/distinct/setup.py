@@ -18,7 +18,7 @@ from ..result.problem import Problem, problem_of, require_known_ties
 from ..result.response import State
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .assembly import begin_open, copied, guide, moved_by, started, system_of, take_grips
+from .assembly import at_pose, copied, guide, open_slightly, set_initial_friction, system_of, with_supports
 from .kinds.lists import laws_of, links_of
 from .limit import STABLE_AHEAD, Impacts, longest_step
 from .memory import Memory, memory_of, recalled, require_nothing_forgotten
@@ -38,7 +38,7 @@ class Setup:
     """A system at its start, and how it is followed.
 
     Args:
-        problem: what was asked.
+        problem: the case with its contacts.
         scene, course, system: what stands, what happens to it, and its rows.
         limit, share: the longest stable step [s], and the step that is taken over it [-].
         spacing: largest spacing of the samples [s].
@@ -69,18 +69,18 @@ class Setup:
     drag: float = 0.0
     local: float = 0.0
 
-    def foresees(self, h: float) -> bool:
+    def looks_ahead(self, h: float) -> bool:
         """Whether dashpots of contacts look ahead in steps of h [s]."""
         wanted = self.impacts is not None and self.impacts.look_ahead(h)
         return h <= LOOK_AHEAD_BELOW * self.limit or (wanted and h <= STABLE_AHEAD * self.limit)
 
     @property
-    def is_slowed(self) -> bool:
+    def has_motion_damping(self) -> bool:
         """Whether its motion is damped."""
         return self.drag > 0 or self.local > 0
 
 
-def slowed(setup: Setup, drag: float, local: float) -> Setup:
+def with_motion_damping(setup: Setup, drag: float, local: float) -> Setup:
     """The setup with mass-proportional [1/s] and local damping [-] of the motion.
 
     Raises:
@@ -109,12 +109,12 @@ def setup_of_problem(problem: Problem, contacts: Contacts | None, state: State |
     return replace(setup_of_wall(problem, case, scene, course), of=(scene.key, contacts))
 
 
-def carried_on(setup: Setup, start: object) -> Setup:
+def continued(setup: Setup, start: object) -> Setup:
     """The setup that carries on the steps of another run, if the start is the end of one of the same structure.
 
     Raises:
-        ValueError: for ties that yield, of which another start does not say how far they have, and for an end of
-            another structure whose joints remember something.
+        ValueError: for ties that yield, whose elongation another start does not contain, and for an end of another
+            structure whose joint laws have a memory.
     """
     memory = memory_of(start, setup.of)
     if memory is None:
@@ -131,7 +131,7 @@ def setup_of_wall(problem: Problem, case: Case, scene: Scene, course: Course) ->
     """A wall at the start of its course."""
     system = system_of(scene)
     names, links = links_of(scene, case, system.bodies)
-    system = started(system, course.pose, course.velocity)._replace(ground=course.ground, links=links)
+    system = at_pose(system, course.pose, course.velocity)._replace(ground=course.ground, links=links)
     # peaks and impacts are read off the samples
     followed = longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE
     return Setup(problem, scene, course, system, *followed, names=names)
@@ -139,12 +139,12 @@ def setup_of_wall(problem: Problem, case: Case, scene: Scene, course: Course) ->
 
 def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: Course) -> Setup:
     """Masonry at the start of its course."""
-    at_rest = standing(scene)
+    at_rest = masonry_at_rest(scene)
     names, links = links_of(scene, case, at_rest.system.bodies)
     passive = tuple(table for table in links if not table.driven)
     guided = np.concatenate([table.rows["body"] for table in links if table.driven])
     system = copied(at_rest.system)._replace(ground=course.ground, links=links, guided=guided)
-    system = moved_by(system, scene, case.supports)
+    system = with_supports(system, scene, case.supports)
     acts = any(len(table.rows) for table in passive)
     unguided = longest_step(system._replace(links=passive)) if acts else at_rest.limit
     guide(system, case)
@@ -154,7 +154,7 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
         problem,
         scene,
         course,
-        started(system, course.pose, course.velocity),
+        at_pose(system, course.pose, course.velocity),
         limit,
         step / limit,
         search=at_rest.search.begun(blocks),
@@ -180,15 +180,15 @@ class AtRest(NamedTuple):
 
 
 @lru_cache(maxsize=16)
-def standing(scene: Scene) -> AtRest:
+def masonry_at_rest(scene: Scene) -> AtRest:
     """Masonry before anything happens to it."""
     system = system_of(scene, ended=True)
     if scene.settled is None:
         pose, drag = scene.found
-        take_grips(system.lines, drag)
-        started(system, pose)
+        set_initial_friction(system.lines, drag)
+        at_pose(system, pose)
     else:
-        begin_open(system.lines, scene)
+        open_slightly(system.lines, scene)
     search = ContactSearch(scene, system)
     system = system._replace(laws=laws_of(scene, system.lines))
     return AtRest(system, search, longest_step(system))

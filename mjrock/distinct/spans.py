@@ -39,7 +39,7 @@ def books_of_span(books: Books, span: int, dashpots: Array, active: Integers, to
     """The books of a span, with these accounts of dashpots and this room in the lists."""
     totals = books.totals[span : span + 1]
     return Books(
-        dashpots, books.links, totals, active, touched, books.struck, books.asked, books.encounters, books.apart
+        dashpots, books.links, totals, active, touched, books.impulse, books.remaining, books.encounters, books.apart
     )
 
 

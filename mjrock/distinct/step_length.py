@@ -1,4 +1,4 @@
-"""The length of the steps of masonry. Everything that is stiff or damps is asked here.
+"""The length of the steps of masonry. It counts everything that is stiff or damps.
 
 Longest stable step:
 

@@ -56,7 +56,8 @@ class Books(NamedTuple):
             booked of the whole is in the first one.
         active, touched: room for the numbers of the lines that stick rigidly, and of those that met or left their face
             in the last step, shape (m,) each.
-        struck, asked: what their springs did for that in this step, and what they still ask for [N s], likewise.
+        impulse, remaining: the impulse of their springs for that in this step, and what is still missing of it [N s],
+            likewise.
         encounters: what the dashpots of lines book that a search has found, for each span but the first of these: that
             of span c is the number c + group.
         apart: forces of lines that wait until all threads have pressed, see `team.put_apart`.
@@ -67,8 +68,8 @@ class Books(NamedTuple):
     totals: Rows
     active: Integers
     touched: Integers
-    struck: Array
-    asked: Array
+    impulse: Array
+    remaining: Array
     encounters: Array
     apart: Rows
 
@@ -85,12 +86,12 @@ class Books(NamedTuple):
         return self.of_threads(system, 1)[0]
 
     def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Team, ...]]:
-        """The books with room for the lines of a system, and so many threads for them."""
+        """The books with room for the lines of a system, and a number of threads for them."""
         (teams, apart), lines = teams_of(system.bodies, system.lines, count), len(system.lines)
         books, spans = self._replace(apart=apart), len(teams[0].lines) - 1
         if lines > len(self.active):
             active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
-            books = books._replace(active=active, touched=touched, struck=np.zeros(lines), asked=np.zeros(lines))
+            books = books._replace(active=active, touched=touched, impulse=np.zeros(lines), remaining=np.zeros(lines))
         more = max(spans, len(teams[0].bodies) - 1) - len(self.totals)
         if more > 0:
             books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, more)))
@@ -112,9 +113,9 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
-        checks: rows of `ENERGY` at checks of the energy, which are made every so many steps, however far the samples
-            are apart.
-        dashpots, links: what `Books` say, (samples, accounts), without a ledger (samples, 0).
+        checks: rows of `ENERGY` at checks of the energy, at a fixed number of steps, however far apart the
+            samples are.
+        dashpots, links: the accounts of `Books`, (samples, accounts), without a ledger (samples, 0).
         pulled: force of each link [N], shape (samples, links).
         loads, held: forces of joints and of fixed blocks, see `result.forces.KeptForces`, shapes (samples, joints, nv)
             and (samples, blocks, d).
@@ -148,7 +149,7 @@ class Samples(NamedTuple):
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, checks), *arrays)
 
     def with_forces(self, joints: int, blocks: int, actuators: int) -> Samples:
-        """The same with room for the forces of so many joints, fixed blocks and actuators."""
+        """The same with room for the forces of a number of joints, fixed blocks and actuators."""
         counts = {"loads": joints, "held": blocks, "damage": joints, "guided": actuators}
         parts = {name: (n, getattr(self, name)) for name, n in counts.items()}
         return self._replace(**{name: np.zeros((len(old), n, *old.shape[2:])) for name, (n, old) in parts.items()})

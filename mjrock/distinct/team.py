@@ -59,7 +59,7 @@ class Team(NamedTuple):
 
 
 def teams_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Team, ...], Rows]:
-    """So many threads for these bodies and lines, and room for the forces that wait, see `put_apart`."""
+    """A number of threads for these bodies and lines, and room for the forces that wait, see `put_apart`."""
     spans, of_bodies = spans_of(lines), np.append(np.arange(0, len(bodies), BODIES_TOGETHER), len(bodies))
     parts, parts_of_bodies = (np.arange(count + 1) * (len(each) - 1) // count for each in (spans, of_bodies))
     apart = put_apart(bodies, lines, spans[parts])

@@ -4,11 +4,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mjrock.distinct.kinds.mortar import Bonds
+from mjrock.distinct.rotation import take_inverse_inertia, update_rotation
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
 from mjrock.distinct.team import teams_of
-from mjrock.distinct.turning import take_inverse_inertia, take_turn
 from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.problem.wall.rest_geometry import Solid, in_space
 from mjrock.scene.course import Ground
@@ -43,7 +43,7 @@ def system(d, lines=1, edges=0, still=False):
         bodies["angle" if d == 2 else "quaternion"] = 0.0 if d == 2 else [1.0, 0.0, 0.0, 0.0]
     axes = PLANE.axes if d == 2 else SPACE.axes
     for body in bodies:
-        take_turn(body)
+        update_rotation(body)
         take_inverse_inertia(body)
     if not still:
         bodies["velocity"], bodies["spin"] = VELOCITY[:, which], SPIN[:, 1:2] if d == 2 else SPIN

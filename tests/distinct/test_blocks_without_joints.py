@@ -7,7 +7,7 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct import explicit, following
+from mjrock.distinct import explicit, time_integration
 from mjrock.distinct.search.contact_search import ContactSearch
 
 TABLE = box(-1.0, 1.0, 1.0, 1.5, fixed=True, name="table")
@@ -123,7 +123,7 @@ FALLS = mr.Masonry([GROUND, STANDS, TABLE, box(0.0, 0.2, 1.52, 1.72, name="falls
 
 
 def test_a_motion_that_is_not_finite_ends_the_run_by_name(monkeypatch):
-    advance = following.advance
+    advance = time_integration.advance
 
     def spoiled(system, *rest):
         after = advance(system, *rest)
@@ -131,7 +131,7 @@ def test_a_motion_that_is_not_finite_ends_the_run_by_name(monkeypatch):
             system.bodies["velocity"][1, 0] = np.nan
         return after
 
-    monkeypatch.setattr(following, "advance", spoiled)
+    monkeypatch.setattr(time_integration, "advance", spoiled)
     with pytest.raises(RuntimeError, match=r"the motion of falls breaks down by t = 0\.0.* s: .* shorter timestep"):
         mr.solve_explicit(mr.MasonryCase(FALLS, 0.2, settled=False), timestep=1e-4)
 
@@ -146,10 +146,10 @@ def test_a_contact_that_is_not_finite_ends_the_run_by_name(monkeypatch):
 def test_rows_that_are_not_finite_are_refused_at_the_start(monkeypatch, name, value):
     def spoiled(setup, *rest):
         setup.system.lines[name][1] = value
-        return follow(setup, *rest)
+        return integrate(setup, *rest)
 
-    follow = following.follow
-    monkeypatch.setattr(explicit, "follow", spoiled)
+    integrate = time_integration.integrate
+    monkeypatch.setattr(explicit, "integrate", spoiled)
     with pytest.raises(RuntimeError, match=r"the lines \[1\] of the explicit steps have numbers that are not finite"):
         mr.solve_explicit(mr.MasonryCase(FALLS, 0.2, settled=False))
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct.reading import require_sound
+from mjrock.distinct.response import require_sound
 from mjrock.distinct.rows import rows
 from mjrock.distinct.search import contact_search
 from mjrock.distinct.system import ENERGY

@@ -144,9 +144,9 @@ def test_faces_that_are_turned_away_from_each_other_do_not_press(d, turned):
     whole = system(d, still=True)
     body = whole.bodies[turned]
     if d == 2:
-        body.turn[:] = [0.0, 2.0]  # half a turn
+        body.rotation[:] = [0.0, 2.0]  # half a turn
     else:
-        body.turn[:] = np.diag([-2.0, -2.0, 0.0])
+        body.rotation[:] = np.diag([-2.0, -2.0, 0.0])
         whole.lines["normal"] = [0.6, 0.8, 0.0]
     line = whole.lines[0]
     line.body, line.face, line.margin = 1, 0, 1e9
@@ -378,7 +378,7 @@ def test_what_a_line_loses_past_its_end_is_booked(d):
 
 def test_a_line_whose_faces_are_turned_away_has_gone():
     whole = system(2, still=True)
-    whole.bodies["turn"][1] = [0.0, 2.0]
+    whole.bodies["rotation"][1] = [0.0, 2.0]
     line = whole.lines[0]
     line.body, line.face, line.margin, line.normal, line.between = 1, 0, 1e9, NORMAL[2], -0.003 * NORMAL[2]
     line.k, line.c, line.friction, line.depth, line.push = K, C, 0.5, 0.001, 100.0
@@ -402,11 +402,11 @@ def test_springs_do_the_work_of_their_touch(d, face):
         _, _, rate, _ = moving_line(d, face, -0.002, number=number, whole=whole, due=due)
         whole.lines[number].rate = 1.5 * rate
     kept = books(whole)
-    kept.touched[:2], kept.struck[:] = [1, 2], 5.0
+    kept.touched[:2], kept.impulse[:] = [1, 2], 5.0
     rates, before, place = whole.lines["rate"].copy(), energy(whole.bodies), whole.bodies["velocity"].copy()
     normal = np.array(met(whole, 1).normal)
     taken, put_in = contact.settle_touches(whole, kept, 2, KICK)
-    struck = kept.struck[:2]
+    struck = kept.impulse[:2]
     left = [normal @ contact.relative(whole.bodies, whole.lines[i], whole.supports, met(whole, i)) for i in (1, 2)]
     for i in (1, 2):
         whole.lines[i].due = (0.0, 0.02, -0.03)[i]
@@ -423,7 +423,7 @@ def test_springs_do_the_work_of_their_touch(d, face):
     assert energy(whole.bodies) != before
     whole.lines["due"] = 0.0
     contact.settle_touches(whole, kept, 2, KICK)
-    assert not kept.struck[:2].any()
+    assert not kept.impulse[:2].any()
     contact.settle_touches(whole, kept, 2, KICK)
     assert kept.totals[0].ground == pytest.approx(0.5 * carried, rel=1e-12)
     assert not whole.lines["due"].any()

@@ -218,8 +218,8 @@ def test_the_longest_step_is_the_limit_of_stability(blocks, monkeypatch):
     from mjrock.distinct import setup as module
 
     column = columns(blocks, k_n=1e9, xi=0.05)
-    limit, at_rest = solve(column, 0.01).stats["stable_timestep"], module.standing
-    monkeypatch.setattr(module, "standing", lambda scene: at_rest(scene)._replace(limit=2 * limit))
+    limit, at_rest = solve(column, 0.01).stats["stable_timestep"], module.masonry_at_rest
+    monkeypatch.setattr(module, "masonry_at_rest", lambda scene: at_rest(scene)._replace(limit=2 * limit))
     with pytest.raises(RuntimeError, match=r"appeared from nowhere|breaks down"):
         solve(column, 2.0, PULSE, timestep=1.8 * limit)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from by_hand import about, books, matrix, system
 
-from mjrock.distinct import gathering
+from mjrock.distinct import force_record
 from mjrock.distinct.contacts import contact
 from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.system import Samples
@@ -59,7 +59,7 @@ def acting(whole, p, push, friction):
 @BOTH
 def test_forces_of_lines_are_summed_by_joint_block_and_actuator(d):
     whole, samples = held(d)
-    gathering.keep_forces(whole, samples, 0)
+    force_record.record_forces(whole, samples, 0)
     loads, blocks = np.zeros((JOINTS, len(samples.loads[0, 0]))), np.zeros((2, d))
     guided, body = np.zeros((2, loads.shape[1])), whole.bodies[1]
     for p in range(3):
@@ -89,7 +89,7 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
     line = whole.lines[1]
     line.push = line.depth = 0.0
     whole.lines["group"][2] = 0
-    gathering.keep_forces(whole, samples, 0)
+    force_record.record_forces(whole, samples, 0)
     one, other, dry = acting(whole, 0, -20.0, 2.5)[0], acting(whole, 1, -31.0, 3.5)[0], acting(whole, 2, 12.0, 4.0)[0]
     np.testing.assert_allclose(samples.loads[0, 1, :d], one, rtol=1e-10)
     np.testing.assert_allclose(samples.loads[0, 0, :d], dry - other, rtol=1e-10)
@@ -101,7 +101,7 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
 def test_without_room_nothing_is_kept(d):
     whole, samples = held(d)
     samples = samples.with_forces(JOINTS, 0, 2)
-    gathering.keep_forces(whole, samples, 0)
+    force_record.record_forces(whole, samples, 0)
     assert not samples.loads.any()
     assert not samples.guided.any()
 
@@ -113,11 +113,11 @@ def test_friction_of_a_line_that_sticks_is_that_of_its_impulse_and_of_what_dragg
     line = whole.lines[0]
     line.face, line.dragged = face, along(d, 2.0)
     line.grip = along(d, 0.5)
-    assert gathering.whole_friction(whole, line) == pytest.approx(tuple(along(d, 2.0)))
+    assert force_record.total_friction(whole, line) == pytest.approx(tuple(along(d, 2.0)))
     line.k_s = math.inf
     turned = matrix(3, 0) @ ALONG[3] if d == 3 and face == 0 else ALONG[d]
     expected = [2.5] if d == 2 else 2.0 * ALONG[3] + 0.5 * turned
-    np.testing.assert_allclose(gathering.whole_friction(whole, line), expected, rtol=1e-12)
+    np.testing.assert_allclose(force_record.total_friction(whole, line), expected, rtol=1e-12)
 
 
 @BOTH
@@ -126,6 +126,6 @@ def test_what_acts_on_the_blocks_of_actuators_before_any_contact_is_kept(d):
     random = np.random.default_rng(d)
     for name in ("force", "moment"):
         whole.bodies[name] = random.normal(size=whole.bodies[name].shape)
-    gathering.keep_burden(whole, samples, 0)
+    force_record.record_guide_loads(whole, samples, 0)
     bodies = whole.bodies[[1, 0]]
     np.testing.assert_array_equal(samples.guided[0], np.hstack([bodies["force"], bodies["moment"]]))

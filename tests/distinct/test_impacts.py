@@ -105,12 +105,12 @@ def test_masonry_with_strong_dashpots_takes_the_step_that_they_ask_for():
             assert 0.98 * step < stats["timestep"] <= step
         else:
             assert 0.39 < stats["share"] <= 0.4
-        assert start.foresees(stats["timestep"]) is strong
-        assert start.foresees(start.share * start.limit) is strong  # as long as it may be, to rounding
+        assert start.looks_ahead(stats["timestep"]) is strong
+        assert start.looks_ahead(start.share * start.limit) is strong  # as long as it may be, to rounding
     given = 0.4 * start.limit  # too long for what dashpots could foresee
-    assert not start.foresees(given)
-    assert start.foresees(0.2 * start.limit)
-    assert at_start(blocks, 0.0)[1].foresees(0.25 * start.limit)
+    assert not start.looks_ahead(given)
+    assert start.looks_ahead(0.2 * start.limit)
+    assert at_start(blocks, 0.0)[1].looks_ahead(0.25 * start.limit)
 
 
 @pytest.mark.parametrize("share", [0.7, 0.95])

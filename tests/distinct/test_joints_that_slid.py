@@ -8,7 +8,7 @@ from everyday import among
 from masonry_blocks import box
 
 import mjrock as mr
-from mjrock.distinct.setup import standing
+from mjrock.distinct.setup import masonry_at_rest
 
 K_N, SIDE, FRICTION = 1e9, 1.0, 0.2
 SMOOTH = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0, 1, 101))
@@ -154,7 +154,7 @@ def test_pairs_keep_the_lines_of_their_own_joints():
     """Of two blocks with two joints, which is one pair, the most."""
     counts = {"ground|drum_0": 2, "drum_0|drum_1": 5}
     masonry = mr.Masonry.column(0.6, 2.0, 2, points=lambda joint: counts[joint.name])
-    finder = standing(mr.scene_of(mr.MasonryCase(masonry, 1.0))).search.finder
+    finder = masonry_at_rest(mr.scene_of(mr.MasonryCase(masonry, 1.0))).search.finder
     assert dict(zip(finder.jointed.tolist(), finder.points.tolist(), strict=True)) == {1: 2, 5: 5}
     step = [mr.Polygon([(x, z), (x + 1, z), (x + 1, z + 0.5), (x, z + 0.5)]) for x, z in ((0, 0), (1, 0), (0, 0.5))]
     corner = mr.Masonry(
@@ -162,4 +162,4 @@ def test_pairs_keep_the_lines_of_their_own_joints():
         points=lambda joint: 3 if joint.is_bed else 4,
     )
     drawn = mr.scene_of(mr.MasonryCase(corner, 1.0, settled=False))
-    assert sorted(standing(drawn).search.finder.points.tolist()) == [3, 4]
+    assert sorted(masonry_at_rest(drawn).search.finder.points.tolist()) == [3, 4]

@@ -7,7 +7,7 @@ from masonry_blocks import GROUND, box
 from scenes import changed
 
 import mjrock as mr
-from mjrock.distinct.assembly import started, system_of
+from mjrock.distinct.assembly import at_pose, system_of
 from mjrock.distinct.kinds.lists import links_of
 from mjrock.distinct.limit import longest_step
 from mjrock.distinct.loop import Clock, advance
@@ -33,7 +33,7 @@ def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     system = system._replace(links=links_of(scene, case, system.bodies)[1])
     assert system.links[0].rows["between"][0] == pytest.approx([GAP, 0.0])
     velocity = np.array([[0.0, 0.0, 0.0], [SPEED, 0.0, 0.0]])
-    started(system, scene.at_rest, velocity)
+    at_pose(system, scene.at_rest, velocity)
     h = 0.2 * longest_step(system)
     books, count = Books.empty(system, 3), 600
     samples = Samples.room(count + 1, system, books, ledger=True)

@@ -324,15 +324,15 @@ def test_a_tie_breaks_when_a_body_has_fallen_so_far(d):
 def test_forces_start_with_weight_and_the_ground(d):
     whole, account, before = system(d), Books.empty(system(d), 2), 0.02
     push, last = np.array([0.3, -0.7, 0.5])[:d], np.array([-0.2, 0.4, 0.1])[:d]
-    turns, spins = whole.bodies["turn"].copy(), whole.bodies["spin"].copy()
-    whole.bodies["turn"], whole.bodies["moment"], whole.bodies["force"] = 9.0, 9.0, 9.0
+    turns, spins = whole.bodies["rotation"].copy(), whole.bodies["spin"].copy()
+    whole.bodies["rotation"], whole.bodies["moment"], whole.bodies["force"] = 9.0, 9.0, 9.0
     if d == 3:
         inverse, whole.bodies["inverse_in_world"] = whole.bodies["inverse_in_world"].copy(), 9.0
     account.totals[0].push, account.totals[0].ground = last, 0.5
     loop.start_forces(whole, account, tuple(push), before)
     np.testing.assert_allclose(whole.bodies["force"], -np.outer(MASSES, push + G * np.eye(d)[-1]), rtol=1e-13)
     assert not whole.bodies["moment"].any()
-    np.testing.assert_allclose(whole.bodies["turn"], turns, rtol=1e-13)
+    np.testing.assert_allclose(whole.bodies["rotation"], turns, rtol=1e-13)
     np.testing.assert_allclose(whole.bodies["spin"], spins, rtol=1e-12)
     if d == 3:
         np.testing.assert_allclose(whole.bodies["inverse_in_world"], inverse, rtol=1e-13)
@@ -362,7 +362,7 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     account.dashpots[:] = 11.0
     for name, taken in zip(TAKEN_BY_LAWS, range(1, 6), strict=True):
         account.totals[0][name] = taken
-    loop.keep_pose(whole, account, samples, 1, before)
+    loop.record_pose(whole, account, samples, 1, before)
     squares = (grip**2).sum(axis=1)
     sheared = 0.5 * (400.0 * squares[1] + 500.0 * squares[2] + 300.0 * 4e-6 * (2 * d - 3))
     late = 0.5 * before * 0.5 * np.array([27.0 - 3.0 - 20.0, -6.0])
@@ -372,7 +372,7 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     assert (sample.ground, sample.driven, sample.potential) == (5.0, 0.0, 0.0)
     assert [sample[name] for name in TAKEN_BY_LAWS] == [1.0, 2.0, 3.0, 4.0, 5.0]
     lines["push"][1], lines["pressed"][1] = -6.0, -2.0  # the dashpot pulls
-    loop.keep_pose(whole, account, samples, 0, before)
+    loop.record_pose(whole, account, samples, 0, before)
     by_spring = 0.5 * before * (-6.0 + 2.0) * 0.5
     assert samples.energy[0].elastic == pytest.approx(sample.elastic, rel=1e-12)
     assert samples.dashpots[:2].tolist() == (
@@ -393,13 +393,13 @@ def test_kept_velocities_are_those_of_the_pose_and_the_energy_is_that_of_the_ste
     momentum = np.linalg.solve(inverse, bodies["spin"][:, :, None])[:, :, 0]
     turned = random.normal(size=momentum.shape)
     samples.energy[0].potential = 3.0
-    loop.keep_pose(whole, account, samples, 0, before)
+    loop.record_pose(whole, account, samples, 0, before)
     bodies["velocity"] = then
     if d == 2:
         bodies["spin"] = turned * inverse[:, 0]
     else:
         bodies["momentum"] = turned
-    loop.keep_velocity(bodies, samples, 0, before)
+    loop.record_velocity(bodies, samples, 0, before)
     mean, mean_momentum = (0.5 * (first + then), 0.5 * (momentum + turned)) if before else (first, momentum)
     np.testing.assert_allclose(samples.velocity[0, :, :d], mean, rtol=1e-12)
     spin = np.einsum("nij,nj->ni", inverse, mean_momentum)

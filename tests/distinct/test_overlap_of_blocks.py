@@ -6,7 +6,7 @@ from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct.search.overlap import common_volume, what_keeps_apart
+from mjrock.distinct.search.overlap import common_volume, overlap_remedy
 from mjrock.distinct.search.solids import Solids
 
 
@@ -93,7 +93,7 @@ def test_blocks_are_held_against_a_support_where_it_is():
 )
 def test_what_keeps_blocks_apart_names_the_step_where_that_is_the_cause(share, left, said):
     """The overlap of a block that is stopped falls as the root of the stiffness, and is to fall to 1 %."""
-    assert what_keeps_apart(share, left, 1e-5).startswith(said)
+    assert overlap_remedy(share, left, 1e-5).startswith(said)
 
 
 def lands(**options):

@@ -10,7 +10,7 @@ from masonry_blocks import GROUND, box
 from scipy.integrate import solve_ivp
 
 import mjrock as mr
-from mjrock.distinct import reading, setup
+from mjrock.distinct import response, setup
 from mjrock.result import ledger
 
 G = mr.GRAVITY
@@ -207,8 +207,8 @@ def unstable(monkeypatch, output_step=1e-3, beyond=1.8):
     """A block that rocks, at a step beyond the longest stable one."""
     masonry = block(False, 0.05, (0.5, 2.0))
     case = mr.MasonryCase(masonry, 0.5, velocity=[(0.0, 0.0, 0.3)])
-    limit, at_rest = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).stats["stable_timestep"], setup.standing
-    monkeypatch.setattr(setup, "standing", lambda scene: at_rest(scene)._replace(limit=2 * limit))
+    limit, at_rest = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).stats["stable_timestep"], setup.masonry_at_rest
+    monkeypatch.setattr(setup, "masonry_at_rest", lambda scene: at_rest(scene)._replace(limit=2 * limit))
     return mr.solve_explicit(case, timestep=beyond * limit, output_step=output_step)
 
 
@@ -232,7 +232,7 @@ def test_the_error_names_a_shorter_step(monkeypatch):
 
 def test_rounding_is_no_energy_from_nowhere(monkeypatch):
     """Whatever share of the energy is tolerated. The block flies free."""
-    for module in (reading, ledger):
+    for module in (response, ledger):
         monkeypatch.setattr(module, "ENERGY_GAIN", 1e-18)
     run = thrown(0.05, 1e-4, 0.05, (0.0, 0.0, 1.0))
     assert np.ptp(run.energy) > 1e-18 * run.energy[0]
@@ -273,7 +273,7 @@ def test_energy_that_ends_of_faces_put_in_has_an_account_and_warns(monkeypatch):
     run = mr.solve_explicit(case, timestep=2e-5, ledger=True)
     assert min(run.ledger.ends["joints"].min(), run.ledger.ends["encounters"].min()) > -0.01 * run.ledger.kinetic.max()
     assert np.abs(run.energy_residual).max() < 1e-3 * run.ledger.largest
-    monkeypatch.setattr(reading, "RESIDUAL_WARNED_OF", -1.0)
+    monkeypatch.setattr(response, "RESIDUAL_WARNED_OF", -1.0)
     with pytest.warns(
         UserWarning, match=r"contacts at ends of faces put in \S+ J, -?\d+\.\d% of the energy there"
     ) as said:

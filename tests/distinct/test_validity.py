@@ -44,7 +44,7 @@ def slipped(d, lines, left, faces=(0,)):
     whole = system(d, len(lines))
     for i, (_, gap, slip) in enumerate(lines):
         put_line(whole.lines[i], d, whole, faces[i % len(faces)], gap, slip)
-    whole.bodies["turn"] = 9.0
+    whole.bodies["rotation"] = 9.0
     pairs, count = np.array([pair for pair, _, _ in lines]), len(left)
     blocks = np.arange(count)[:, None] + [0, 1]
     written = np.full(count, 7.0), np.full(count, -7.0), np.full(count, 7.0), np.full(count, True)
@@ -56,7 +56,7 @@ def left_by(whole, joints, handed_over=None):
     count = len(joints.left)
     left, handed_over = np.full(count + 1, True), np.zeros(count, dtype=bool) if handed_over is None else handed_over
     for body in whole.bodies:
-        validity.take_turn(body)
+        validity.update_rotation(body)
     validity.update_joints(whole, joints)
     validity.mark_left(whole.laws, joints, handed_over, left)
     np.testing.assert_array_equal(left, np.append(joints.left, False) | np.append(False, joints.left))
@@ -74,7 +74,7 @@ def test_slip_and_gap_of_a_pair_are_those_of_its_lines(d, face):
     np.testing.assert_allclose(joints.slip, [0.004, 0.05], rtol=1e-9)
     np.testing.assert_allclose(joints.gap, [-0.001, -0.002], rtol=1e-9)
     np.testing.assert_allclose(whole.lines["widest"], [0.003, 0.002, 0.0, 0.005], rtol=1e-9)
-    np.testing.assert_allclose(whole.bodies["turn"], system(d).bodies["turn"], rtol=1e-13)
+    np.testing.assert_allclose(whole.bodies["rotation"], system(d).bodies["rotation"], rtol=1e-13)
 
 
 @BOTH
@@ -125,14 +125,14 @@ def still(d, count):
 def test_blocks_are_where_their_bodies_and_supports_are(d):
     """Blocks 3 and 1 are the bodies, block 2 is moved by a support, and block 0 stays."""
     whole, which = system(d), [0, 2] if d == 2 else [0, 1, 2]
-    whole.bodies["turn"] = 9.0
+    whole.bodies["rotation"] = 9.0
     if d == 3:
         whole.bodies["inverse_in_world"] = 9.0
     motion, sizes = still(d, 4), np.array([9.0, 0.5, 7.0, 0.8])
     body, fixed, support = np.array([-1, 1, -1, 0]), np.array([0, -1, 1, -1]), np.array([-1, -1, 0, -1])
     blocks = Blocks(motion.poses, sizes, np.array([3, 1]), body, fixed, support)
     motion.surge[:] = [0.0, 0.25, 0.75, 0.0]
-    validity.take_motion(whole, blocks, motion)
+    validity.update_motion(whole, blocks, motion)
     poses, none = motion.poses, np.zeros(d)
     np.testing.assert_array_equal(poses.moved, [none, PLACE[1, which], whole.supports.moved[0], PLACE[0, which]])
     np.testing.assert_array_equal(
@@ -142,7 +142,7 @@ def test_blocks_are_where_their_bodies_and_supports_are(d):
     np.testing.assert_allclose(motion.about, [0.0, 0.5 * spin[1] + 0.25, 0.75, 0.8 * spin[0]], rtol=1e-12)
     turned = [np.zeros((d, d)), matrix(d, 1) - np.eye(d), np.zeros((d, d)), matrix(d, 0) - np.eye(d)]
     np.testing.assert_allclose(poses.change, turned, rtol=1e-12, atol=1e-15)
-    np.testing.assert_allclose(whole.bodies["turn"], system(d).bodies["turn"], rtol=1e-13)
+    np.testing.assert_allclose(whole.bodies["rotation"], system(d).bodies["rotation"], rtol=1e-13)
     if d == 3:
         np.testing.assert_allclose(whole.bodies["inverse_in_world"], system(d).bodies["inverse_in_world"], rtol=1e-12)
 
@@ -330,7 +330,7 @@ def test_springs_hold_what_they_store(d):
     lines = [(0, -0.003, 0.02), (0, 0.002, 0.0), (0, -0.001, 0.0)]
     whole, _ = slipped(d, lines, [1.0])
     for body in whole.bodies:
-        validity.take_turn(body)
+        validity.update_rotation(body)
     whole.lines["k"] = [1e5, 2e5, 4e5]
     depth = np.full(2, 9.0)
     assert validity.account(whole, np.array([2, 1]), depth).energy == pytest.approx(0.5 * 4e5 * 1e-6, rel=1e-9)
@@ -352,7 +352,7 @@ def test_springs_give_what_they_hold_less_a_moment_later(face):
         whole.bodies["place"] = place + time * np.array(whole.bodies["velocity"])
         whole.bodies["angle"] = angle + time * np.array(whole.bodies["spin"])[:, 0]
         for body in whole.bodies:
-            validity.take_turn(body)
+            validity.update_rotation(body)
         return validity.account(whole, np.arange(3), np.empty(3))
 
     gives = (at(-moment).energy - at(moment).energy) / (2 * moment)

@@ -8,7 +8,7 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.setup import standing
+from mjrock.distinct.setup import masonry_at_rest
 from mjrock.engine import model
 from mjrock.scene.masonry import masonry_scene
 
@@ -136,7 +136,7 @@ def arrays_in(thing, path=""):
 
 @pytest.mark.parametrize("settled", [True, False])
 def test_a_run_writes_into_nothing_that_others_share(settled):
-    kept = standing(masonry_scene(mr.MasonryCase(PILE, 1.0, settled=settled)))
+    kept = masonry_at_rest(masonry_scene(mr.MasonryCase(PILE, 1.0, settled=settled)))
     before = arrays_in(kept)
     thrown(1, settled)
     after = arrays_in(kept)

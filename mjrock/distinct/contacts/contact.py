@@ -16,11 +16,11 @@ from typing import NamedTuple
 from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, minus, no_spin, plus, put, read, scaled, spun, vector
 from ...problem.masonry.laws.joint_law import normal_force, shear_limit, stored
+from ..rotation import apply_impulse_at, in_body, in_world, may_face_away, rotation_change
 from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
 from ..supports import Supports
 from ..system import Books, System
 from ..team import press_apart
-from ..turning import in_body, in_world, may_face_away, rotation_change, strike_body
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction, turned_along
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
@@ -227,26 +227,26 @@ def settle_touches(system: System, books: Books, count: int, kick: float) -> tup
     """
     taken, put_in = 0.0, 0.0
     for i in range(count):
-        books.struck[i] = 0.0
+        books.impulse[i] = 0.0
     for _ in range(TOUCH_PASSES):
         for i in range(count):
             line = system.lines[books.touched[i]]
             meet = meeting(system, line)
             rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
-            books.asked[i] = due_impulse(line, rate) - books.struck[i]
+            books.remaining[i] = due_impulse(line, rate) - books.impulse[i]
         for i in range(count):
-            line, impulse = system.lines[books.touched[i]], books.asked[i]
+            line, impulse = system.lines[books.touched[i]], books.remaining[i]
             meet = meeting(system, line)
-            strike_body(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
+            apply_impulse_at(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
             if line.face >= 0:
-                strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
-            books.struck[i] += impulse
+                apply_impulse_at(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
+            books.impulse[i] += impulse
     for i in range(count):
         line = system.lines[books.touched[i]]
         if line.support >= 0:
-            impulse = 0.5 * books.struck[i]
+            impulse = 0.5 * books.impulse[i]
             put_in += carried(line, system.supports, scaled(impulse, meeting(system, line).normal))
-        line.push, line.due = line.push + books.struck[i] / kick, 0.0
-        taken -= 0.5 * books.struck[i] * line.rate
+        line.push, line.due = line.push + books.impulse[i] / kick, 0.0
+        taken -= 0.5 * books.impulse[i] * line.rate
     books.totals[0].ground += put_in
     return taken, put_in

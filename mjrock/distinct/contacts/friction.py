@@ -35,10 +35,10 @@ from ...geometry.vectors import (
 )
 from ...problem.masonry.laws.joint_law import shear_limit, stored_along
 from ...quantities import Array, Integers
+from ..rotation import add_momentum, apply_impulse, in_body, in_world, spin_from_many
 from ..rows import Row, Rows
 from ..supports import Supports
 from ..system import Books, System
-from ..turning import in_body, in_world, kick_place, spin_from_many, turn_momentum
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
@@ -247,11 +247,11 @@ def strike(system: System, first: int, impulses: Vector) -> None:
     """Let impulses along the ways of a line act on the velocities of its body and of that of its face [N s]."""
     a, b = system.ways[first], system.ways[first + len(impulses) - 1]
     body, kick = system.bodies[a.body], along_ways(impulses, read(a.way), read(b.way))
-    kick_place(body, kick)
+    apply_impulse(body, kick)
     increase(body.spin, along_ways(impulses, read(a.spin), read(b.spin)))
     if a.face >= 0:
         face = system.bodies[a.face]
-        kick_place(face, scaled(-1.0, kick))
+        apply_impulse(face, scaled(-1.0, kick))
         spin = along_ways(impulses, read(a.spin_of_face), read(b.spin_of_face))
         increase(face.spin, scaled(-1.0, spin))
 
@@ -351,11 +351,11 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, like: Vector)
         return
     a, b = system.ways[first], system.ways[first + 1]
     lever = along_ways(impulses, read(a.lever), read(b.lever))
-    turn_momentum(system.bodies[a.body], lever)
+    add_momentum(system.bodies[a.body], lever)
     grip = scaled(1 / kick, along_ways(impulses, read(a.way), read(b.way)))
     if a.face >= 0:
         lever = along_ways(impulses, read(a.lever_on_face), read(b.lever_on_face))
-        turn_momentum(system.bodies[a.face], scaled(-1.0, lever))
+        add_momentum(system.bodies[a.face], scaled(-1.0, lever))
         grip = in_body(system.bodies[a.face], grip)
     put(line.grip, grip)
 

@@ -14,11 +14,11 @@ from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
 from ...scene.parts import GROUND
 from ...scene.scene import Scene
+from ..rotation import rotation_change, rotations
 from ..rows import Row, Rows
 from ..supports import Supports, move_supports, moving, places, surges
 from ..system import Books, System
 from ..team import add_force
-from ..turning import rotation_change, rotations
 from .link import Kind, Named
 
 

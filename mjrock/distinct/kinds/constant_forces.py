@@ -6,10 +6,10 @@ from ...compiled import inlined
 from ...geometry.vectors import dot, plus, read
 from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
+from ..rotation import rotation_change
 from ..rows import Row, Rows
 from ..system import Books, System
 from ..team import add_force
-from ..turning import rotation_change
 from .link import Columns, Kind, Named, Table
 
 

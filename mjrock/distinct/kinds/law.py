@@ -1,4 +1,4 @@
-"""What all laws of joints beside the dry one have: a row for each contact line, and what a run asks of a law.
+"""What all laws of joints beside the dry one have: a row for each contact line, and what a run requires of a law.
 
 A contact line is dry: it has pressure and friction. A law adds forces to its lines, and takes over as much of their
 springs, dashpots and friction as it has itself. It is a class in a file of this folder. `LAWS` of `lists` names the
@@ -136,7 +136,7 @@ class JointLaw:
 
     @staticmethod
     def soften(laws: Rows, share: Array) -> None:
-        """Leave lines that are found a share of their law, where the step asks for softer ones [-]."""
+        """Reduce the law of found lines to a share, where the time step requires softer contacts [-]."""
 
     @staticmethod
     def bend(laws: Rows, lines: Rows, depth: Array) -> None:

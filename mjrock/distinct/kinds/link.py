@@ -1,4 +1,4 @@
-"""What all kinds of links have: two ends, a table of rows, and what a run asks of a kind.
+"""What all kinds of links have: two ends, a table of rows, and what a run requires of a kind.
 
 A link stands between a point of a body and an anchor on the ground, on a fixed block or on another body. A kind of
 links is a class in a file of this folder, with its rows, its force, its energy, its accounts and what a later run
@@ -21,10 +21,10 @@ from ...problem.wall.effect import LinkLaw
 from ...quantities import Array, Integers
 from ...scene.parts import Links
 from ...scene.scene import Scene
+from ..rotation import rotation_change
 from ..rows import Fields, Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
 from ..team import add_force
-from ..turning import rotation_change
 
 Named = tuple[tuple[str, ...], "Kind"]
 """The names of links, and the links."""
@@ -66,7 +66,7 @@ class Kind:
 
     @classmethod
     def table(cls, d: int, count: int, **columns: Array | Integers | float) -> Rows:
-        """Rows of links in d directions with these columns, on the ground unless they say otherwise."""
+        """Rows of links in d directions with these columns, on the ground unless the columns give another anchor."""
         fields = [
             *integers("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
             *integers("anchor_block", "support"),  # the block of the other end and what moves it, -1 for none

@@ -1,4 +1,4 @@
-"""The kinds of links and the laws of joints: which there are, and what the steps and a run ask of all of them."""
+"""The kinds of links and the laws of joints: which there are, and the functions that call all of them."""
 
 from __future__ import annotations
 

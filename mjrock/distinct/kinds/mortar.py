@@ -23,10 +23,10 @@ from ...quantities import Array, Flags
 from ...scene.scene import Scene
 from ..contacts.contact import meeting, relative, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared, shortened, stretched
+from ..rotation import in_body
 from ..rows import Fields, Row, Rows, numbers
 from ..system import Books, System
 from ..team import press_apart
-from ..turning import in_body
 from .law import JointLaw
 from .link import Table
 

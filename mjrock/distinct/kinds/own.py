@@ -169,7 +169,7 @@ class OwnLaws(JointLaw, Table):
 
     @inlined
     def lost(self, row: Row) -> float:
-        """As the law says."""
+        """The share that the law gives."""
         share: float = row.values[OF_LOST]
         return share
 

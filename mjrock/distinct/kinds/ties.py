@@ -13,9 +13,9 @@ from ...geometry.vectors import scaled
 from ...problem.masonry.case import AnyCase
 from ...scene.scene import Scene
 from ..contacts.touches import due_impulse
+from ..rotation import apply_impulse_at
 from ..rows import Row, Rows
 from ..system import Books, System
-from ..turning import strike_body
 from .link import INFINITE_IN_LAW, Kind, Named, Pull, Table, book_support, carried_along, lengthening, pull, push_apart
 
 
@@ -47,7 +47,7 @@ class Ties(Kind, Table):
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
-        """Their sliders move to where the pose asks."""
+        """Move the sliders to the pose, and add the forces."""
         for i in range(len(self.rows)):
             tie = self.rows[i]
             if t >= tie.broken:
@@ -84,9 +84,9 @@ class Ties(Kind, Table):
             if tie.due != 0:
                 now = pull(tie, system)
                 impulse = due_impulse(tie, lengthening(tie, system, now))
-                strike_body(system.bodies[tie.body], now.arm, scaled(impulse, now.way))
+                apply_impulse_at(system.bodies[tie.body], now.arm, scaled(impulse, now.way))
                 if tie.anchor >= 0:
-                    strike_body(system.bodies[tie.anchor], now.anchor_arm, scaled(-impulse, now.way))
+                    apply_impulse_at(system.bodies[tie.anchor], now.anchor_arm, scaled(-impulse, now.way))
                 put_in += 0.5 * impulse * carried_along(tie, system, now)
                 taken -= 0.5 * impulse * tie.rate
                 tie.struck, tie.due = tie.struck + impulse / kick, 0.0

@@ -287,7 +287,7 @@ def straightened(polygon: Array, count: int, room: Array) -> int:
 
 @inlined
 def grid_of(polygon: Array, corners: int, cells: tuple[int, int]) -> Grid:
-    """The grid of a common area with so many cells a side: along x and z, and along y."""
+    """The grid of a common area with a given number of cells a side: along x and z, and along y."""
     if corners != 4:
         return Grid(corners, corners, (cells[0] + 1) // 2, (cells[0] + 1) // 2)
     way = minus(triple(polygon, 1), triple(polygon, 0))

@@ -1,9 +1,9 @@
 """Contact search: where blocks that have left their joints meet others, and the contact lines that they get there.
 
 A joint of the drawing serves while it is intact. Once all of it has opened by a share of its width, or a part of it has
-slid by so much, it is handed over for good, with its friction, to contacts that are found where the blocks are. The
+slid by that share, it is handed over for good, with its friction, to contacts that are found where the blocks are. The
 contacts of blocks that have no common joint are searched once one of them has moved nearly as far as the other was away
-at rest. A search gives each pair its places, with the law of `pair_law`. Where the step asks for softer contacts, they
+at rest. A search gives each pair its places, with the law of `pair_law`. Where the step requires softer contacts, they
 stay soft as long as they press: if they were stiff and soft in turn, blocks would sink into each other. Until the next
 search each place moves with its body, and its normal with the other.
 
@@ -24,10 +24,10 @@ from ...compiled import for_types_of
 from ...problem.wall.rest_geometry import RestGeometry
 from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
+from ..rotation import rotations
 from ..rows import chosen, joined, rows, unsound
 from ..supports import surges
 from ..system import Books, System
-from ..turning import rotations
 from .constants import (
     LEFT_JOINT,
     NEAR,
@@ -49,8 +49,8 @@ from .validity import (
     JointState,
     Limits,
     Motion,
+    SearchInput,
     Validity,
-    Watched,
     account,
     fall_within,
     is_outdated,
@@ -68,7 +68,7 @@ class SearchState:
         handed_over: whether the joints of each pair that has some are handed over, shape (p,).
         pair: number of the pair of each line that a search has found, shape (lines,).
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
-        share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
+        share: of its law that each line has left where the step required softer ones [-], shape (lines,).
         found: how often both blocks had been searched when each line was found, shape (lines,).
         least_share: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
         since: time from the last update to the next [s].
@@ -174,10 +174,10 @@ class ContactSearch:
         room for them, and the steps until then. With steps of h [s] they are stable."""
         state, validity, motion, joints = self.state, self.state.validity, self.motion, self.joints
         motion.surge[:] = self._surges(system, t, t + h + self.limits.interval)
-        watched = Watched(self.blocks, motion, self.limits, joints, state.handed_over, validity)
-        outdated = self.examine(system, watched, state.since)
+        examined = SearchInput(self.blocks, motion, self.limits, joints, state.handed_over, validity)
+        outdated = self.examine(system, examined, state.since)
         if self.examine is is_outdated:
-            self.examine = for_types_of(is_outdated, system, watched, state.since)
+            self.examine = for_types_of(is_outdated, system, examined, state.since)
         if outdated:
             state.handed_over = state.handed_over | joints.left
             kept = self._searches_of(state.pair) == state.found

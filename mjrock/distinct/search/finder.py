@@ -325,7 +325,7 @@ def find_pair(
 @inlined
 def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Rows, count: int) -> int:
     """Write a corner of a face that another block is near to without a common area, as where two blocks approach at
-    their corners: a place without a share, which says when to search again.
+    their corners: a place without a share, from which the time of the next search follows.
 
     Returns how many places there are then."""
     corner = solids.first[face]

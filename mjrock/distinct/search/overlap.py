@@ -9,9 +9,9 @@ import numpy as np
 from ...geometry.hull import area_vector
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, percent_text, warn_of
+from ..rotation import set_rotations
 from ..setup import Setup
 from ..system import System
-from ..turning import set_rotations
 from .constants import (
     DEEPEST_PAIRS,
     FLUSH,
@@ -47,7 +47,7 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
     if search is None or not search.state.validity.searched.any():
         return 0.0
     chosen = np.unique(np.linspace(0, len(t) - 1, min(OVERLAP_SAMPLES, len(t))).round().astype(int))
-    poses = {i: _posed(search, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
+    poses = {i: _poses_at(search, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
     every, deepest = np.ones(search.count, dtype=bool), set[tuple[float, int, int, int]]()
     for i, there in poses.items():
         found = search.finder.found(there, np.zeros(search.count), every, np.zeros(0, dtype=np.int64))
@@ -59,7 +59,7 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
             (float(depth[j]), i, *map(int, blocks[:, j])) for j in np.argsort(-depth)[:DEEPEST_PAIRS] if depth[j] > 0
         }
         deepest = set(heapq.nlargest(DEEPEST_PAIRS, deepest | here)) | {each for each in deepest | here if each[1] == 0}
-    worst, at_start, said = 0.0, 0.0, ""
+    worst, at_start, message = 0.0, 0.0, ""
     for _, i, a, b in deepest:
         finder = search.finder
         solids, (ours, theirs) = finder.posed(poses[i]), (finder.parts_of(a), finder.parts_of(b))
@@ -68,13 +68,13 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
         at_start = max(at_start, share if i == 0 else 0.0)
         if share > worst:
             names = case.blocks
-            worst, said = share, f"{names[a]} and {names[b]} lie inside each other by {share:.1%} of the smaller one"
+            worst, message = share, f"{names[a]} and {names[b]} lie inside each other by {share:.1%} of the smaller one"
             left = float(search.state.least_share[[a, b]].max())
             shorter = OF_STABLE_STEP * unsoftened(left, h / OF_STABLE_STEP, search.law.slowest)
-            said += f" at {t[i]:.4g} s: {what_keeps_apart(share, left, shorter)}"
-    said = said if worst > OVERLAP_WARNED_OF + at_start else softened(search, case, h)
-    if said:
-        warn_of(said)
+            message += f" at {t[i]:.4g} s: {overlap_remedy(share, left, shorter)}"
+    message = message if worst > OVERLAP_WARNED_OF + at_start else softened(search, case, h)
+    if message:
+        warn_of(message)
     return worst
 
 
@@ -92,7 +92,7 @@ def softened(search: ContactSearch, case: AnyCase, h: float) -> str:
     )
 
 
-def what_keeps_apart(share: float, left: float, shorter: float) -> str:
+def overlap_remedy(share: float, left: float, shorter: float) -> str:
     """The remedy, in words, that reduces the overlap of a block to the share from which on there is a warning.
 
     It falls at least as the root of the stiffness, of which the step has left a part, and a shorter one [s] leaves all.
@@ -101,11 +101,11 @@ def what_keeps_apart(share: float, left: float, shorter: float) -> str:
     joints = f"joints {stiffer:.2g} times as stiff"
     if left == 1:
         return f"{joints} keep blocks apart"
-    said = f"this step leaves their contact {percent_text(left)} of its stiffness; timestep = {shorter:.2g} s"
-    return f"{said} and {joints} keep blocks apart" if stiffer > 1 else f"{said} keeps blocks apart"
+    message = f"this step leaves their contact {percent_text(left)} of its stiffness; timestep = {shorter:.2g} s"
+    return f"{message} and {joints} keep blocks apart" if stiffer > 1 else f"{message} keeps blocks apart"
 
 
-def _posed(search: ContactSearch, system: System, pose: Array, t: float, case: AnyCase) -> Poses:
+def _poses_at(search: ContactSearch, system: System, pose: Array, t: float, case: AnyCase) -> Poses:
     """Where all blocks are at a sample."""
     bodies, d = system.bodies.copy(), len(system.axes)
     bodies["place"] = pose[:, :d]

@@ -77,7 +77,7 @@ class PairLaw(NamedTuple):
             `INTENSIVE` of their law, of which the least of their joints count, (p, i).
         of_block: likewise of each block as a pair without a joint takes it.
         fixed, loose: which blocks are fixed, and which have no joint, shape (blocks,).
-        given: friction and dashpot over spring of pairs without a joint that were asked for.
+        given: friction and dashpot over spring of pairs without a joint that have been requested.
     """
 
     jointed: Integers
@@ -112,7 +112,7 @@ class PairLaw(NamedTuple):
 
     @property
     def slowest(self) -> float:
-        """The largest dashpot over its spring of those that were asked for [s]."""
+        """The largest dashpot over its spring of the requested pairs [s]."""
         shared = np.concatenate([self.of_pair[0], self.of_block[0]])
         return max(float((shared[:, 1] / shared[:, 0]).max()), self.given.slowest)
 
@@ -183,10 +183,10 @@ class Meetings(NamedTuple):
 
 
 class GivenPairs:
-    """Friction and dashpot over spring of pairs of blocks without a joint, each of which is asked for once.
+    """Friction and dashpot over spring of pairs of blocks without a joint, each of which is computed once.
 
     Args:
-        springs: which say what pairs have.
+        springs: from which the values of pairs follow.
         blocks: how many there are.
     """
 
@@ -196,7 +196,7 @@ class GivenPairs:
 
     @property
     def slowest(self) -> float:
-        """The largest dashpot over its spring of those that were asked for [s]."""
+        """The largest dashpot over its spring of the requested pairs [s]."""
         return max((meets.retardation for meets in self.known.values() if meets is not None), default=0.0)
 
     def of(self, number: int) -> PairProperties | None:

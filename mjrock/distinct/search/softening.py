@@ -30,8 +30,8 @@ from ...geometry.vectors import (
 )
 from ...problem.masonry.laws.joint_law import Law, largest_stiffness
 from ...quantities import Array, Integers
+from ..rotation import spin_from_many
 from ..rows import Row, Rows
-from ..turning import spin_from_many
 from .constants import SQUARINGS, STABLE
 
 

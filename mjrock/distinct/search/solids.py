@@ -67,7 +67,7 @@ class Solids(NamedTuple):
         *,
         flat: bool = False,
     ) -> Solids:
-        """Solids about the centroids of their blocks [m], shape (solids, 3). No side says that each face is one of its
+        """Solids about the centroids of their blocks [m], shape (solids, 3). Without sides, each face is one of its
         own. Outlines of prisms of the plane are measured without their length, and have no edges that cross others:
         those along y meet faces as their corners do."""
         corner = _begins(block.corners for block in blocks)

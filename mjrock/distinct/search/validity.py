@@ -15,8 +15,8 @@ from ...quantities import GRAVITY, Array, Flags, Integers
 from ..contacts.contact import meeting, over_face, relative, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared
 from ..kinds.lists import is_held, stored_by_laws
+from ..rotation import in_world, rotation_change, take_inverse_inertia, update_rotation
 from ..system import System, Tables
-from ..turning import in_world, rotation_change, take_inverse_inertia, take_turn
 from .constants import LONGEST_INTERVAL, NEAR, REACH, SEARCHED_TOGETHER, SHORTEST_INTERVAL, VALID_APPROACH
 from .finder import Found
 from .handover import Blocks
@@ -145,7 +145,7 @@ class JointState(NamedTuple):
         return cls(pairs, blocks, slip_limit, tilt_limit, slip, gap, tilt, left)
 
 
-class Watched(NamedTuple):
+class SearchInput(NamedTuple):
     """What an update of the search examines: the blocks and their motion, how far they may go without a search, their
     joints, which pairs have handed these over, and the validity of their contacts."""
 
@@ -158,25 +158,25 @@ class Watched(NamedTuple):
 
 
 @compiled_at_once
-def is_outdated(system: System, watched: Watched, since: float) -> bool:
+def is_outdated(system: System, examined: SearchInput, since: float) -> bool:
     """Whether the contacts of a block are outdated, a time after the last update [s].
 
     Brings the motion, the joints and the validity up to date.
     """
-    validity = watched.validity
-    take_motion(system, watched.blocks, watched.motion)
-    update_joints(system, watched.joints)
-    mark_left(system.laws, watched.joints, watched.handed_over, validity.left)
-    return mark_outdated(watched.motion, watched.blocks.sizes, watched.limits, validity, since)
+    validity = examined.validity
+    update_motion(system, examined.blocks, examined.motion)
+    update_joints(system, examined.joints)
+    mark_left(system.laws, examined.joints, examined.handed_over, validity.left)
+    return mark_outdated(examined.motion, examined.blocks.sizes, examined.limits, validity, since)
 
 
 @inlined
-def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
+def update_motion(system: System, blocks: Blocks, motion: Motion) -> None:
     """Write where the blocks are that move, and how fast, and take the inertia of the bodies there."""
     poses, supports = motion.poses, system.supports
     for b in range(len(blocks.free)):
         body, block = system.bodies[b], blocks.free[b]
-        take_turn(body)
+        update_rotation(body)
         take_inverse_inertia(body)
         place, spin = read(body.place), read(body.spin)
         for i in range(len(place)):

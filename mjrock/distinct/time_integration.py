@@ -1,4 +1,4 @@
-"""Following a system by explicit steps: how long a step is, and the steps."""
+"""The explicit steps of a run: when they are made, and the loop that makes them."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
 """Steps from one check of the energy to the next, and most checks."""
 FIRST_CALL = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
-HEARD = 0.3
+CALL_TIME = 0.3
 """Time that later calls take [s]. The progress bar moves and Ctrl-C acts between them."""
-SECONDS_WORTH_SAYING = 10.0
+LONG_RUN = 10.0
 """Time of the steps of a run from which on there is a warning [s]."""
-DASHPOTS_WORTH_SAYING = 10.0
+STRONG_DASHPOTS = 10.0
 """Step that springs alone would allow over that with dashpots, from which on the warning names the dashpots [-]."""
 
 
-class Stepping(NamedTuple):
-    """The steps of a run.
+class TimeGrid(NamedTuple):
+    """When the steps of a run are made, and which of them are sampled.
 
     Args:
         h: length of a step [s].
@@ -57,7 +57,7 @@ class Stepping(NamedTuple):
     end: float
 
     @classmethod
-    def of(cls, setup: Setup, timestep: float | None, output_step: float) -> Stepping:
+    def of(cls, setup: Setup, timestep: float | None, output_step: float) -> TimeGrid:
         """Steps that end with the duration: in equal parts of it no longer than `output_step`.
 
         A given step is kept, and the run ends with the one that is nearest to the duration.
@@ -87,7 +87,7 @@ class Stepping(NamedTuple):
         return max(CHECKED_EVERY, -(-self.last // MOST_CHECKS))
 
     def checks(self, steps: int) -> Array:
-        """Times of the checks of so many steps [s]."""
+        """Times of the checks of a number of steps [s]."""
         count = steps // self.check + 1 if steps <= self.last else -(-self.last // self.check) + 1
         return self.h * np.minimum(self.check * np.arange(count), self.last)
 
@@ -103,9 +103,9 @@ class Stepping(NamedTuple):
         return np.asarray(t)
 
 
-class Followed(NamedTuple):
-    """What was followed: the system at the end, how many steps it took, of how many samples, what is remembered, and
-    how many threads took part, with the processor time of all but the caller's [s]."""
+class Integration(NamedTuple):
+    """The end of a time integration: the system, the numbers of steps and samples, the memory for a run that goes on,
+    and the number of threads, with the processor time of all but the caller's [s]."""
 
     system: System
     steps: int
@@ -115,43 +115,42 @@ class Followed(NamedTuple):
     processor: float
 
 
-def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping, threads: int | None = None) -> Followed:
+def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, threads: int | None = None) -> Integration:
     """Make the steps in some threads, see `Crew`, with a progress bar where they take more than some seconds.
 
-    Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
+    Ctrl-C acts between two calls of the compiled steps. The number of steps of a call follows from the time of the
+    last one.
 
     Raises:
         RuntimeError: where a row is not finite at the start, or the motion of a block is not after a call. No compiled
             loop gets such a row.
     """
-    system, search, stop, memory = setup.system, setup.search, stepping.last + 1, setup.memory
-    clock = Clock(
-        0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.check
-    )
-    clock = clock._replace(lead=LEAD if setup.foresees(stepping.h) else 0.0)
+    system, search, stop, memory = setup.system, setup.search, grid.last + 1, setup.memory
+    clock = Clock(0, grid.h, grid.every, 0, 0, grid.last, setup.ends, 0.0, (0.0,) * len(system.axes), grid.check)
+    clock = clock._replace(lead=LEAD if setup.looks_ahead(grid.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)
     for table in system.links:
-        table.look_ahead(LEAD if stepping.h <= STABLE_AHEAD * setup.limit else 0.0)
+        table.look_ahead(LEAD if grid.h <= STABLE_AHEAD * setup.limit else 0.0)
     next_search, steps = 0, advance
     require_sound_rows(system)
     if memory is not None:
         clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
     at_once, ended, memory = max(1, FIRST_CALL // max(1, len(system.lines))), False, None
-    with Bar("explicit steps", "s", stepping.end) as bar, Crew(threads) as crew:
+    with Bar("explicit steps", "s", grid.end) as bar, Crew(threads) as crew:
         while clock.step < stop and not ended:
-            if clock.step == stepping.last:
+            if clock.step == grid.last:
                 memory = remember(setup.of, system, clock, setup.blocks)
                 if search is not None:
                     memory = memory._replace(search=deepcopy(search.state), until_search=next_search - clock.step)
             if search is not None and clock.step == next_search:
-                system, books, valid = searched(search, system, books, clock)
+                system, books, valid = update_search(search, system, books, clock)
                 next_search = clock.step + valid
             begun = time.perf_counter()
             ahead = (next_search if search is not None else stop, clock.step + at_once)
-            clock = clock._replace(stop=min(stop if clock.step == stepping.last else stepping.last, *ahead))
+            clock = clock._replace(stop=min(stop if clock.step == grid.last else grid.last, *ahead))
             step, row, ended = crew.run(steps, system, books, samples, clock)
             took = time.perf_counter() - begun
-            at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
+            at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * CALL_TIME / took)))
             bar.to(step * clock.h)
             if steps is advance:  # what a search replaces has the same types
                 steps = for_types_of(advance, system, books, samples, clock, crew.team)
@@ -159,10 +158,10 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping, thr
             for body in unsound(system.bodies)[:1].tolist():
                 moving = f"the motion of {setup.scene.bodies.names[body]}"
                 raise breakdown(next(broken_laws(setup, system), moving), step * clock.h)
-    return Followed(system, clock.step, clock.row, None if ended else memory, crew.used, crew.processor)
+    return Integration(system, clock.step, clock.row, None if ended else memory, crew.used, crew.processor)
 
 
-def searched(search: ContactSearch, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
+def update_search(search: ContactSearch, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
     """An update of the search, see `ContactSearch.update`. What is not finite there ends the run.
 
     Supports are where they are at the pose. The step that follows moves them there."""
@@ -208,18 +207,18 @@ def require_sound_rows(system: System) -> None:
             )
 
 
-def warn_if_long(setup: Setup, stepping: Stepping) -> None:
+def warn_if_long(setup: Setup, grid: TimeGrid) -> None:
     """Warn of dashpots that make steps many, where these take long."""
     lines, laws = setup.system.lines, [law.rows for law in setup.system.laws]
     sprung = bool(np.isfinite(lines["k_s"]).any())
-    seconds = stepping_seconds(stepping.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
-    if seconds < SECONDS_WORTH_SAYING:
+    seconds = stepping_seconds(grid.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
+    if seconds < LONG_RUN:
         return
     slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, *laws))
     shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
-    if shorter > DASHPOTS_WORTH_SAYING:
+    if shorter > STRONG_DASHPOTS:
         warn_of(
-            f"explicit steps would take some {seconds:.2g} s: {stepping.last:.2g} steps of {stepping.h:.2g} s on "
+            f"explicit steps would take some {seconds:.2g} s: {grid.last:.2g} steps of {grid.h:.2g} s on "
             f"{len(lines)} contact lines. The dashpots, c/k = {slowest:.2g} s, make each step {shorter:.2g} times "
             "shorter than the springs need: lower xi, or raise the frequency that it refers to",
         )

@@ -13,13 +13,13 @@ import math
 from ..compiled import inlined
 from ..geometry.vectors import Vector, dot, put, read, scaled
 from ..quantities import Array
+from .rotation import momentum_of
 from .rows import Row
 from .system import Books, System
-from .turning import momentum_of
 
 
 @inlined
-def slow_down(system: System, books: Books, share: float) -> None:
+def damp_velocities(system: System, books: Books, share: float) -> None:
     """Let all velocities decay by exp(-share)."""
     left, taken = math.exp(-share), 0.0
     for b in range(len(system.bodies)):
@@ -27,12 +27,12 @@ def slow_down(system: System, books: Books, share: float) -> None:
         velocity, spin = read(body.velocity), read(body.spin)
         taken += body.mass * dot(velocity, velocity) + dot(momentum_of(body), spin)
         put(body.velocity, scaled(left, velocity))
-        slow_turn(body, scaled(left, spin), left)
+        damp_spin(body, scaled(left, spin), left)
     books.dashpots[len(books.dashpots) - 1] += 0.5 * (1 - left * left) * taken
 
 
 @inlined
-def slow_turn(body: Row, spin: Vector, left: float) -> None:
+def damp_spin(body: Row, spin: Vector, left: float) -> None:
     """Give a body a spin, and leave it a share of its angular momentum, which only those of space keep."""
     put(body.spin, spin)
     if len(spin) == 3:
@@ -40,7 +40,7 @@ def slow_turn(body: Row, spin: Vector, left: float) -> None:
 
 
 @inlined
-def opposed(force: Array, velocity: Array, share: float) -> float:
+def damp_components(force: Array, velocity: Array, share: float) -> float:
     """Take a share of the components of a force against those of a velocity. Returns the power that it takes [W]."""
     power = 0.0
     for i in range(len(force)):
@@ -51,10 +51,12 @@ def opposed(force: Array, velocity: Array, share: float) -> float:
 
 
 @inlined
-def oppose(system: System, books: Books, share: float, kick: float) -> None:
+def damp_unbalanced(system: System, books: Books, share: float, kick: float) -> None:
     """Take a share of the unbalanced force and moment on each body while they act for a time [s]."""
     taken = 0.0
     for b in range(len(system.bodies)):
         body = system.bodies[b]
-        taken += kick * (opposed(body.force, body.velocity, share) + opposed(body.moment, body.spin, share))
+        taken += kick * (
+            damp_components(body.force, body.velocity, share) + damp_components(body.moment, body.spin, share)
+        )
     books.dashpots[len(books.dashpots) - 1] += taken

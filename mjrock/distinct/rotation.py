@@ -4,7 +4,8 @@ In space a body keeps its angular momentum L in the axes of the world half a ste
 the pose. The angular velocity w in the middle of a step, in the axes of the body, solves w = I^-1 exp(-h w / 2) R^T L,
 with R the rotation before the step. The step is of second order and keeps |L| exactly.
 
-R - 1 keeps the precision of small rotations. `turn` holds it in space, and sin and 1 - cos of the angle in the plane.
+R - 1 keeps the precision of small rotations. The field `rotation` of a body holds it in space, and the sine and 1 - cos
+of the angle in the plane.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from .rows import Row, Rows
 
 SPIN_PASSES = 3
 """Passes of the search for the angular velocity in the middle of a step. Each gains the order of h w."""
-SLOW_TURN, PASSES_OF_SLOW = 1e-3, 2
+SMALL_ROTATION, PASSES_IF_SMALL = 1e-3, 2
 """Rotation in a step below which fewer passes are enough [rad], and how many: their error is below its third power."""
 EIGHTH = 1 - math.sqrt(0.5)
 """1 - cos of an eighth of a turn."""
@@ -34,13 +35,13 @@ rounding."""
 @inlined
 def rotation_change(body: Row, a: Vector) -> Vector:
     """(R - 1) a: the displacement of the end of a vector a of a body by its rotation."""
-    turn = body.turn
+    change = body.rotation
     if len(a) == 2:
-        return a[1] * turn[0] - a[0] * turn[1], -a[0] * turn[0] - a[1] * turn[1]
+        return a[1] * change[0] - a[0] * change[1], -a[0] * change[0] - a[1] * change[1]
     return (
-        turn[0, 0] * a[0] + turn[0, 1] * a[1] + turn[0, 2] * a[2],
-        turn[1, 0] * a[0] + turn[1, 1] * a[1] + turn[1, 2] * a[2],
-        turn[2, 0] * a[0] + turn[2, 1] * a[1] + turn[2, 2] * a[2],
+        change[0, 0] * a[0] + change[0, 1] * a[1] + change[0, 2] * a[2],
+        change[1, 0] * a[0] + change[1, 1] * a[1] + change[1, 2] * a[2],
+        change[2, 0] * a[0] + change[2, 1] * a[1] + change[2, 2] * a[2],
     )
 
 
@@ -51,12 +52,12 @@ def by_body(flat: Callable[..., Any], deep: Callable[..., Any]) -> Callable[...,
 
 @inlined
 def _far_in_plane(body: Row) -> bool:
-    return bool(body.turn[1] > EIGHTH)
+    return bool(body.rotation[1] > EIGHTH)
 
 
 @inlined
 def _far_in_space(body: Row) -> bool:
-    return bool(body.turn[0, 0] + body.turn[1, 1] + body.turn[2, 2] < -2 * EIGHTH)
+    return bool(body.rotation[0, 0] + body.rotation[1, 1] + body.rotation[2, 2] < -2 * EIGHTH)
 
 
 may_face_away = by_body(_far_in_plane, _far_in_space)
@@ -77,13 +78,13 @@ def in_body(body: Row, a: Vector) -> Vector:
     """R^T a: a vector of the world in the axes of a body. The spin of a plane body is the same in both."""
     if len(a) == 1:
         return a
-    turn = body.turn
+    change = body.rotation
     if len(a) == 2:
-        return a[0] - a[0] * turn[1] - a[1] * turn[0], a[1] + a[0] * turn[0] - a[1] * turn[1]
+        return a[0] - a[0] * change[1] - a[1] * change[0], a[1] + a[0] * change[0] - a[1] * change[1]
     return (
-        a[0] + turn[0, 0] * a[0] + turn[1, 0] * a[1] + turn[2, 0] * a[2],
-        a[1] + turn[0, 1] * a[0] + turn[1, 1] * a[1] + turn[2, 1] * a[2],
-        a[2] + turn[0, 2] * a[0] + turn[1, 2] * a[1] + turn[2, 2] * a[2],
+        a[0] + change[0, 0] * a[0] + change[1, 0] * a[1] + change[2, 0] * a[2],
+        a[1] + change[0, 1] * a[0] + change[1, 1] * a[1] + change[2, 1] * a[2],
+        a[2] + change[0, 2] * a[0] + change[1, 2] * a[1] + change[2, 2] * a[2],
     )
 
 
@@ -152,27 +153,27 @@ momentum_of = by_body(_momentum_in_plane, _momentum_in_space)
 
 
 @inlined
-def _turn_in_plane(body: Row) -> None:
+def _rotation_in_plane(body: Row) -> None:
     half = math.sin(0.5 * body.angle)
-    body.turn[0], body.turn[1] = 2 * half * math.cos(0.5 * body.angle), 2 * half * half
+    body.rotation[0], body.rotation[1] = 2 * half * math.cos(0.5 * body.angle), 2 * half * half
 
 
 @inlined
-def _turn_in_space(body: Row) -> None:
-    turn = body.turn
+def _rotation_in_space(body: Row) -> None:
+    change = body.rotation
     w, x, y, z = body.quaternion[0], body.quaternion[1], body.quaternion[2], body.quaternion[3]
-    turn[0, 0], turn[0, 1], turn[0, 2] = -2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
-    turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)
-    turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)
+    change[0, 0], change[0, 1], change[0, 2] = -2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    change[1, 0], change[1, 1], change[1, 2] = 2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)
+    change[2, 0], change[2, 1], change[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)
     put(body.spin, spin_from_moment(body, read(body.momentum)))
 
 
-take_turn = by_body(_turn_in_plane, _turn_in_space)
+update_rotation = by_body(_rotation_in_plane, _rotation_in_space)
 """Bring R - 1 and the angular velocity of a body up to date with its pose."""
 
 
 @inlined
-def kick_spin(body: Row, change: Vector) -> None:
+def apply_angular_impulse(body: Row, change: Vector) -> None:
     """Apply the impulse of a moment to a body [N m s]."""
     if len(change) == 1:
         increase(body.spin, apply_inverse_inertia(body, change))
@@ -182,24 +183,24 @@ def kick_spin(body: Row, change: Vector) -> None:
 
 
 @inlined
-def turn_momentum(body: Row, change: Vector) -> None:
+def add_momentum(body: Row, change: Vector) -> None:
     """Change the angular momentum that a body in space keeps [N m s]; a plane body keeps none."""
     if len(change) == 3:
         increase(body.momentum, change)
 
 
 @inlined
-def kick_place(body: Row, impulse: Vector) -> None:
+def apply_impulse(body: Row, impulse: Vector) -> None:
     """Apply an impulse to the centroid of a body [N s]."""
     increase(body.velocity, times(read(body.inverse_mass), impulse))
 
 
 @inlined
-def strike_body(body: Row, arm: Vector, impulse: Vector) -> None:
+def apply_impulse_at(body: Row, arm: Vector, impulse: Vector) -> None:
     """Apply an impulse at an arm from the centroid of a body [N s]."""
     lever = moment(arm, impulse)
-    kick_place(body, impulse)
-    turn_momentum(body, lever)
+    apply_impulse(body, impulse)
+    add_momentum(body, lever)
     increase(body.spin, spin_from_moment(body, lever))
 
 
@@ -222,7 +223,7 @@ def middle_spin(body: Row, momentum: Vector, h: float) -> Vector:
     """Angular velocity in the middle of a step of length h, in the axes of the body [rad/s], in space."""
     start = in_body(body, momentum)
     spin = apply_inverse_inertia(body, start)
-    for _ in range(PASSES_OF_SLOW if h * h * dot(spin, spin) < SLOW_TURN * SLOW_TURN else SPIN_PASSES):
+    for _ in range(PASSES_IF_SMALL if h * h * dot(spin, spin) < SMALL_ROTATION * SMALL_ROTATION else SPIN_PASSES):
         spin = apply_inverse_inertia(body, rotated(scaled(-0.5 * h, spin), start))
     return spin
 
@@ -252,7 +253,7 @@ def _step_in_space(body: Row, h: float) -> None:
     turned[0], turned[1], turned[2], turned[3] = w * size, i * size, j * size, k * size
 
 
-turn_body = by_body(_step_in_plane, _step_in_space)
+rotate_body = by_body(_step_in_plane, _step_in_space)
 """Turn a body by a step of some length."""
 
 
@@ -267,7 +268,7 @@ def _write_quaternion(body: Row, pose: Array) -> None:
         pose[3 + i] = body.quaternion[i]
 
 
-write_turn = by_body(_write_angle, _write_quaternion)
+write_rotation = by_body(_write_angle, _write_quaternion)
 """Write the rotation of a body into its pose, after the displacements."""
 
 
@@ -281,11 +282,11 @@ def _within_in_space(body: Row, ends: float) -> bool:
     return bool(abs(body.spin[0]) < math.inf)
 
 
-turns_within = by_body(_within_in_plane, _within_in_space)
+rotation_within = by_body(_within_in_plane, _within_in_space)
 """Whether a body has turned by less than a run follows [rad], in the plane, or turns at a finite speed."""
 
 
-def start_turning(bodies: Rows, pose: Array, velocity: Array) -> None:
+def set_rotations_and_spins(bodies: Rows, pose: Array, velocity: Array) -> None:
     """Give bodies the rotations of a pose, shape (n, nq), and the spins of velocities, shape (n, nv)."""
     set_rotations(bodies, pose)
     if is_flat(bodies):

@@ -13,8 +13,8 @@ import pytest
 from masonry_blocks import columns
 
 import mjrock as mr
-from mjrock.distinct import following
-from mjrock.distinct.following import Stepping
+from mjrock.distinct import time_integration
+from mjrock.distinct.time_integration import TimeGrid
 
 SLOW = mr.Masonry.facade(length=0.8, height=0.4, depth=0.4, unit=(0.4, 0.2), k_n=1e12, frequency=1.0)
 """Its dashpots ask for steps of less than a nanosecond: hours for a simulated second, minutes for a sample."""
@@ -38,8 +38,8 @@ def test_the_calls_do_not_matter(monkeypatch, masonry):
     velocity[:, 0] = 2.0
     case = mr.MasonryCase(masonry, 0.05, velocity=velocity)
     whole = mr.solve_explicit(case, output_step=0.02)
-    monkeypatch.setattr(following, "FIRST_CALL", 100)
-    monkeypatch.setattr(following, "HEARD", 1e-6)
+    monkeypatch.setattr(time_integration, "FIRST_CALL", 100)
+    monkeypatch.setattr(time_integration, "CALL_TIME", 1e-6)
     assert mr.solve_explicit(case, output_step=0.02) == whole
 
 
@@ -47,7 +47,7 @@ def test_long_runs_speak_before_they_start(monkeypatch):
     def stop(*args):
         raise StopIteration
 
-    monkeypatch.setattr("mjrock.distinct.explicit.follow", stop)
+    monkeypatch.setattr("mjrock.distinct.explicit.integrate", stop)
     said = r"explicit steps would take some \S+ s: \S+ steps of \S+ s on \d+ contact lines\. The dashpots, "
     with pytest.warns(UserWarning, match=said), pytest.raises(StopIteration):
         mr.solve_explicit(mr.MasonryCase(SLOW, 1.0), output_step=0.1)
@@ -59,9 +59,9 @@ def test_long_runs_speak_before_they_start(monkeypatch):
 
 def test_ten_seconds_are_worth_saying_where_the_run_is_asked_for(monkeypatch):
     case = mr.MasonryCase(columns(1), 1e-5)
-    monkeypatch.setattr(following, "DASHPOTS_WORTH_SAYING", 1.0)
+    monkeypatch.setattr(time_integration, "STRONG_DASHPOTS", 1.0)
     for seconds, named in ((9.0, []), (11.0, ["explicit steps would take some 11 s"])):
-        monkeypatch.setattr(following, "stepping_seconds", lambda *args, s=seconds, **more: s)
+        monkeypatch.setattr(time_integration, "stepping_seconds", lambda *args, s=seconds, **more: s)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             mr.solve_explicit(case, timestep=1e-9)
@@ -72,9 +72,11 @@ def test_ten_seconds_are_worth_saying_where_the_run_is_asked_for(monkeypatch):
 def test_the_estimate_is_near_what_it_takes(monkeypatch):
     """Within a factor of five, of the processor: the machine may do other things too."""
     masonry = mr.Masonry.arch(5.0, 0.75, k_n=1e10)
-    estimates, of = [], following.stepping_seconds
+    estimates, of = [], time_integration.stepping_seconds
     monkeypatch.setattr(
-        following, "stepping_seconds", lambda *given, **more: estimates.append(of(*given, **more)) or estimates[-1]
+        time_integration,
+        "stepping_seconds",
+        lambda *given, **more: estimates.append(of(*given, **more)) or estimates[-1],
     )
     run = mr.solve_explicit(mr.MasonryCase(masonry, 0.2))
     (estimate,) = estimates
@@ -88,10 +90,10 @@ def test_a_step_that_is_given_again_gives_the_same_samples(seed):
     rng = np.random.default_rng(seed)
     duration, output, spacing, limit = 10 ** rng.uniform((-1, -2, -3, -5), (1, -1, -1.5, -3))
     setup = SimpleNamespace(course=SimpleNamespace(duration=duration), limit=limit, share=0.3, spacing=spacing)
-    first = Stepping.of(setup, None, output)
-    again = Stepping.of(setup, first.h, first.every * first.stride * first.h)
+    first = TimeGrid.of(setup, None, output)
+    again = TimeGrid.of(setup, first.h, first.every * first.stride * first.h)
     assert (again.every, again.stride, again.last) == (first.every, first.stride, first.last)
-    other = Stepping.of(setup, 0.77 * first.h, output)
+    other = TimeGrid.of(setup, 0.77 * first.h, output)
     apart = other.every * other.stride * other.h
     assert other.every * other.h < spacing + 0.5 * other.h
     assert abs(apart - output) < 0.51 * (other.every + 1) * other.h

@@ -1,4 +1,4 @@
-"""Reading: the response of a run by explicit steps."""
+"""The response of a run by explicit steps."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from ..result.response import End, Response
 from ..result.ties import Plastic, plastic_of, ties_message
 from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
-from .following import Followed
 from .kinds.link import Kind
 from .kinds.ties import Ties
 from .rows import Row, Rows
 from .setup import Setup
 from .system import ENERGY, Books, Samples, System
+from .time_integration import Integration
 
 RESIDUAL_WARNED_OF = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
@@ -39,7 +39,7 @@ class Run:
     [s]."""
 
     setup: Setup
-    followed: Followed
+    integration: Integration
     books: Books
     samples: Samples
     t: Array
@@ -47,7 +47,7 @@ class Run:
 
     @property
     def case(self) -> AnyCase:
-        """What was asked."""
+        """The case."""
         return self.setup.problem.case
 
     @property
@@ -58,7 +58,7 @@ class Run:
     @property
     def links(self) -> Iterator[tuple[Kind, Row, str]]:
         """The table, the row and the name of each link."""
-        for table, names in zip(self.followed.system.links, self.setup.names, strict=True):
+        for table, names in zip(self.integration.system.links, self.setup.names, strict=True):
             for row, name in zip(table.rows, names, strict=True):
                 yield table, row, name
 
@@ -88,7 +88,7 @@ class Run:
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
-    """The response of a run: every `stride` of its samples and the last, its `ledger` if asked for, what it took.
+    """The response of a run: every `stride` of its samples and the last, its `ledger` if requested, and the cost.
 
     Raises:
         RuntimeError: if energy has appeared from nowhere.
@@ -111,7 +111,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         actuators=run.forces_of(samples.pulled[kept], driven=True),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
-        end=End(samples.pose[-1].copy(), samples.velocity[-1].copy(), run.followed.memory),
+        end=End(samples.pose[-1].copy(), samples.velocity[-1].copy(), run.integration.memory),
     )
     if response.ledger is not None:
         residual = float(np.abs(response.ledger.residual).max())
@@ -134,7 +134,7 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     pulled = run.forces_of(-samples.pulled, driven=False)
     driven = run.forces_of(samples.pulled, driven=True)
     damage = None
-    if any(len(law.rows) for law in run.followed.system.laws):
+    if any(len(law.rows) for law in run.integration.system.laws):
         dry = [bond is None for bond in run.scene.contacts.bonds]
         damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
@@ -145,7 +145,7 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
 
 def plastic(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, work, memory = ties_of(run.followed.system), run.books.links, run.setup.memory
+    ties, work, memory = ties_of(run.integration.system), run.books.links, run.setup.memory
     first, reach = ties["account"], run.scene.ties.reach
     before = np.zeros(len(ties)) if memory is None else ties_of(memory.system)["reach"] - reach
     return plastic_of(run.scene, ties["drawn"], work[first], ties["broken"], work[first + 1], before=before)
@@ -158,9 +158,9 @@ def ties_of(system: System) -> Rows:
 
 def reading_of(run: Run) -> Reading:
     """What is read from a run."""
-    samples, system, joint = run.samples, run.followed.system, run.scene.contacts.joint
+    samples, system, joint = run.samples, run.integration.system, run.scene.contacts.joint
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
-    search = None if run.followed.memory is None else run.followed.memory.search
+    search = None if run.integration.memory is None else run.integration.memory.search
     left = search is not None and bool(search.handed_over.any())
     cracked = dict(item for law in system.laws for item in law.cracked(run.scene).items())
     beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked)
@@ -171,7 +171,7 @@ def require_sound(run: Run, step: float) -> None:
     """Raise a RuntimeError if energy appears from nowhere, or if the motion is not finite; warn if much appears at ends
     of faces, which have an account.
 
-    The checks decide, which are made every so many steps, so that the spacing of the samples plays no part.
+    The checks at fixed numbers of steps decide, so that the spacing of the samples plays no part.
 
     Args:
         run: the run.
@@ -205,7 +205,7 @@ def advice(step: float, share: float, wanted: float) -> str:
     """The step that brings a share of energy without an account down to the one that is wanted, in words.
 
     The share falls at least in proportion to the step, once steps are short enough for the stiffest contact. Where much
-    is missing they are not, and the share does not say by how much.
+    is missing they are not, and the share does not show by which factor.
     """
     shorter = max(wanted / share, LARGEST_ADVICE)
     again = "" if shorter > LARGEST_ADVICE else " first, and a tenth of that if energy still appears"
@@ -232,5 +232,5 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         **{name: energy[name] for name in ("kinetic", "potential", "elastic", "friction", "ground")},
         **booked,
         ends=ends if run.case.joints else {},
-        bonds=bonds if any(len(law.rows) for law in run.followed.system.laws) else {},
+        bonds=bonds if any(len(law.rows) for law in run.integration.system.laws) else {},
     )

@@ -7,7 +7,7 @@ import pytest
 from by_hand import books, energy, system
 
 import mjrock as mr
-from mjrock.distinct import slowing
+from mjrock.distinct import motion_damping
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 
@@ -18,7 +18,7 @@ def test_all_velocities_decay_alike_and_the_energy_that_they_lose_is_booked(d):
     account, names = books(whole), ("velocity", "spin", *(("momentum",) if d == 3 else ()))
     before, had = {name: whole.bodies[name].copy() for name in names}, energy(whole.bodies)
     for turn in (1, 2):
-        slowing.slow_down(whole, account, 0.3)
+        motion_damping.damp_velocities(whole, account, 0.3)
         for name in names:
             np.testing.assert_allclose(whole.bodies[name], math.exp(-0.3 * turn) * before[name], rtol=1e-13)
         assert account.dashpots[-1] == pytest.approx(had - energy(whole.bodies), rel=1e-12)
@@ -38,12 +38,12 @@ def test_each_force_that_is_not_balanced_loses_a_share_against_the_motion(d):
     for force, velocity in (("force", "velocity"), ("moment", "spin")):
         less = share * np.abs(bodies[force]) * np.sign(bodies[velocity])
         expected[force], power = bodies[force] - less, power + (less * bodies[velocity]).sum()
-    slowing.oppose(whole, account, share, kick)
+    motion_damping.damp_unbalanced(whole, account, share, kick)
     for name, force in expected.items():
         np.testing.assert_allclose(bodies[name], force, rtol=1e-14)
     assert account.dashpots[-1] == pytest.approx(kick * power, rel=1e-13)
     assert power > 0
-    slowing.oppose(whole, account, share, kick)
+    motion_damping.damp_unbalanced(whole, account, share, kick)
     assert account.dashpots[-1] > 1.5 * kick * power
     assert account.dashpots[0] == 0.0
 

@@ -20,7 +20,7 @@ from .system import Samples, System
 
 
 @inlined
-def whole_friction(system: System, line: Row) -> Vector:
+def total_friction(system: System, line: Row) -> Vector:
     """Friction of a line in the last step, along its face [N]. One that sticks rigidly is dragged as it leaves."""
     dragged: Vector = read(line.dragged)
     if line.k_s < math.inf:
@@ -37,7 +37,7 @@ def add_moment(load: Array, factor: float, place: Vector, force: Vector) -> None
 
 
 @inlined
-def keep_burden(system: System, samples: Samples, row: int) -> None:
+def record_guide_loads(system: System, samples: Samples, row: int) -> None:
     """Keep the forces of weight, ground motion and links on the blocks of actuators, before contacts act on them."""
     guided = samples.guided[row]
     for i in range(len(guided)):
@@ -49,14 +49,14 @@ def keep_burden(system: System, samples: Samples, row: int) -> None:
 
 
 @inlined
-def keep_forces(system: System, samples: Samples, row: int) -> None:
+def record_forces(system: System, samples: Samples, row: int) -> None:
     """Keep the forces of the last step at a sample, where there is room for them."""
     loads, held, guided = samples.loads[row], samples.held[row], samples.guided[row]
     if len(held) == 0:
         return
     for p in range(len(system.lines)):
         line = system.lines[p]
-        push, drag, holds = with_laws(system.laws, p, line.push, whole_friction(system, line), False)
+        push, drag, holds = with_laws(system.laws, p, line.push, total_friction(system, line), False)
         if line.group < len(loads):
             samples.damage[row, line.group] += lost_by_laws(system.laws, p)
         if was_open(line) and not holds:
