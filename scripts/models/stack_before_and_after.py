@@ -21,7 +21,7 @@ from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
 from mjrock.quantities import Array
 from scripts.shared import cli
-from scripts.shared.films import FPS, told
+from scripts.shared.films import FPS, folder, told
 from scripts.shared.films import films as written
 
 HALF = np.array([0.15, 0.1, 0.05])
@@ -94,7 +94,7 @@ def drawn(bodies: Bodies, labels: Sequence[str], path: Path) -> Path:
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Draw both."""
-    out = cli.folder(cli.parser(__doc__, "out/stack_before_and_after").parse_args(argv).out)
+    out = folder(cli.parser(__doc__, "out/stack_before_and_after").parse_args(argv).out)
     films = [followed(stack().compile()), followed(after(stack()))]
     sunk = np.array([-1000 * (poses[-1, :, 1] + DROP * HIGHEST) for _, poses in films])
     lines = [

@@ -7,9 +7,17 @@ from collections.abc import Callable
 from pathlib import Path
 
 from mjrock.plotting.animation import CODECS, MovieWriter
+from scripts.shared import cli
 
 FPS = 25.0
 """Frames a second."""
+
+
+def folder(path: Path) -> Path:
+    """Make the output folder, and find out before any work whether films can be written to it."""
+    if not MovieWriter.isAvailable():
+        raise RuntimeError("films need the program ffmpeg, which is not on the PATH; pip install '.[docs]' brings one")
+    return cli.folder(path)
 
 
 def films(draw: Callable[[Path], Path], stem: Path, poster: float) -> list[Path]:

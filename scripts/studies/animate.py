@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.shared.films import films, told
+from scripts.shared.films import films, folder, told
 from scripts.shared.paper import FIGURE_3, K_N
 
 SPEED = 0.5
@@ -37,7 +37,7 @@ def falling(duration: float) -> mr.Response:
 def main(argv: Sequence[str] | None = None) -> None:
     """Simulate, draw and write."""
     args = cli.parser(__doc__, "animate").parse_args(argv)
-    out = cli.folder(args.out)
+    out = folder(args.out)
     wall, arch = (rocking(0.06), falling(0.06)) if args.quick else (rocking(1.4), falling(4.5))
     title = "One-sided rocking, 4.2 x 0.6 m, released at half of alpha"
     written = films(lambda path: plotting.animate(wall, path, speed=SPEED, title=title), out / "figure3", 0.0)

@@ -22,7 +22,7 @@ import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
 from scripts.shared.at_times import at_times
-from scripts.shared.films import films, told
+from scripts.shared.films import films, folder, told
 
 LENGTH, HEIGHT, DEPTH, UNIT = 3.2, 1.6, 1.2, (0.4, 0.2)
 WINDOWS = tuple((y, mr.Opening(width=0.4, height=0.6, sill=0.6)) for y in (-0.6, 0.6))
@@ -82,7 +82,7 @@ def moment_of(answer: mr.Response) -> int:
 def main(argv: Sequence[str] | None = None) -> None:
     """Limit analysis, the run and its cost; draw and print."""
     args = cli.parser(__doc__, "facade_in_space").parse_args(argv)
-    out = cli.folder(args.out)
+    out = folder(args.out)
     masonry = facade(0.4) if args.quick else facade()
     ways = {"outwards": OUTWARDS, "inwards": INWARDS, "along": ALONG}
     limits = {name: mr.collapse_multiplier(masonry, angle=angle).multiplier for name, angle in ways.items()}

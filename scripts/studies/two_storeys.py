@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.shared.films import films, told
+from scripts.shared.films import films, folder, told
 
 UNIT = (0.4, 0.2)
 """Length and height of a unit [m]; a half unit is half as long."""
@@ -144,7 +144,7 @@ def filmed(study: Study, answer: mr.Response, out: Path) -> None:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run, draw and print."""
     args = cli.parser(__doc__, "two_storeys").parse_args(argv)
-    out = cli.folder(args.out)
+    out = folder(args.out)
     study = QUICK if args.quick else FULL
     masonry, answers, rows = wall(study), [], []
     for peak in study.peaks:

@@ -13,7 +13,7 @@ import mujoco
 import pytest
 
 import mjrock as mr
-from mjrock.plotting import style
+from mjrock.plotting import animation, style
 from scripts.paper import compare_wall
 from scripts.shared import cli
 from scripts.studies import in_the_browser, town
@@ -137,6 +137,17 @@ WRITES = {
 
 def test_no_script_is_forgotten():
     assert set(SCRIPTS) == set(WRITES)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, files in WRITES.items() if any(file.endswith(".mp4") for file in files)]
+)
+def test_a_script_without_ffmpeg_refuses_films_before_it_runs(name, tmp_path, monkeypatch):
+    monkeypatch.setattr(animation.MovieWriter, "isAvailable", classmethod(lambda cls: False))
+    script = importlib.import_module(f"scripts.{SCRIPTS[name].parent.name}.{name}")
+    with pytest.raises(RuntimeError, match=r"films need the program ffmpeg.*\[docs\]"):
+        script.main(["--quick", "--out", str(tmp_path / "out")])
+    assert not (tmp_path / "out").exists()
 
 
 PATCHING = {"mock", "patch", "setattr", "delattr", "vars", "monkeypatch", "cache_clear", "__dict__", "__setattr__"}
