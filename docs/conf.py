@@ -87,6 +87,7 @@ LIVE = HERE / "build" / "live"
 html_extra_path = ["build/live"]
 html_css_files = ["mjrock.css"]
 html_js_files = ["films.js"]
+html_search_scorer = str(HERE / "static" / "scorer.js")
 html_favicon = html_logo = "static/mark.svg"
 html_theme_options = {"sidebar_hide_name": False}
 html_baseurl = os.environ.get(
@@ -218,7 +219,18 @@ def made(app: Any, page: str, source: list[str]) -> None:
         app.env.note_dependency(other)
 
 
-EXAMPLE = re.compile(r'<img alt="" (?=src="[^"]*sphx_glr_(?:\d+_)?(\w+)_thumb)')
+TREES: dict[int, str] = {}
+"""The tree of pages as a listing of source shows it, by how many folders it lies in."""
+
+
+def one_tree(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
+    """Make the tree of pages once for all listings of source in as many folders, which it does not name: .1 s each."""
+    if page.startswith("_modules/"):
+        depth, tree = page.count("/"), context["toctree"]
+        context["toctree"] = lambda **options: TREES.get(depth) or TREES.setdefault(depth, tree(**options))
+
+
+THUMBNAIL = re.compile(r'<img alt="" (?=src="[^"]*sphx_glr_(?:\d+_)?(\w+)_thumb)')
 """The small picture of an example, whose file is named after it."""
 
 
@@ -229,7 +241,7 @@ BACK = re.compile(r"(?<=#)mjrock(?!\.plotting\.)(?:\.[a-z_]+)*\.(\w+)(?=\">\[doc
 
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Load pictures of the gallery below the first as they come into sight, and say what a link to a page shows."""
-    body = EXAMPLE.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', context.get("body") or "")
+    body = THUMBNAIL.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', context.get("body") or "")
     body = re.sub(r"<td>(?=<p>[^\s<]{1,12}</p>)", '<td class="short">', body)  # 5.8e-04 is not broken at its hyphen
     body = BACK.sub(lambda found: SHOWN.get(found[1], found[0]), body)
     first, *others = re.split(r"(?=<img )", body)
@@ -249,4 +261,5 @@ def setup(app: object) -> None:
     app.connect("autodoc-process-docstring", plain, priority=100)  # type: ignore[attr-defined]
     app.connect("autodoc-process-signature", without_ranges)  # type: ignore[attr-defined]
     app.connect("source-read", made)  # type: ignore[attr-defined]
+    app.connect("html-page-context", one_tree, priority=100)  # type: ignore[attr-defined]  # before the theme takes it
     app.connect("html-page-context", finished)  # type: ignore[attr-defined]

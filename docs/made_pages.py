@@ -6,6 +6,7 @@ import functools
 import importlib
 import inspect
 import re
+import tomllib
 from pathlib import Path
 
 from PIL import Image
@@ -26,8 +27,13 @@ FILM = re.compile(r"\[!\[([^\]]*)\]\(figures/(\w+)\.webp\)\]\(figures/\2\.mp4\)"
 """A film of a page: its poster, which leads to it where no page plays it."""
 LOOPED = re.compile(r"!\[([^\]]*)\]\(figures/(\w+)\.gif\)")
 """A film of the README, which GitHub plays as a GIF."""
-SECTION = re.compile(r"^```\{section\} ([\w.]+)(?: +(.*))?\n```$", re.MULTILINE)
-"""A file of the repository, and the title of a section of it."""
+SECTION = re.compile(r"^\[([^\]]+)\]\((\.\./\w+\.md|figures/\w+\.md)(#[\w-]+)?\)$", re.MULTILINE)
+"""A link that stands alone on a line. The site has the text that it leads to: a file, or the section of this title."""
+EXAMPLE = re.compile(r"\]\(\.\./mjrock/examples(?:/(\w+)\.py)?\)")
+CONTENTS = re.compile(r"(?:^## (.+)\n\n)?((?:^\* \[.+\]\([\w./]+\)\n)+)", re.MULTILINE)
+"""A list of pages, and its title."""
+NAMES = "<!-- names -->"
+"""Where a page of the reference has the table of its names."""
 SCRIPT = re.compile(r"`(scripts/[\w/]+)\.py([^`]*)`")
 PICTURE = re.compile(r"\[?!\[([^\]]*)\]\(figures/([\w/]+\.\w+)\)(?:\]\(figures/\w+\.mp4\))?\n")
 CARD = re.compile(rf"^((?:{PICTURE.pattern}\n?)+)\*(.+?)\*\n$", re.MULTILINE | re.DOTALL)
@@ -74,13 +80,20 @@ def table_of(names: dict[str, str]) -> str:
 def reference(page: str, text: str) -> str:
     """A page of the reference with its names in a table; the first page has those of all."""
     if page != "api":
-        return text.replace("```{summary}\n```", table_of(listed(text)))
-    tables = []
-    for theme in re.findall(r"^api/\w+$", text, re.MULTILINE):
-        below = (HERE / f"{theme}.md").read_text(encoding="utf-8")
-        title = re.search(r"^# (.*)$", below, re.MULTILINE)
-        tables.append(f"## [{title and title[1]}]({theme}.md)\n\n{table_of(listed(below))}")
-    return text.replace("```{summary}\n```", "\n\n".join(tables))
+        return text.replace(NAMES, table_of(listed(text)))
+    tables = [
+        f"## {link}\n\n{table_of(listed((HERE / name).read_text(encoding='utf-8')))}"
+        for link, name in re.findall(r"^\* (\[.+\]\((api/\w+\.md)\))$", text, re.MULTILINE)
+    ]
+    return CONTENTS.sub(contents, text).replace(NAMES, "\n\n".join(tables))
+
+
+def contents(found: re.Match[str]) -> str:
+    """A list of pages as the tree that Sphinx makes the sidebar of."""
+    title, listed = found.groups()
+    pages = "\n".join(re.findall(r"\(([\w/]+)\.\w+\)", listed))
+    options = f":caption: {title}\n:hidden:" if title else ":maxdepth: 1"
+    return f"```{{toctree}}\n{options}\n\n{pages}\n```\n"
 
 
 def whole(figure: str, share: float = 0.5) -> Image.Image:
@@ -154,9 +167,9 @@ def player(found: re.Match[str]) -> str:
 
 def section(found: re.Match[str]) -> str:
     """A section of a file of the repository, or all of it, with its links as the site has them."""
-    name, title = found.groups()
-    text = (HERE.parent / name).read_text(encoding="utf-8")
-    if title:
+    title, name, part = found.groups()
+    text = (HERE / name).read_text(encoding="utf-8")
+    if part:
         _, _, text = text.partition(f"\n## {title}\n")
         text = text.partition("\n## ")[0]
     text = text.replace("](docs/", "](").replace("](VERSIONING.md)", "](versions.md)")
@@ -185,15 +198,37 @@ def write_scripts(folder: Path) -> None:
         page.write_text(highlight(script.read_text(encoding="utf-8"), PythonLexer(), form), encoding="utf-8")
 
 
+@functools.cache
+def searched() -> dict[str, list[str]]:
+    """Words that readers look for, by the page, or page#heading, that the search shows first."""
+    return tomllib.loads((HERE / "search.toml").read_text(encoding="utf-8"))
+
+
+def indexed(page: str, text: str) -> str:
+    """A page whose headings have the words that the search finds them by, as entries of the index."""
+    for place, words in searched().items():
+        name, _, heading = place.partition("#")
+        if name == page:
+            entries = "```{index} " + ", ".join(f"! {word}" for word in words) + "\n```\n"
+            found = re.search(rf"^#+ {re.escape(heading)}$" if heading else r"\A", text, re.MULTILINE)
+            if found is None:
+                raise ValueError(f"search.toml names {place!r}, and the page has no such heading")
+            text = f"{text[: found.start()]}{entries}\n{text[found.start() :]}"
+    return text
+
+
 def made(page: str, text: str) -> str:
     """The text of a page as the site has it."""
+    text = indexed(page, text)
     text = SECTION.sub(section, text)
-    if page == "gallery":
+    text = EXAMPLE.sub(lambda found: f"](auto_examples/{found[1] or 'index'}.rst)", text)
+    if page == "index":
+        text = CONTENTS.sub(contents, text)
+    elif page == "gallery":
         text = gallery(text)
     elif page == "api" or page.startswith("api/"):
         text = reference(page, text)
     text = FILM.sub(player, text)
-    text = re.sub(r"\]\(\.\./mjrock/examples/(\w+)\.py\)", r"](auto_examples/\1.rst)", text)
     return text if page.startswith("auto_examples") else linked_scripts(page, text)
 
 

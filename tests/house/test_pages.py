@@ -2,12 +2,14 @@
 
 import importlib
 import importlib.util
+import json
 import os
 import re
 import runpy
 import shutil
 import subprocess
 import sys
+import tomllib
 from contextlib import redirect_stdout
 from html import unescape
 from io import StringIO
@@ -158,10 +160,16 @@ def test_what_the_readme_names_is_what_a_script_prints():
 def test_the_readme_and_the_file_of_citation_say_the_same():
     readme, cited = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "CITATION.cff"))
     entry = dict(re.findall(r"^  (\w+) += \{+(.*?)\}+,?$", readme, re.MULTILINE))
-    assert set(entry) == {"title", "author", "version", "license"}
+    assert set(entry) - {"note"} == {"title", "author", "version", "year", "license"}
     for name in ("title", "version", "license"):
         assert re.search(rf"^{name}: \"?{re.escape(entry[name])}\"?$", cited, re.MULTILINE), name
     assert f'  - name: "{entry["author"]}"' in cited
+    released = re.findall(r"^date-released: (\d+)", cited, re.MULTILINE)
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    if f"## {entry['version']} (unreleased)" in changes:
+        assert (entry["note"], released) == ("not released yet", [])
+    else:
+        assert ("note" not in entry, released) == (True, [entry["year"]])
 
 
 def test_a_film_is_there_for_every_browser_with_its_poster_and_is_light():
@@ -178,18 +186,40 @@ def test_a_film_of_a_page_becomes_a_player_and_a_script_a_link(monkeypatch):
     monkeypatch.syspath_prepend(str(DOCS))
     made_pages = importlib.import_module("made_pages")
     film = "[![An arch](figures/arch.webp)](figures/arch.mp4)\n\n*It falls. `scripts/studies/animate.py`.*\n"
-    shown = made_pages.made("masonry", film + "```text\n`scripts/studies/animate.py`\n```\n")
+    shown = made_pages.made("any_page", film + "```text\n`scripts/studies/animate.py`\n```\n")
     attributes = re.search(r"<video ([^>]*)>", shown)[1]
     assert all(word in attributes.split() for word in ("controls", "loop", "muted", "playsinline"))
     assert 'poster="films/arch.webp"' in attributes
     assert re.findall(r'<source src="films/arch\.(\w+)" type="video/\1">', shown) == ["webm", "mp4"]
     assert '<a href="scripts/studies/animate.html"><code>scripts/studies/animate.py</code></a>' in shown
     assert "`scripts/studies/animate.py`" in shown.split("```text")[1]
-    readme = made_pages.made("index", "```{section} README.md\n```\n")
-    assert 'poster="films/facade_in_space.webp"' in readme
-    limits = made_pages.made("limitations", "```{section} README.md What it cannot do\n```\n")
+    home = made_pages.made("index", (DOCS / "index.md").read_text(encoding="utf-8"))
+    assert 'poster="films/facade_in_space.webp"' in home
+    limits = made_pages.made("limitations", "[What it cannot do](../README.md#what-it-cannot-do)\n")
     assert "Blocks are rigid" in limits
     assert "## " not in limits
+
+
+def test_a_page_reads_without_the_site():
+    """In the repository no block of a page is a command to Sphinx, and the list of pages has all, by their titles."""
+    texts = {page.stem: page.read_text(encoding="utf-8") for page in sorted(DOCS.glob("*.md"))}
+    assert [name for name, text in texts.items() if "```{" in text] == []
+    listed = dict(re.findall(r"^\* \[(.+)\]\((\w+)\.md\)$", texts.pop("index"), re.MULTILINE))
+    titles = {re.match(r"# (.+)|\[(.+)\]\(", text).expand(r"\1\2"): name for name, text in texts.items()}
+    assert listed == titles
+
+
+def test_a_word_that_readers_look_for_leads_to_one_place(monkeypatch):
+    pytest.importorskip("sphinx", reason="the extra docs is not installed; make docs installs it")
+    monkeypatch.syspath_prepend(str(DOCS))
+    made_pages = importlib.import_module("made_pages")
+    words = [word for found in made_pages.searched().values() for word in found]
+    assert len(words) == len(set(words)) > 300
+    assert not [word for word in words if word != word.lower() or "," in word or ";" in word]
+    for page in {place.partition("#")[0] for place in made_pages.searched()}:
+        made_pages.indexed(page, (DOCS / f"{page}.md").read_text(encoding="utf-8"))
+    with pytest.raises(ValueError, match=r"'faq#Which units[?]', .* no such heading"):
+        made_pages.indexed("faq", "# Frequent questions\n")
 
 
 def test_every_link_of_a_page_leads_somewhere():
@@ -328,6 +358,18 @@ def weight_of(site: Path, text: str) -> int:
     return len(text.encode()) + sum((site / name).stat().st_size for name in named)
 
 
+def not_found_first(site: Path) -> dict[str, object]:
+    """Words of search.toml that are no main entry of their page in the index, which the search ranks above all else."""
+    index = json.loads((site / "searchindex.js").read_text(encoding="utf-8")[len("Search.setIndex(") : -1])
+    words = tomllib.loads((DOCS / "search.toml").read_text(encoding="utf-8"))
+    places = {word: place.partition("#")[0] for place, found in words.items() for word in found}
+    found = {
+        word: [index["docnames"][page] for page, _, main in index["indexentries"].get(word, []) if main]
+        for word in places
+    }
+    return {word: pages for word, pages in found.items() if pages != [places[word]]}
+
+
 @pytest.mark.slow
 def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_read(tmp_path):
     pytest.importorskip("sphinx_gallery", reason="the extra docs is not installed; make docs installs it")
@@ -347,6 +389,7 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     assert examples <= {page.stem for page in pages}
     assert examples - CLAIMS.keys() == {"19_church_facade", "__init__"} & examples
     assert unlike_their_claims(tmp_path / "html") == {}
+    assert not_found_first(tmp_path / "html") == {}
     assert (tmp_path / "html" / "arch_view.html").stat().st_size > 5e5
     results = (tmp_path / "html" / "results.html").read_text(encoding="utf-8")
     assert '<iframe src="arch_view.html" loading="lazy"' in results
