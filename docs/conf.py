@@ -27,6 +27,7 @@ import made_pages  # noqa: E402
 
 import mjrock  # noqa: E402
 from scripts.studies.in_the_browser import falling_arch  # noqa: E402
+from scripts.studies.thumbnails import THUMBNAILS  # noqa: E402
 
 matplotlib.use("agg")
 
@@ -230,8 +231,16 @@ def one_tree(app: Any, page: str, template: str, context: dict[str, Any], doctre
         context["toctree"] = lambda **options: TREES.get(depth) or TREES.setdefault(depth, tree(**options))
 
 
-THUMBNAIL = re.compile(r'<img alt="" (?=src="[^"]*sphx_glr_(?:\d+_)?(\w+)_thumb)')
+THUMBNAIL = re.compile(r'<img alt="" (?=src="[^"]*sphx_glr_(\w+)_thumb)')
 """The small picture of an example, whose file is named after it."""
+
+
+def small_pictures(app: Any) -> None:
+    """Put the small pictures of buildings in the place of those that are cut from the figures of the examples."""
+    for name in THUMBNAILS:
+        picture = made_pages.whole(f"examples/{name}.png")
+        picture.thumbnail((400, 280))
+        picture.save(HERE / "auto_examples" / "images" / "thumb" / f"sphx_glr_{name}_thumb.png")
 
 
 SHOWN = PUBLIC | {name: f"mjrock.blocks.{name}" for name in mjrock.blocks.__all__}
@@ -241,7 +250,7 @@ BACK = re.compile(r"(?<=#)mjrock(?!\.plotting\.)(?:\.[a-z_]+)*\.(\w+)(?=\">\[doc
 
 def finished(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Load pictures of the gallery below the first as they come into sight, and say what a link to a page shows."""
-    body = THUMBNAIL.sub(lambda found: f'<img alt="{found[1].replace("_", " ")}" ', context.get("body") or "")
+    body = THUMBNAIL.sub(lambda found: f'<img alt="{THUMBNAILS[found[1]].label}" ', context.get("body") or "")
     body = re.sub(r"<td>(?=<p>[^\s<]{1,12}</p>)", '<td class="short">', body)  # 5.8e-04 is not broken at its hyphen
     body = BACK.sub(lambda found: SHOWN.get(found[1], found[0]), body)
     first, *others = re.split(r"(?=<img )", body)
@@ -262,4 +271,5 @@ def setup(app: object) -> None:
     app.connect("autodoc-process-signature", without_ranges)  # type: ignore[attr-defined]
     app.connect("source-read", made)  # type: ignore[attr-defined]
     app.connect("html-page-context", one_tree, priority=100)  # type: ignore[attr-defined]  # before the theme takes it
+    app.connect("builder-inited", small_pictures, priority=900)  # type: ignore[attr-defined]  # once examples have run
     app.connect("html-page-context", finished)  # type: ignore[attr-defined]

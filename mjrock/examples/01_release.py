@@ -66,7 +66,6 @@ print(
 # %%
 # The rotation and the energy above the wall at rest. Energy falls in steps: an
 # impact takes four fifths of it.
-# sphinx_gallery_thumbnail_number = 2
 figure = plotting.comparison(
     [theory, engine, checked], "released at half the overturning rotation"
 )

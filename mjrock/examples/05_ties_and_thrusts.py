@@ -60,5 +60,4 @@ for name, effects in (
 # The wall without the tie leaves the picture when it falls. This tie yields
 # without end. Give it the elongation that its anchorage follows,
 # `ultimate=0.03` for 30 mm, and it breaks there.
-# sphinx_gallery_thumbnail_number = 2
 figure = plotting.grid(panels, columns=2, top=1.0)

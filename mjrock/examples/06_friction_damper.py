@@ -47,7 +47,6 @@ figure = plotting.grid(panels, columns=2, top=1.0)
 
 # %%
 # The force over the slip: loops whose area is what it took.
-# sphinx_gallery_thumbnail_number = 3
 figure = Figure(figsize=(6.4, 3.2), layout="constrained")
 ax = figure.subplots()
 ax.plot(

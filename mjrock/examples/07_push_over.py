@@ -38,5 +38,4 @@ for name, effects in cases.items():
 # %%
 # Both effects bend the curve: the thrust shifts it down, and the tie holds the
 # wall beyond its own end.
-# sphinx_gallery_thumbnail_number = 2
 figure = plotting.pushover(curves).figure

@@ -111,7 +111,6 @@ cases = {
     for name, effects in variants.items()
 }
 print(f"the bars yield at {bars.strength / 1e3:.0f} kN")
-# sphinx_gallery_thumbnail_number = 2
 figure = plotting.sketch(cases["bars, 100 mm"])
 
 # %%

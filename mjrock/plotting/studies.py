@@ -347,7 +347,8 @@ def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> 
 
 
 def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
-    """A triangle where ties of a curve yield and a cross where they break, which the legend names from the left."""
+    """A triangle where ties of a curve yield and a cross where they break, which the legend names once."""
+    labels = dict[str, Look]()
     for line, curve in zip(list(ax.get_lines()), curves.values(), strict=False):
         plain = plain_names(curve.ties[0] | curve.ties[1])
         for (what, marker), reached in zip((("yield", "v"), ("break", "x")), curve.ties, strict=True):
@@ -357,8 +358,11 @@ def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
             near = np.searchsorted(curve.rotation, [reached[name] for name in names])
             heights = [float(curve.multiplier[max(i - 2, 0) : i + 1].max()) for i in near.tolist()]  # before it falls
             text = folded(f"{named([plain[name] for name in names])} {what}{'' if len(names) > 1 else 's'}")
-            look: Look = {"color": line.get_color(), "markersize": 6, "zorder": 5, "label": text}
-            ax.plot([reached[name] for name in names], heights, marker, linestyle="", **look)
+            look: Look = {"marker": marker, "markersize": 6, "zorder": 5, "linestyle": ""}
+            ax.plot([reached[name] for name in names], heights, **look, color=line.get_color())
+            labels[text] = look | {"color": "0.3" if text in labels else line.get_color()}
+    for text, look in labels.items():
+        ax.plot([], [], **look, label=text)
     _named(ax)
 
 

@@ -32,10 +32,11 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.style import BLACK
+from mjrock.plotting.style import BLACK, Look
 from mjrock.quantities import Array
 from mjrock.result.response import End
 from scripts.shared import cli
+from scripts.shared.labels import SMALL
 
 LENGTH, THICK, HEIGHT, COURSES = 1.292, 0.21, 2.58, 44
 """Wall [m]: along, through, upwards, and its courses."""
@@ -332,10 +333,15 @@ def spread(values: Array, form: str = ".2f") -> str:
     return ", ".join(f"{x:{form}}" for x in np.percentile(values, [16, 50, 84]))
 
 
+LONGEST = 0.25
+"""Longest period that the figure shows [s]."""
+
+
 def drawn(found: dict[str, list[list[Shaken]]], runs: Sequence[int]) -> Figure:
-    """Peaks, tilts and periods by the run, and peaks over the height in the last run of HU12."""
-    figure = Figure(figsize=(7.4, 6.4), layout="constrained")
-    (peaks, tilts), (periods, profile) = figure.subplots(2, 2, width_ratios=(3, 2))
+    """Peaks, tilts and periods by the run."""
+    figure = Figure(figsize=(7.4, 5.4), layout="constrained")
+    axes = figure.subplot_mosaic([["peaks", "peaks"], ["tilts", "periods"]], height_ratios=(3, 2))
+    peaks, tilts, periods = axes.values()
     looks = [look | {"linestyle": "-"} for look in plotting.style.OWN[: len(found)]]
     for look, (name, starts) in zip(looks, found.items(), strict=False):
         for ax, values in (
@@ -346,7 +352,7 @@ def drawn(found: dict[str, list[list[Shaken]]], runs: Sequence[int]) -> Figure:
             low, middle, high = np.percentile(values, [16, 50, 84], axis=0)
             ax.fill_between(runs, low, high, color=look["color"], alpha=0.2, linewidth=0)
             ax.plot(runs, middle, **look, label=name)
-    test = {"color": BLACK, "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "test US-1"}
+    test: Look = {"color": BLACK, "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "test US-1"}
     twin = {"color": "0.6", "marker": "o", "markersize": 3, "linewidth": 1.0, "label": "its twin US-2"}
     model = {"color": "0.45", "linestyle": ":", "label": "3DEC of the authors, undamped"}
     given = [RUNS[run] for run in runs]
@@ -359,16 +365,17 @@ def drawn(found: dict[str, list[list[Shaken]]], runs: Sequence[int]) -> Figure:
         tilts.plot(runs, tilt, **look)
     periods.plot(runs, [one.period for one in given], **test)
     peaks.set(ylabel="peak at 2.06 m [mm]", yscale="log", xlabel="run")
-    tilts.set(ylabel="tilt [0.001 degrees]", xlabel="run", yscale="symlog")
-    periods.set(ylabel="period [s]", xlabel="run", ylim=(0, 0.3))
-    last = max(run for run in runs if RUNS[run].record == "HU12")
-    for look, (name, starts) in zip(looks, found.items(), strict=False):
-        medians = np.median([1e3 * each[runs.index(last)].peaks for each in starts], axis=0)
-        profile.plot(medians, HEIGHTS, **look | {"marker": "D", "markersize": 3}, label=name)
-    profile.plot(RUNS[last].peaks, HEIGHTS, **test)
-    profile.set(xlabel=f"peak in run {last} [mm]", ylabel="height [m]")
-    profile.set(xlim=(0, None), ylim=(0, HEIGHT))
-    plotting.style.below_figure(figure, peaks)
+    tilts.set(ylabel="tilt after a run\n[0.001 degrees]", xlabel="run")
+    periods.set(ylabel="period after a run [s]", xlabel="run", ylim=(0, LONGEST))
+    for i, run in enumerate(runs):
+        period = max(starts[0][i].period for starts in found.values())
+        if period > LONGEST:
+            periods.text(run - 1.2, 0.98 * LONGEST, f"{period:.2f} s", ha="right", va="top", fontsize=SMALL)
+    slow = [run for run in runs if RUNS[run].record == "FR76"]
+    for ax in axes.values():
+        ax.axvspan(slow[0] - 0.5, slow[-1] + 0.5, color="0.93", zorder=0)
+    peaks.text(slow[0] - 0.3, peaks.get_ylim()[0] * 1.2, "record FR76", fontsize=SMALL, color="0.3")
+    plotting.style.below_figure(figure, peaks, ncols=4)
     return figure
 
 

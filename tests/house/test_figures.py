@@ -4,7 +4,9 @@ import re
 import threading
 import tomllib
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from scripts import figures
 from scripts.shared import cli, figure_record
@@ -125,6 +127,25 @@ def test_every_figure_is_that_of_its_script():
     assert not stale, "\n".join(
         [*(f"{why}: {', '.join(files)}" for why, files in stale.items()), f"{remedy}the same with --unchanged"]
     )
+
+
+SCREENS = {"view.png", "viewer.png", "notebook.png"}
+"""Pictures of a screen, which go on beyond their edges."""
+
+
+def pictures():
+    """The pictures of the pages with their grey values, shape (rows, columns), 0 to 255."""
+    for path in sorted(FOLDER.glob("*.png")):
+        with Image.open(path) as picture:
+            yield path.name, np.asarray(picture.convert("L"))
+
+
+def test_no_word_of_a_picture_is_cut_off_by_its_edge():
+    cut = []
+    for name, grey in pictures():
+        rim = np.concatenate([grey[:2].ravel(), grey[-2:].ravel(), grey[:, :2].ravel(), grey[:, -2:].ravel()])
+        cut += [name] if (rim < 150).any() and name not in SCREENS else []
+    assert cut == []
 
 
 def test_the_record_names_no_place_of_a_machine():

@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import itertools
 import json
 import os
 import re
@@ -17,12 +18,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import mjrock as mr
+from scripts.studies.thumbnails import THUMBNAILS
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 EXAMPLES = ROOT / "mjrock" / "examples"
+SMALL = DOCS / "figures" / "examples"
+"""Small pictures of the examples."""
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
@@ -253,9 +258,25 @@ def test_every_picture_is_in_the_gallery():
     made = {
         str(one.relative_to(DOCS / "figures"))
         for one in (DOCS / "figures").rglob("*.*")
-        if one.suffix in (".png", ".mp4")
+        if one.suffix in (".png", ".mp4") and one.parent != SMALL  # which the page of examples shows
     }
     assert shown >= made
+
+
+def test_each_example_has_a_small_picture_of_its_own_that_is_filled_and_a_sentence_for_it():
+    pictures = {}
+    for name in (one.stem for one in EXAMPLES.glob("[0-9]*.py")):
+        with Image.open(SMALL / f"{name}.png") as picture:
+            pictures[name] = np.asarray(picture.convert("L").resize((80, 56))) < 230
+    labels = [THUMBNAILS[name].label for name in pictures]
+    assert {one.stem for one in SMALL.glob("*.png")} == pictures.keys()
+    for drawn in pictures.values():
+        rows, columns = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
+        assert np.ptp(rows) > 0.5 * drawn.shape[0] or np.ptp(columns) > 0.7 * drawn.shape[1]
+    for (_, one), (_, other) in itertools.combinations(pictures.items(), 2):
+        assert (one & other).sum() < 0.8 * (one | other).sum()
+    assert len(set(labels)) == len(labels)
+    assert all(re.fullmatch(r"[A-Z][^.]*\w[^.]* [^.]*\.", label) for label in labels)
 
 
 def test_a_picture_of_the_gallery_leads_to_the_page_that_explains_it(monkeypatch):
@@ -390,6 +411,8 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     assert examples - CLAIMS.keys() == {"19_church_facade", "__init__"} & examples
     assert unlike_their_claims(tmp_path / "html") == {}
     assert not_found_first(tmp_path / "html") == {}
+    course = (tmp_path / "html" / "auto_examples" / "index.html").read_text(encoding="utf-8")
+    assert all(f'alt="{one.label}"' in course for one in THUMBNAILS.values())
     assert (tmp_path / "html" / "arch_view.html").stat().st_size > 5e5
     results = (tmp_path / "html" / "results.html").read_text(encoding="utf-8")
     assert '<iframe src="arch_view.html" loading="lazy"' in results

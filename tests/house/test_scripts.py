@@ -17,6 +17,7 @@ from mjrock.plotting import animation, style
 from scripts.paper import compare_wall
 from scripts.shared import cli
 from scripts.studies import in_the_browser, town
+from scripts.studies.thumbnails import THUMBNAILS
 
 SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*/*.py") if path.parent.name != "shared"}
 """Every script by its name."""
@@ -103,6 +104,7 @@ WRITES = {
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
     "vaults": {"vaults.png", "vaults.txt"},
+    "thumbnails": {f"{name}.png" for name, one in THUMBNAILS.items() if not one.run},
     "which_call": {"which_call.png"},
     "check_in_one_picture": {"check_in_one_picture.png", "check_in_one_picture.txt"},
     "mechanisms": {"mechanisms.png", "mechanisms.txt", "axle.png"},

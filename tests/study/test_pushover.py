@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -324,6 +325,9 @@ def test_rotations_at_which_a_tie_yields_and_breaks():
         assert moved == pytest.approx(elongation, abs=2e-4)
     ax = mr.plotting.pushover({"tied": curve})
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["tied", "tie yields", "tie breaks"]
-    marks = [line.get_xdata()[0] for line in ax.get_lines() if line.get_label().startswith("tie ")]
+    marks = [line.get_xdata()[0] for line in ax.get_lines() if line.get_marker() in "vx" and len(line.get_xdata())]
     np.testing.assert_array_equal(marks, [yields, breaks])
+    weaker = mr.pushover(mr.Case(wall, 0.0, 1.0, effects=replace(tie, strength=3e3)))
+    texts = [text.get_text() for text in mr.plotting.pushover({"a": curve, "b": weaker}).get_legend().get_texts()]
+    assert texts == ["a", "b", "tie yields", "tie breaks"]
     assert mr.pushover(mr.Case(wall, 0.0, 1.0)).ties == ({}, {})
