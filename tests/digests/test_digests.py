@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from mjrock.distinct import following, team
+from mjrock.distinct import team, time_integration
 from mjrock.distinct.crew import Crew
 from tests.digests.digest_answers import answers, elsewhere, moved, stored
 from tests.digests.digest_scenes import SCENES
@@ -65,7 +65,7 @@ def test_equal_to_the_bit_in_any_number_of_threads(monkeypatch):
     monkeypatch.setattr(team, "LINES_TOGETHER", 4)
     monkeypatch.setattr(team, "BODIES_TOGETHER", 1)
     for count in (1, 2, 4):
-        monkeypatch.setattr(following, "Crew", lambda given, count=count: runs.append(Crew(count)) or runs[-1])
+        monkeypatch.setattr(time_integration, "Crew", lambda given, count=count: runs.append(Crew(count)) or runs[-1])
         for name in BY_EXPLICIT_STEPS:
             assert answers([name]) == {name: alone[name]}
             assert {run.used for run in runs} == {1 if name in RIGID else count}, name

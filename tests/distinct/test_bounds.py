@@ -59,12 +59,12 @@ SMALL = [
     "handing_over",
     "longest_step",
     "loop_of_steps",
+    "motion_damping",
     "pulls_of_links",
-    "slowing",
+    "rotation_of_bodies",
     "softening",
     "solids",
     "touches_of_lines",
-    "turning",
 ]
 """Tests of single functions, and of a few steps."""
 
