@@ -131,7 +131,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/contacts/friction.py": ("friction_of_lines",),
     "distinct/force_record.py": ("forces_of_lines",),
     "distinct/search/handover.py": ("handing_over",),
-    "distinct/limit.py": ("impacts",),
+    "distinct/step_length.py": ("impacts",),
     **{name: ("pulls_of_links",) for name in LINKS},
     "distinct/search/validity.py": ("validity",),
     "distinct/search/constants.py": ("clipping", "finder", "handing_over", "validity", "softening", "pair_law"),
@@ -339,7 +339,7 @@ EQUIVALENT = {
     "softening.py: nv, share = 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
         "the last share is read, and more of them are one"
     ),
-    "limit.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (
+    "step_length.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (
         "any share of rounding serves"
     ),
     "softening.py: trace = 1": "the trace of the last square is taken",

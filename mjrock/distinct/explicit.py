@@ -11,19 +11,19 @@ from ..background_compilation import first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausibility import warn_if_still
-from ..quantities import Within, require_flag, require_size, require_whole, require_within, within_ranges
+from ..quantities import Within, require_flag, require_size, require_whole, within_ranges
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.motion import OutputStep, required_spacing
 from ..result.problem import problem_of, required_start
 from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
-from ..scene.explicit_step import warn_if_tiny
 from .response import Run, response_of
 from .search.overlap import checked_overlap
 from .setup import Setup, continued, setup_of_problem, with_motion_damping
+from .step_length import TimeGrid, TimeStep, required_timestep
 from .system import Books, Samples
-from .time_integration import Integration, TimeGrid, integrate, warn_if_long
+from .time_integration import Integration, integrate, warn_if_long
 
 MOST_THREADS = 256
 """Most threads of a run."""
@@ -35,7 +35,7 @@ COMPILING_RUN = 0.02
 def solve_explicit(
     case: AnyCase,
     contacts: Contacts | None = None,
-    timestep: Annotated[float | None, Within(1e-12, 1, "s")] = None,
+    timestep: TimeStep = None,
     *,
     output_step: OutputStep = None,
     ledger: bool = False,
@@ -99,8 +99,7 @@ def solve_explicit(
     require_flag("forces", forces)
     if threads is not None:
         threads = require_whole("threads", threads, 1, MOST_THREADS)
-    if timestep is not None:
-        timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
+    timestep = required_timestep(timestep, case.duration)
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case, remembers=True)
     if start is None:
@@ -109,8 +108,7 @@ def solve_explicit(
         setup = with_motion_damping(
             continued(setup_of_problem(problem, contacts, state), start), mass_damping, local_damping
         )
-    scene, limit = setup.scene, setup.limit
-    grid = TimeGrid.of(setup, timestep, spacing)
+    scene, grid = setup.scene, TimeGrid.of_run(setup.step_length, setup.course.duration, timestep, spacing)
     count, bodies = grid.samples, len(scene.bodies.names)
     require_size("the samples of this answer", count * bodies, "raise output_step or follow it for less")
     books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.has_motion_damping)
@@ -120,8 +118,6 @@ def solve_explicit(
     if forces:
         joints, fixed, _, actuators = required_room(case, count)
         samples = samples.with_forces(joints, fixed, actuators)
-    if timestep is not None:
-        warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, grid)
     stepping = Stopwatch()
     integration = integrate(setup, books, samples, grid, threads)
@@ -146,8 +142,8 @@ def step_stats(setup: Setup, grid: TimeGrid, integration: Integration, took: dic
         "stepping_processor_time": took["stepping_processor_time"] + integration.processor,
         "steps": integration.steps,
         "timestep": grid.h,
-        "stable_timestep": setup.limit,
-        "share": grid.h / setup.limit,
+        "stable_timestep": setup.step_length.limit,
+        "share": grid.h / setup.step_length.limit,
         "threads": integration.threads,
         "friction": "springs" if np.isfinite(integration.system.lines["k_s"]).any() else "rigid",
     }

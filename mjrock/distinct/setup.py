@@ -20,17 +20,11 @@ from ..scene.course import Course
 from ..scene.scene import Scene
 from .assembly import at_pose, copied, guide, open_slightly, set_initial_friction, system_of, with_supports
 from .kinds.lists import laws_of, links_of
-from .limit import STABLE_AHEAD, Impacts, longest_step
 from .memory import Memory, memory_of, recalled, require_nothing_forgotten
 from .search.contact_search import ContactSearch
+from .stable_step import longest_step
 from .step_length import StepLength
 from .system import System
-
-LOOK_AHEAD_BELOW = 0.25
-"""Step over the longest stable one up to which dashpots look ahead, however strong they are [-]."""
-SHARE_OF_A_WALL = 0.05
-"""Step that is taken for a wall, over the longest stable one [-]. The first three |e| of a wall against a stop are then
-within 0.04 %, and with 0.1 within 0.11 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +34,9 @@ class Setup:
     Args:
         problem: the case with its contacts.
         scene, course, system: what stands, what happens to it, and its rows.
-        limit, share: the longest stable step [s], and the step that is taken over it [-].
-        spacing: largest spacing of the samples [s].
+        step_length: of its steps.
         ends: rotation at which the run ends [rad].
         search: where blocks that fall meet others, or None where that is not followed.
-        impacts: flat impacts at the joints of masonry. A wall has none: its steps are below `LOOK_AHEAD_BELOW`.
         of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
         blocks: the fixed blocks that move, in the order of the supports.
         names: of the links of each kind.
@@ -56,23 +48,15 @@ class Setup:
     scene: Scene
     course: Course
     system: System
-    limit: float
-    share: float
-    spacing: float = math.inf
+    step_length: StepLength
     ends: float = math.inf
     search: ContactSearch | None = None
-    impacts: Impacts | None = None
     of: object = None
     blocks: tuple[str, ...] = ()
     memory: Memory | None = None
     names: tuple[tuple[str, ...], ...] = ()
     drag: float = 0.0
     local: float = 0.0
-
-    def looks_ahead(self, h: float) -> bool:
-        """Whether dashpots of contacts look ahead in steps of h [s]."""
-        wanted = self.impacts is not None and self.impacts.look_ahead(h)
-        return h <= LOOK_AHEAD_BELOW * self.limit or (wanted and h <= STABLE_AHEAD * self.limit)
 
     @property
     def has_motion_damping(self) -> bool:
@@ -132,9 +116,8 @@ def setup_of_wall(problem: Problem, case: Case, scene: Scene, course: Course) ->
     system = system_of(scene)
     names, links = links_of(scene, case, system.bodies)
     system = at_pose(system, course.pose, course.velocity)._replace(ground=course.ground, links=links)
-    # peaks and impacts are read off the samples
-    followed = longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE
-    return Setup(problem, scene, course, system, *followed, names=names)
+    length = StepLength.of_wall(system, case.wall.p)
+    return Setup(problem, scene, course, system, length, ON_ITS_FACE, names=names)
 
 
 def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: Course) -> Setup:
@@ -148,17 +131,16 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
     acts = any(len(table.rows) for table in passive)
     unguided = longest_step(system._replace(links=passive)) if acts else at_rest.limit
     guide(system, case)
-    limit, step, impacts = StepLength.of(system, unguided, at_rest.search)
+    search = at_rest.search
+    length = StepLength.of_masonry(system, unguided, search.longest, search.impacts)
     blocks = tuple(support.block for support in case.supports)
     return Setup(
         problem,
         scene,
         course,
         at_pose(system, course.pose, course.velocity),
-        limit,
-        step / limit,
-        search=at_rest.search.begun(blocks),
-        impacts=impacts,
+        length,
+        search=search.begun(blocks),
         of=(case.masonry, case.passive),
         blocks=blocks,
         names=names,

@@ -1,4 +1,4 @@
-"""The explicit steps of a run: when they are made, and the loop that makes them."""
+"""Time integration: the loop that makes the explicit steps of a run."""
 
 from __future__ import annotations
 
@@ -12,23 +12,20 @@ import numpy as np
 
 from ..bars import Bar
 from ..compiled import for_types_of
-from ..quantities import Array, warn_of
-from ..result.motion import intervals
+from ..quantities import warn_of
 from ..scene.explicit_step import stepping_seconds
 from .crew import Crew
 from .kinds.own import OwnLaws
 from .kinds.own_links import OwnLinks
-from .limit import LEAD, STABLE_AHEAD
 from .loop import Clock, advance
 from .memory import Memory, remember
 from .rows import MAY_BE_INFINITE, unsound
 from .search.contact_search import ContactSearch
 from .setup import Setup
+from .step_length import LEAD, TimeGrid
 from .supports import move_supports
 from .system import Books, Samples, System
 
-CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
-"""Steps from one check of the energy to the next, and most checks."""
 FIRST_CALL = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
 CALL_TIME = 0.3
@@ -37,70 +34,6 @@ LONG_RUN = 10.0
 """Time of the steps of a run from which on there is a warning [s]."""
 STRONG_DASHPOTS = 10.0
 """Step that springs alone would allow over that with dashpots, from which on the warning names the dashpots [-]."""
-
-
-class TimeGrid(NamedTuple):
-    """When the steps of a run are made, and which of them are sampled.
-
-    Args:
-        h: length of a step [s].
-        every: steps from one sample to the next.
-        stride: samples from one that is returned to the next.
-        last: number of the last step, of which there is a sample too.
-        end: when it is made [s].
-    """
-
-    h: float
-    every: int
-    stride: int
-    last: int
-    end: float
-
-    @classmethod
-    def of(cls, setup: Setup, timestep: float | None, output_step: float) -> TimeGrid:
-        """Steps that end with the duration: in equal parts of it no longer than `output_step`.
-
-        A given step is kept, and the run ends with the one that is nearest to the duration.
-
-        Raises:
-            ValueError: if the given step is not stable.
-        """
-        duration = setup.course.duration
-        if timestep is None:
-            count = intervals(duration, output_step)
-            parts = intervals(duration / count, setup.spacing)
-            every = intervals(duration / (count * parts), setup.share * setup.limit)
-            last = count * parts * every
-            return cls(duration / last, every, parts, last, duration)
-        if timestep > setup.limit:
-            raise ValueError(
-                f"timestep = {timestep:.3g} s is not stable; the valid range is up to {setup.limit:.3g} s, which the "
-                "stiffest contacts and the strongest dashpots allow"
-            )
-        steps, last = max(1, round(output_step / timestep)), max(1, round(duration / timestep))
-        every = steps // min(steps, intervals(steps * timestep, setup.spacing))
-        return cls(timestep, every, round(steps / every), last, last * timestep)
-
-    @property
-    def check(self) -> int:
-        """Steps from one check of the energy to the next."""
-        return max(CHECKED_EVERY, -(-self.last // MOST_CHECKS))
-
-    def checks(self, steps: int) -> Array:
-        """Times of the checks of a number of steps [s]."""
-        count = steps // self.check + 1 if steps <= self.last else -(-self.last // self.check) + 1
-        return self.h * np.minimum(self.check * np.arange(count), self.last)
-
-    @property
-    def samples(self) -> int:
-        """How many samples there are."""
-        return -(-self.last // self.every) + 1
-
-    def times(self) -> Array:
-        """Times of the samples [s], shape (samples,)."""
-        t = self.h * self.every * np.arange(self.samples)
-        t[-1] = self.end
-        return np.asarray(t)
 
 
 class Integration(NamedTuple):
@@ -127,10 +60,10 @@ def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, thre
     """
     system, search, stop, memory = setup.system, setup.search, grid.last + 1, setup.memory
     clock = Clock(0, grid.h, grid.every, 0, 0, grid.last, setup.ends, 0.0, (0.0,) * len(system.axes), grid.check)
-    clock = clock._replace(lead=LEAD if setup.looks_ahead(grid.h) else 0.0)
+    clock = clock._replace(lead=LEAD if setup.step_length.looks_ahead(grid.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)
     for table in system.links:
-        table.look_ahead(LEAD if grid.h <= STABLE_AHEAD * setup.limit else 0.0)
+        table.look_ahead(LEAD if setup.step_length.links_look_ahead(grid.h) else 0.0)
     next_search, steps = 0, advance
     require_sound_rows(system)
     if memory is not None:
@@ -215,7 +148,7 @@ def warn_if_long(setup: Setup, grid: TimeGrid) -> None:
     if seconds < LONG_RUN:
         return
     slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, *laws))
-    shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
+    shorter = math.sqrt(1 + 2 * slowest / setup.step_length.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
     if shorter > STRONG_DASHPOTS:
         warn_of(
             f"explicit steps would take some {seconds:.2g} s: {grid.last:.2g} steps of {grid.h:.2g} s on "

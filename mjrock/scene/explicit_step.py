@@ -1,7 +1,7 @@
 """The formula of the longest stable step of the explicit scheme, the share of it that is taken, and what steps take.
 
 Both solvers use them: the engine estimates the time of explicit steps. The eigenvalues of a system are in
-`distinct.limit`.
+`distinct.stable_step`.
 
 A mode of the frequency omega and the damping ratio xi is stable up to h = (2 / omega) (sqrt(1 + xi^2) - xi), since the
 dashpots take the velocity half a step before the pose.

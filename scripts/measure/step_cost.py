@@ -117,7 +117,7 @@ def floors(folder: Path, names: Sequence[str], rounds: int) -> dict[str, list[fl
         if not name.startswith("wall") or name.endswith("rigid") or not step_floor.is_there():
             continue
         setup = setup_of(case_of(name, 1.0), None, None)
-        h, lines = 0.4 * setup.limit, len(setup.system.lines)
+        h, lines = 0.4 * setup.step_length.limit, len(setup.system.lines)
         count = int(LINE_STEPS / lines)
         taken = [
             [

@@ -64,7 +64,7 @@ class Turns:
         self.books = Books.empty(self.system, len(setup.scene.contacts.joints) + 1)
         self.samples = Samples.room(2, self.system, self.books)
         start = (0.0,) * len(self.system.axes)
-        self.clock = Clock(0, setup.share * setup.limit, 10**9, 0, 1, 10**9, math.inf, 0.0, start, 10**9)
+        self.clock = Clock(0, setup.step_length.default, 10**9, 0, 1, 10**9, math.inf, 0.0, start, 10**9)
         (alone,), _ = teams_of(self.system.bodies, self.system.lines, 1)
         advance(self.system, self.books, self.samples, self.clock, alone)
         self.clock = self.clock._replace(step=1, row=1)

@@ -9,11 +9,11 @@ from by_hand import alone, system
 
 from mjrock.distinct import loop
 from mjrock.distinct.contacts import touches
-from mjrock.distinct.limit import Impacts
 from mjrock.distinct.loop import Clock
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.search import handover
 from mjrock.distinct.search.handover import Lines
+from mjrock.distinct.step_length import Impacts
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, Samples
 from mjrock.problem.masonry.laws import joint_law

@@ -7,8 +7,8 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.limit import Impacts
 from mjrock.distinct.setup import setup_of
+from mjrock.distinct.step_length import Impacts
 
 K_N = 1e8
 """Stiffness of the joints [N/m3]."""
@@ -17,7 +17,7 @@ K_N = 1e8
 def at_start(blocks, xi=0.1, **options):
     """Masonry of these blocks at its start."""
     masonry = mr.Masonry(blocks, k_n=K_N, friction=0.7, xi=xi, **options)
-    return masonry, setup_of(mr.MasonryCase(masonry, 1.0), None, None)
+    return masonry, setup_of(mr.MasonryCase(masonry, 1.0), None, None).step_length
 
 
 @pytest.mark.parametrize("in_space", [False, True])
@@ -48,7 +48,7 @@ def test_dashpots_of_a_moving_face_count_as_those_on_the_ground():
 def test_joints_may_have_any_slope():
     """Those of an arch of equal voussoirs have one stiffness; the outer ones meet fixed abutments."""
     arch = mr.Masonry.arch(5.0, 0.75, voussoirs=7, k_n=K_N, xi=0.05)
-    impacts, mass = setup_of(mr.MasonryCase(arch, 1.0), None, None).impacts, arch.blocks[arch.free[0]].mass
+    impacts, mass = setup_of(mr.MasonryCase(arch, 1.0), None, None).step_length.impacts, arch.blocks[arch.free[0]].mass
     fixed = [arch.blocks[joint.below].fixed or arch.blocks[joint.above].fixed for joint in arch.joints]
     assert sum(fixed) == 2
     np.testing.assert_allclose(impacts.frequency, np.sqrt(K_N * 0.75 / mass * np.where(fixed, 1, 2)), rtol=1e-9)
@@ -59,7 +59,7 @@ def test_a_block_that_a_guide_holds_has_no_impact():
     masonry = mr.Masonry([GROUND, box(-1, 1, 0, 1), box(1, 2, 0, 1)], k_n=K_N, friction=0.7)
     history = {"displacement": ([0.0, 0.1], [0.0, 0.0]), "stiffness": 1e8}
     jack = mr.Actuator(block=masonry.names[1], at=(0.0, 0.5), direction=(1.0, 0.0), guided="translation", **history)
-    impacts = setup_of(mr.MasonryCase(masonry, 1.0, effects=(jack,)), None, None).impacts
+    impacts = setup_of(mr.MasonryCase(masonry, 1.0, effects=(jack,)), None, None).step_length.impacts
     assert len(impacts.ratio) == 2
     assert np.isfinite(impacts.ratio).all()
 
@@ -106,7 +106,7 @@ def test_masonry_with_strong_dashpots_takes_the_step_that_they_ask_for():
         else:
             assert 0.39 < stats["share"] <= 0.4
         assert start.looks_ahead(stats["timestep"]) is strong
-        assert start.looks_ahead(start.share * start.limit) is strong  # as long as it may be, to rounding
+        assert start.looks_ahead(start.default) is strong  # as long as it may be, to rounding
     given = 0.4 * start.limit  # too long for what dashpots could foresee
     assert not start.looks_ahead(given)
     assert start.looks_ahead(0.2 * start.limit)

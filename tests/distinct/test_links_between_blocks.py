@@ -9,8 +9,8 @@ from scenes import changed
 import mjrock as mr
 from mjrock.distinct.assembly import at_pose, system_of
 from mjrock.distinct.kinds.lists import links_of
-from mjrock.distinct.limit import longest_step
 from mjrock.distinct.loop import Clock, advance
+from mjrock.distinct.stable_step import longest_step
 from mjrock.distinct.system import Books, Samples
 from mjrock.scene.masonry import standing_masonry
 

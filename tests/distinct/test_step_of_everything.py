@@ -11,7 +11,7 @@ import mjrock as mr
 from mjrock.distinct.kinds.law import JointLaw
 from mjrock.distinct.kinds.link import INFINITE_IN_LAW, Table
 from mjrock.distinct.kinds.lists import KINDS
-from mjrock.distinct.limit import longest_step
+from mjrock.distinct.stable_step import longest_step
 from mjrock.scene.explicit_step import stable_step
 
 FAR = box(-80, 80, -60, -59, fixed=True)

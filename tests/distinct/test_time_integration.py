@@ -6,7 +6,6 @@ import signal
 import threading
 import time
 import warnings
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from masonry_blocks import columns
 
 import mjrock as mr
 from mjrock.distinct import time_integration
-from mjrock.distinct.time_integration import TimeGrid
+from mjrock.distinct.step_length import StepLength, TimeGrid
 
 SLOW = mr.Masonry.facade(length=0.8, height=0.4, depth=0.4, unit=(0.4, 0.2), k_n=1e12, frequency=1.0)
 """Its dashpots ask for steps of less than a nanosecond: hours for a simulated second, minutes for a sample."""
@@ -89,11 +88,11 @@ def test_a_step_that_is_given_again_gives_the_same_samples(seed):
     half of the distance of those that are kept."""
     rng = np.random.default_rng(seed)
     duration, output, spacing, limit = 10 ** rng.uniform((-1, -2, -3, -5), (1, -1, -1.5, -3))
-    setup = SimpleNamespace(course=SimpleNamespace(duration=duration), limit=limit, share=0.3, spacing=spacing)
-    first = TimeGrid.of(setup, None, output)
-    again = TimeGrid.of(setup, first.h, first.every * first.stride * first.h)
+    length = StepLength(limit, 0.3 * limit, spacing)
+    first = TimeGrid.of_run(length, duration, None, output)
+    again = TimeGrid.of_run(length, duration, first.h, first.every * first.stride * first.h)
     assert (again.every, again.stride, again.last) == (first.every, first.stride, first.last)
-    other = TimeGrid.of(setup, 0.77 * first.h, output)
+    other = TimeGrid.of_run(length, duration, 0.77 * first.h, output)
     apart = other.every * other.stride * other.h
     assert other.every * other.h < spacing + 0.5 * other.h
     assert abs(apart - output) < 0.51 * (other.every + 1) * other.h

@@ -237,8 +237,7 @@ def pushed_beside(scene: Scene) -> bool:
 
 def default_step(scene: Scene) -> float:
     """The step that explicit steps take of themselves for masonry [s]."""
-    setup = setup_of(masonry_case(scene), None, None)
-    return setup.share * setup.limit
+    return setup_of(masonry_case(scene), None, None).step_length.default
 
 
 class Motion(NamedTuple):

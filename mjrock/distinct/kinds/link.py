@@ -124,7 +124,7 @@ class Kind:
         return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, ways, len(bodies))
 
     def look_ahead(self, lead: float) -> None:
-        """Let dashpots look ahead by some steps, see `limit.LEAD`."""
+        """Let dashpots look ahead by some steps, see `step_length.LEAD`."""
 
     def surges(self, t: float, until: float) -> tuple[Integers, Array]:
         """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""

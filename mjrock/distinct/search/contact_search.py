@@ -41,7 +41,7 @@ from .constants import (
 )
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over, keep_depths
-from .pair_law import SHARED_COLUMNS, LongestSteps, PairLaw, least_among, pair_number
+from .pair_law import SHARED_COLUMNS, PairLaw, least_among, longest_steps_of, pair_number
 from .softening import Sides, shares_within
 from .solids import Poses
 from .validity import (
@@ -112,7 +112,7 @@ class ContactSearch:
         self.law = PairLaw.of_joints(scene, system.lines)
         inverse_mass = np.append(1 / scene.bodies.mass, 0.0)[body]
         self.impacts, slowest = self.law.meetings(inverse_mass)
-        self.longest = LongestSteps.of(solids, self.law, slowest, system)
+        self.longest = longest_steps_of(solids, self.law, slowest, system)
         below, above = np.array([(each.below, each.above) for each in joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)

@@ -35,8 +35,9 @@ from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
 from ...scene.parts import JointSprings
 from ...scene.scene import Scene
-from ..limit import Impacts, longest_step
 from ..rows import Rows, chosen, joined, rows
+from ..stable_step import longest_step
+from ..step_length import Impacts, LongestSteps
 from ..system import System
 from .constants import AS_STIFF, LEAST_CONTACT, SIDES_THAT_BEAR, WHOLE_CONTACT
 
@@ -274,45 +275,27 @@ def _of_loose(scene: Scene, joints: Array, others: Array, loose: Flags) -> tuple
     return largest * per_area, np.tile(others[softest], (len(solids), 1))
 
 
-class LongestSteps(NamedTuple):
-    """The longest stable steps of blocks on the springs that they have beyond their joints, infinite for none.
+def longest_steps_of(solids: Sequence[Solid], law: PairLaw, slowest: Array, system: System) -> LongestSteps:
+    """The longest stable steps of the blocks of a system on the springs that they have beyond their joints.
 
     Args:
-        loose: of blocks without a joint, with the dashpots of the joints [s].
-        given: of these and of blocks whose pairs are given stronger dashpots, on their springs alone [s].
-        damped: how much shorter than that a step is with these dashpots [-].
+        solids, law, system: the blocks.
+        slowest: the largest dashpot over its spring that is given for pairs of each block [s], shape (blocks,).
     """
-
-    loose: float
-    given: float = math.inf
-    damped: float = 1.0
-
-    @classmethod
-    def of(cls, solids: Sequence[Solid], law: PairLaw, slowest: Array, system: System) -> LongestSteps:
-        """Those of the blocks of a system.
-
-        Args:
-            solids, law, system: the blocks.
-            slowest: the largest dashpot over its spring that is given for pairs of each block [s], shape (blocks,).
-        """
-        shared = law.of_block[0]
-        loose = longest_step_of_some(solids, law.loose & ~law.fixed, law, shared, system)
-        slower = (slowest * shared[:, 0] > shared[:, 1]) & ~law.fixed
-        if not slower.any():
-            return cls(loose)
-        damped = shared.copy()
-        damped[slower, 1] = slowest[slower] * shared[slower, 0]
-        sprung = slower & np.isfinite(shared[:, 2])
-        damped[sprung, 3] = slowest[sprung] * shared[sprung, 2]
-        both = np.array([0, 1, 0, 1, 0]) > 0
-        given, slow = (
-            longest_step_of_some(solids, slower, law, each, system) for each in (np.where(both, 0.0, shared), damped)
-        )
-        return cls(loose, given, slow / given)
-
-    def step(self, least: float) -> float:
-        """The longest stable step [s], where no springs shorten it below another one [s]."""
-        return min(max(self.loose, least), self.damped * max(self.given, least))
+    shared = law.of_block[0]
+    loose = longest_step_of_some(solids, law.loose & ~law.fixed, law, shared, system)
+    slower = (slowest * shared[:, 0] > shared[:, 1]) & ~law.fixed
+    if not slower.any():
+        return LongestSteps(loose)
+    damped = shared.copy()
+    damped[slower, 1] = slowest[slower] * shared[slower, 0]
+    sprung = slower & np.isfinite(shared[:, 2])
+    damped[sprung, 3] = slowest[sprung] * shared[sprung, 2]
+    both = np.array([0, 1, 0, 1, 0]) > 0
+    given, slow = (
+        longest_step_of_some(solids, slower, law, each, system) for each in (np.where(both, 0.0, shared), damped)
+    )
+    return LongestSteps(loose, given, slow / given)
 
 
 def longest_step_of_some(solids: Sequence[Solid], some: Flags, law: PairLaw, shared: Array, system: System) -> float:
