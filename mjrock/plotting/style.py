@@ -5,23 +5,17 @@ from __future__ import annotations
 import math
 import textwrap
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import Collection
-from matplotlib.colors import TABLEAU_COLORS, to_hex, to_rgba_array
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-from matplotlib.text import Text
 
 from ..contacts.files import replacing
-from ..quantities import require_kind, require_path, warn_of
+from ..quantities import require_kind, require_path
 from ..result.response import Response
 
 BLACK, ORANGE, BLUE, PURPLE, GREEN = "#262626", "#d97706", "#1f6fc4", "#7a2a6b", "#3a9d7a"
@@ -40,8 +34,8 @@ STYLES: dict[str, Look] = {
     "explicit": {"label": "explicit steps", "color": BLUE, "linestyle": "--", "linewidth": 1.6, "zorder": 2.5},
 }
 """The line of each solver, the same in every figure. They differ in black and white too."""
-WIDEST, SMALLEST = 7.4, 8.0
-"""Largest width of a figure that is saved [inch], and smallest size of its text [pt]: pages show it as wide as that."""
+WIDEST = 7.4
+"""Largest width of a figure of panels [inch]: pages show it as wide as that."""
 FINE = 200
 """Dots of a figure that is saved [1/inch]."""
 COARSE = 120
@@ -50,8 +44,6 @@ BEHIND: Look = {"facecolor": "white", "alpha": 0.9, "edgecolor": "none", "pad": 
 """A box behind words that may lie on lines."""
 ON_LINES: Look = {"frameon": True, "framealpha": 0.8, "edgecolor": "none", "fancybox": False, "fontsize": 8}
 """A legend that may lie on lines."""
-EDGE = 3.0
-"""How far a word may go beyond the edge of a figure [pixel]."""
 
 Drawing = Callable[[Axes], Axes]
 """A function that draws a panel."""
@@ -198,11 +190,6 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
     Raises:
         TypeError: for what is not a figure or an Axes.
         ValueError: for a suffix that Matplotlib does not write.
-
-    Warns:
-        UserWarning: of what a page cannot show well: a figure wider than 7.4 in, text smaller than 8 pt, words that the
-            edge cuts off, one of Matplotlib's own colours, and a line with the name of a solver and another colour than
-            that of `STYLES`.
     """
     require_kind("figure", figure, Figure, Axes)
     drawn = figure_of(figure) if isinstance(figure, Axes) else figure
@@ -212,64 +199,6 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
     formats = drawn.canvas.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .{', .'.join(sorted(formats))}")
-    dpi = drawn.dpi
-    drawn.set_dpi(FINE)
-    try:
-        with replacing(path) as partial:
-            drawn.savefig(partial, dpi=FINE, metadata={"Software": None} if path.suffix == ".png" else None)
-            unreadable = list(_unreadable(drawn))
-    finally:
-        drawn.set_dpi(dpi)
-    if unreadable:
-        more = f", and {len(unreadable) - 1} more" if len(unreadable) > 1 else ""
-        warn_of(f"{path.name} is not one that a page can show well: {unreadable[0]}{more}")
+    with replacing(path) as partial:
+        drawn.savefig(partial, dpi=FINE, metadata={"Software": None} if path.suffix == ".png" else None)
     return path
-
-
-def _unreadable(figure: Figure) -> Iterator[str]:
-    """The parts of a figure that a page cannot show well, as sentences, see `save`. The figure is drawn already."""
-    if (width := figure.get_figwidth()) > WIDEST + 1e-6:
-        yield f"the figure is {width:.3g} in wide; at most {WIDEST:g} in are shown in full size"
-    for text in figure.findobj(Text):
-        assert isinstance(text, Text)
-        if text.get_visible() and text.get_text().strip() and (size := float(text.get_fontsize())) < SMALLEST - 1e-6:
-            yield f"text {text.get_text()!r} has {size:g} pt; at least {SMALLEST:g} pt can be read"
-    for text in _words(figure):
-        box = text.get_window_extent()
-        if text.get_text().strip() and figure.bbox.padded(EDGE).count_contains(box.corners()) != 4:
-            yield f"text {text.get_text()!r} is cut off by the edge of the figure"
-    for artist in figure.findobj(lambda one: isinstance(one, Line2D | Patch | Collection)):
-        yield from _foreign_colours(artist)
-
-
-def _words(figure: Figure) -> list[Text]:
-    """Titles, labels of axes, legends and texts that are drawn, but for those of ticks."""
-    legends = [*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_visible())]
-    found = [*figure.texts, *(text for legend in legends if legend is not None for text in legend.get_texts())]
-    for ax in figure.axes:
-        if ax.get_visible():
-            found.append(ax.title)
-            if ax.name != "3d":  # a place in space is none in the figure
-                found += [text for text in ax.texts if not text.get_clip_on()]
-                found += [axis.label for axis in (ax.xaxis, ax.yaxis) if ax.axison]
-    return [text for text in found if text.get_visible()]
-
-
-def _foreign_colours(artist: Artist) -> Iterator[str]:
-    """Artists with one of Matplotlib's own colours, or with the name of a solver and not its colour, as sentences."""
-    label, of = str(artist.get_label()), {str(style["label"]): style["color"] for style in STYLES.values()}
-    solver = next((name for name in of if label == name or label.startswith((f"{name},", f"{name}:"))), None)
-    for colour in _colours(artist):
-        if colour in TABLEAU_COLORS.values():
-            yield f"{label!r} has the colour {colour} of Matplotlib; take those of plotting.PALETTE"
-        if solver is not None and colour != of[solver]:
-            yield f"{label!r} has the colour {colour}; that of its solver is {of[solver]}"
-
-
-def _colours(artist: Artist) -> set[str]:
-    """The colours of what is drawn, but for what is white or clear, and for values on a scale of colours."""
-    names = ("color",) if isinstance(artist, Line2D) else ("facecolor", "edgecolor")
-    if isinstance(artist, Collection) and artist.get_array() is not None:
-        return set()
-    found = np.concatenate([to_rgba_array(getattr(artist, f"get_{name}")()) for name in names])
-    return {to_hex(colour) for colour in found if colour[3] > 0} - {"#ffffff"}

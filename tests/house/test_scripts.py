@@ -13,11 +13,13 @@ import mujoco
 import pytest
 
 import mjrock as mr
+from mjrock import plotting
 from mjrock.plotting import animation, style
 from scripts.paper import compare_wall
 from scripts.shared import cli
 from scripts.studies import in_the_browser, town
 from scripts.studies.thumbnails import THUMBNAILS
+from tests import page_figures
 
 SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*/*.py") if path.parent.name != "shared"}
 """Every script by its name."""
@@ -215,7 +217,7 @@ def unreadable(text):
             found |= {wide.lineno} if isinstance(wide, ast.Constant) and wide.value > style.WIDEST else set()
         if isinstance(node, ast.keyword) and node.arg in ("fontsize", "title_fontsize", "labelsize"):
             size = node.value
-            found |= {size.lineno} if isinstance(size, ast.Constant) and size.value < style.SMALLEST else set()
+            found |= {size.lineno} if isinstance(size, ast.Constant) and size.value < page_figures.SMALLEST else set()
         if isinstance(node, ast.JoinedStr) and isinstance(node.values[0], ast.Constant) and node.values[0].value == "C":
             found.add(node.lineno)
         if isinstance(node, ast.Constant) and re.fullmatch(r"C\d\W*\w?\W*|tab:\w+", str(node.value)):
@@ -226,7 +228,7 @@ def unreadable(text):
 
 
 def test_scripts_draw_what_a_page_shows_well():
-    """`plotting.save` refuses the rest as it sees it, in the quick runs below."""
+    """The quick runs below find the rest, as figures are saved."""
     paths = sorted(Path(__file__).parents[2].glob("scripts/**/*.py"))
     assert {path.stem: lines for path in paths if (lines := unreadable(path.read_text()))} == {}
 
@@ -347,7 +349,8 @@ def require_pictures_of_mujoco():
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in WRITES]
 )
-def test_quick(name, tmp_path, capsys):
+def test_quick(name, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(plotting, "save", page_figures.save)
     if name in ("opened_in_vtk", "drawn_in_space"):
         pytest.importorskip("pyvista", reason="the extra docs is not installed")
     if name in ("in_the_browser", "in_the_notebook") and in_the_browser.BROWSER is None:

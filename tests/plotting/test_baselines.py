@@ -22,6 +22,7 @@ import mjrock as mr
 from mjrock import plotting
 from scripts.shared import accuracy, law_pictures
 from scripts.shared.pairs import pairs
+from tests import page_figures
 
 FOLDER = Path(__file__).parent / "baselines"
 DPI = 45
@@ -216,7 +217,7 @@ def test_a_picture_is_the_one_that_was_looked_at(name):
 
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_is_readable(name, tmp_path):
-    assert plotting.save(PICTURES[name](), tmp_path / "a.rgba").exists()  # pixels as they are: nothing is packed
+    assert page_figures.save(PICTURES[name](), tmp_path / "a.rgba").exists()  # pixels as they are: nothing is packed
 
 
 @pytest.mark.parametrize("missing", ["elevation", "draw_outlines", "surroundings"])
