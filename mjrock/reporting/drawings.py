@@ -17,7 +17,7 @@ from ..problem.wall.wedge import Corner
 from ..quantities import Array
 from ..study.loading.load_check import Borne
 from .content import content_of
-from .pictures import FAILS, SMALL, TALL, WIDE
+from .pictures import FAILS, LABEL, SMALL, TALL, UNDER, WIDE
 from .texts import FOUND, Words
 from .verdicts import Subject
 
@@ -76,8 +76,7 @@ def _arrow(ax: Axes, end: tuple[float, float], way: tuple[float, float], length:
 
 
 def _note(ax: Axes, text: str, at: tuple[float, float], beside: tuple[float, float] = (6, 0)) -> None:
-    note = ax.annotate(text, at, beside, textcoords="offset points", fontsize=SMALL, va="center", zorder=9)
-    note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
+    ax.annotate(text, at, beside, va="center", **LABEL).set_bbox(UNDER)
 
 
 def _corner(axes: Sequence[Axes], corner: Corner, words: Words) -> None:

@@ -31,7 +31,7 @@ from ..study.loading.demand import Demand
 from ..study.loading.limit_analysis import LimitCurve
 from ..study.loading.mechanism_curve import case_of
 from .pictures import Run, by_variant
-from .texts import BY_HAND, DASH, FOUND, GIVEN, LENGTH_DECIMALS, Words, effect_name, texts
+from .texts import BY_HAND, DASH, FOUND, GIVEN, LENGTH_DECIMALS, Words, effect_name, grouped, texts
 from .verdicts import REVERSED, Mechanism, Subject, effect_label
 
 LISTED = 60
@@ -149,13 +149,7 @@ def subjects(
 
 def merged(sections: Iterable[Section], own: str = "") -> list[Section]:
     """Sections with the same inputs as one, with all of their names, of which `own` is left out beside others."""
-    found: list[tuple[dict[str, None], list[Input]]] = []
-    for heading, rows in sections:
-        names = next((names for names, others in found if others == rows), None)
-        if names is None:
-            found.append(({heading: None}, rows))
-        else:
-            names[heading] = None
+    found = grouped(sections)
     return [Section("; ".join([name for name in names if name != own] or names), rows) for names, rows in found]
 
 
@@ -446,22 +440,10 @@ def of_demands(mechanisms: Sequence[Mechanism], words: Words) -> list[Section]:
     """The seismic action of each kinematic check, each once, with the limit states that it is of."""
     called: list[tuple[str, Demand]] = []
     for name, check, *_ in mechanisms:
-        for demand, states in _by_demand(check.demands if check else {}):
+        for states, demand in grouped(check.demands.items() if check else ()):
             alone = check is not None and len(states) < len(check.demands)
             called.append((f"{name}, {', '.join(states)}" if alone else name, demand))
     return merged(Section(name, of_demand(demand, words)) for name, demand in called)
-
-
-def _by_demand(demands: Mapping[str, Demand]) -> list[tuple[Demand, list[str]]]:
-    """The demands of a check, each once, with the limit states that it is of."""
-    found: list[tuple[Demand, list[str]]] = []
-    for state, demand in demands.items():
-        states = next((states for other, states in found if other is demand), None)
-        if states is None:
-            found.append((demand, [state]))
-        else:
-            states.append(state)
-    return found
 
 
 def of_demand(demand: Demand, words: Words) -> list[Input]:

@@ -9,7 +9,7 @@ import textwrap
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from types import ModuleType
 
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -177,7 +177,7 @@ def _in_style(text: str) -> str:
     return "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in short)
 
 
-def pdf_writer() -> Any:
+def pdf_writer() -> ModuleType:
     """WeasyPrint.
 
     Raises:
@@ -190,7 +190,7 @@ def pdf_writer() -> Any:
             f"{error}; WeasyPrint makes a PDF: pip install weasyprint. Or give a path that ends in .html, and print "
             "the page from a browser"
         ) from error
-    return weasyprint
+    return weasyprint  # type: ignore[no-any-return]
 
 
 def write_pdf(path: Path, text: str) -> None:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
@@ -35,7 +35,7 @@ from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .parts import Part, drawings_of, is_of, parts_of
 from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strips
-from .texts import DASH, FOUND, MINUS, Words
+from .texts import DASH, FOUND, MINUS, Words, grouped
 from .verdicts import REVERSED, Check, Mechanism, Subject, required_checks
 
 HEADS = ("project", "client", "author", "date", "place")
@@ -365,12 +365,7 @@ def judgement_section(
 def by_hand(parts: Sequence[Part], words: Words) -> list[Markup]:
     """Checks by hand of walls that overturn, a column each."""
     walls = [one for part in parts for one in part.subjects if verdicts.kind_of(one.subject) == "wall"]
-    found: list[tuple[list[str], list[tuple[str, ...]]]] = []
-    for names, wall in walls:
-        rows = content_of(wall).by_hand(words)
-        same = next((called for called, other in found if other == rows), None)
-        found += [(list(names), rows)] * (same is None)
-        (same or []).extend(names)
+    found = grouped((name, content_of(wall).by_hand(words)) for names, wall in walls for name in names)
     made = []
     for start in range(0, len(found), verdicts.ABREAST):
         some = found[start : start + verdicts.ABREAST]
@@ -396,10 +391,8 @@ def section(name: str, pieces: object, words: Words) -> list[Markup]:
         elif isinstance(piece, str):
             parts.append(element("p", piece))
         elif isinstance(piece, Design):
-            parts += [
-                picture(design_drawn(piece, words), words("design_caption"), words),
-                *verdicts.design_results(piece, words),
-            ]
+            parts.append(picture(design_drawn(piece, words), words("design_caption"), words))
+            parts += verdicts.design_results(piece, words)
         elif isinstance(piece, Borne):
             parts += of_borne(name, piece, words)
         elif isinstance(piece, Fragility):
@@ -428,21 +421,23 @@ def tables(text: str) -> list[Markup]:
     return parts
 
 
-def of_impacts(case: Subject, e: object, contacts: object, runs: Sequence[Run], words: Words) -> list[inputs.Section]:
+def of_impacts(
+    case: Subject,
+    e: Restitution | Mapping[str, Restitution] | None,
+    contacts: Contacts | Mapping[str, Contacts] | None,
+    runs: Sequence[Run],
+    words: Words,
+) -> list[inputs.Section]:
     """Restitution and contacts, of all responses or of each variant; TypeError for anything else."""
     cases = {run.variant: run.response.case for run in runs}
-    given = {"e": (e, Restitution), "contacts": (contacts, Contacts)}
-    found: dict[str, dict[str, Any]] = {}
-    for name, (one, kind) in given.items():
-        found[name] = dict(one) if isinstance(one, Mapping) else {"": one}
-        for variant, own in found[name].items():
+    e_of = dict(e) if isinstance(e, Mapping) else {"": e}
+    contacts_of = dict(contacts) if isinstance(contacts, Mapping) else {"": contacts}
+    for name, kind, given in (("e", Restitution, e_of), ("contacts", Contacts, contacts_of)):
+        for variant, own in given.items():
             require_kind(f"{name}[{variant!r}]" if variant else name, own, kind, type(None))
             cases.get(variant, case_of(case)).require_own_joints(own)
-    sections = []
-    for variant in dict.fromkeys((*found["e"], *found["contacts"])):
-        rows = inputs.of_contacts(found["e"].get(variant), found["contacts"].get(variant), words)
-        sections.append(inputs.Section(variant, rows))
-    return sections
+    variants = dict.fromkeys((*e_of, *contacts_of))
+    return [inputs.Section(one, inputs.of_contacts(e_of.get(one), contacts_of.get(one), words)) for one in variants]
 
 
 class InputTable(NamedTuple):
@@ -540,8 +535,6 @@ def runs_of(whole: Content, runs: Sequence[Run], called: Mapping[str, str], word
         own = [run.variant] * variants + [run.label, *others, MINUS if run.turned else "+"]
         rows.append([*own, *whole.result(run.response, words), *(content.tied(run.response, words) if ties else [])])
     heads = [words(f"run_{key}") for key in columns]
-    left = {
-        columns.index(name) for name in ("variant", "run", *beside, "polarity", "outcome", "fallen") if name in columns
-    }
-    right = sorted(set(range(len(columns))) - left)
+    left = ("variant", "run", *beside, "polarity", "outcome", "fallen")
+    right = [i for i, name in enumerate(columns) if name not in left]
     return [table(heads, rows, right=right, kind="runs")]

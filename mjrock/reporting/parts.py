@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from ..problem.masonry.case import AnyCase
+from ..problem.wall.bending import HorizontalBending
 from ..study.loading.mechanism_curve import case_of
 from . import verdicts
 from .content import Content, content_of
@@ -100,8 +101,7 @@ def parts_of(own: str, case: Subject, mechanisms: Sequence[Mechanism], runs: Seq
 def body_of(subject: Subject) -> object:
     """A wall, corner or masonry without its effects."""
     if isinstance(subject, OTHERS):
-        none: dict[str, Any] = {one.name: () for one in fields(subject) if one.name == "effects"}
-        return replace(subject, **none)
+        return subject if isinstance(subject, HorizontalBending) else replace(subject, effects=())
     return case_of(subject).built
 
 

@@ -264,16 +264,12 @@ def _write_beside(ax: Axes, named: Sequence[tuple[str, float, float]]) -> None:
             note = ax.annotate(name, (d, a), beside, ha=align, **LABEL)
             box = note.get_window_extent()
             hit = sum(box.overlaps(other) for other in [*taken[:i], *taken[i + 1 :]])
-            tried.append(
-                (hit + 2 * (not ax.bbox.contains(box.x1, box.y1) or not ax.bbox.contains(box.x0, box.y0)), note, box)
-            )
-            note.set_visible(False)
-        _, note, box = min(tried, key=lambda one: one[0])
-        note.set_visible(True)
+            inside = ax.bbox.contains(box.x1, box.y1) and ax.bbox.contains(box.x0, box.y0)
+            tried.append((hit + 2 * (not inside), beside, align, box))
+            note.remove()
+        _, beside, align, box = min(tried, key=lambda one: one[0])
+        ax.annotate(name, (d, a), beside, ha=align, **LABEL)
         taken.append(box)
-        for _, other, _ in tried:
-            if other is not note:
-                other.remove()
 
 
 def borne_drawn(result: Borne, words: Words) -> Figure | None:
@@ -350,11 +346,8 @@ def _strip(
     for run in (run for run in runs if run.label in rows):
         order = variants.index(run.variant)
         colour = OWN[order % len(OWN)]["color"]
-        y = (
-            rows.index(run.label)
-            + 0.22 * (order - 0.5 * (len(variants) - 1))
-            + (0.0 if alone else 0.09 * (-1) ** (not run.turned))
-        )
+        y = rows.index(run.label) + 0.22 * (order - 0.5 * (len(variants) - 1))
+        y += 0.0 if alone else 0.09 if run.turned else -0.09
         x = 1e3 * (run.largest if math.isfinite(run.largest) else 1.06 * top)
         look = {"marker": "o" if math.isfinite(run.largest) else "X", "color": colour}
         ax.plot(x, y, linestyle="", markersize=5.5, markerfacecolor="white" if run.turned else colour, **look)
@@ -388,14 +381,12 @@ def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, 
         limit: displacement from which nothing comes back, or None [m].
         words: of the report.
     """
-    worst = sorted(
-        dict.fromkeys(run.record for run in runs), key=lambda n: -max(r.largest for r in runs if r.record == n)
-    )
-    records = sorted(worst[:PANELS])
-    return [
-        _histories(runs, moved, limit, records[i : i + IN_A_PICTURE], words)
-        for i in range(0, len(records), IN_A_PICTURE)
-    ]
+    largest = dict[int, float]()
+    for run in runs:
+        largest[run.record] = max(largest.get(run.record, 0.0), run.largest)
+    records = sorted(sorted(largest, key=lambda record: -largest[record])[:PANELS])
+    starts = range(0, len(records), IN_A_PICTURE)
+    return [_histories(runs, moved, limit, records[i : i + IN_A_PICTURE], words) for i in starts]
 
 
 def _histories(
@@ -404,9 +395,8 @@ def _histories(
     """The panels of some records, in the scale of all runs."""
     lines = list(dict.fromkeys(run.line for run in runs))
     few = len(lines) <= NAMED
-    figure, axes = figure_of_panels(
-        len(records), min(2, len(records)), (WIDE / min(2, len(records)), 1.32 if len(records) > 4 else 1.8)
-    )
+    columns = min(2, len(records))
+    figure, axes = figure_of_panels(len(records), columns, (WIDE / columns, 1.32 if len(records) > 4 else 1.8))
     finite = [float(np.abs(path).max()) for run, path in zip(runs, moved, strict=True) if math.isfinite(run.largest)]
     top = 1.1e3 * max([*finite, 1e-6]) if finite else 1.1e3 * (limit or 1.0)
     if limit is not None and 1e3 * limit < FAR * top:

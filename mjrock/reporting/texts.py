@@ -6,14 +6,15 @@ import math
 import re
 import string
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ..quantities import NAMED, Message, ratio_text, require_kind, require_one_of
 
+Value = TypeVar("Value")
 FILE = Path(__file__).with_name("texts.toml")
 """The texts of all languages. A further language is a further line of each."""
 MESSAGES = FILE.with_name("messages.toml")
@@ -188,6 +189,18 @@ class Filling(string.Formatter):
         """A value as it stands in the text."""
         text = self.words.message(value) if isinstance(value, str) else super().format_field(value, format_spec)
         return self.words.marked(text) if isinstance(value, int | float) else str(text)
+
+
+def grouped(named: Iterable[tuple[str, Value]]) -> list[tuple[list[str], Value]]:
+    """Equal values once, each with all of its names, in the order of the first."""
+    found: list[tuple[list[str], Value]] = []
+    for name, value in named:
+        names = next((names for names, other in found if other == value), None)
+        if names is None:
+            found.append(([name], value))
+        elif name not in names:
+            names.append(name)
+    return found
 
 
 def effect_name(name: str, words: Words) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -276,17 +276,10 @@ def design_rows(found: Design, words: Words) -> list[list[str]]:
 def design_results(found: Design, words: Words) -> list[Markup]:
     """Each value that was tried with what governs it, and the result in a sentence."""
     heads, *cells = design_rows(found, words)
-    rows: list[list[Any]] = []
+    rows = list[list[str]]()
     for trial, (label, ratio, held, *rest) in zip(found.trials, cells, strict=True):
-        kind = "holds" if trial.holds else "fails"
-        rows.append(
-            [
-                element("td", label, kind="short"),
-                ratio,
-                held if trial.governs is None else element("td", held, kind=kind),
-                *rest,
-            ]
-        )
+        verdict = held if trial.governs is None else element("td", held, kind="holds" if trial.holds else "fails")
+        rows.append([element("td", label, kind="short"), ratio, verdict, *rest])
     made = [table(heads, rows, right=(1,)), element("p", design_sentence(found, words))]
     if found.chosen is None:
         return made
