@@ -21,7 +21,7 @@ from ..problem.masonry.blocks.joints import Joint
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.wall.rest_geometry import Solid, in_space
 from ..quantities import Array, Integers, require_path
-from ..result.bodies import bodies_of, frames_at
+from ..result.bodies import bodies_of, frames_at, without_jumps
 from ..result.response import Response
 from ..result.ties import link_ends
 from .bodies import ends_of
@@ -150,17 +150,10 @@ class Page:
             if number == len(shapes):
                 edges = self._rounded(creases_of(solid.parts))
                 shapes.append({"corners": corners, "faces": body.faces, "edges": edges})
-            kind_of = "ground" if i in self.grounds else "supports" if body.fixed else "blocks"
-            bodies.append(
-                {
-                    "name": body.name,
-                    "mass": self._mass(solid),
-                    "shape": number,
-                    "rest": self._rounded(body.rest),
-                    "colour": None if body.fixed else body.colour.tolist(),
-                    "kind": kind_of,
-                }
-            )
+            look = {"colour": None if body.fixed else body.colour.tolist()}
+            look["kind"] = "ground" if i in self.grounds else "supports" if body.fixed else "blocks"
+            named = {"name": body.name, "mass": self._mass(solid), "shape": number}
+            bodies.append({**named, "rest": self._rounded(body.rest), **look})
         return {"bodies": bodies, "shapes": shapes}
 
     def _mass(self, solid: Solid) -> float | None:
@@ -193,15 +186,9 @@ class Page:
     def _poses(self, moves: list[int]) -> Json:
         """Displacements and quaternions of the bodies that move, sample by sample."""
         poses = np.stack([self.bodies[i].pose for i in moves])
-        turns = poses[..., 3:]
-        along = (turns[:, 1:] * turns[:, :-1]).sum(axis=2)
-        signs = np.cumprod(np.where(along < 0, -1.0, 1.0), axis=1)
-        turns[:, 1:] *= signs[..., None]
         largest = max(self.extent, float(np.abs(poses[..., :3]).max()))
-        return {
-            "places": packed(_by_row(poses[..., :3]), FINE * largest),
-            "turns": packed(_by_row(turns), FINE),
-        }
+        places = packed(_by_row(poses[..., :3]), FINE * largest)
+        return {"places": places, "turns": packed(_by_row(without_jumps(poses[..., 3:])), FINE)}
 
     def _ties(self) -> Iterator[Json]:
         """The two ends of each link, and when it breaks."""

@@ -197,6 +197,13 @@ def _in_space(pose: Array) -> Array:
     return np.column_stack([pose[:, 0], zero, pose[:, 1], np.cos(turn), zero, np.sin(turn), zero])
 
 
+def without_jumps(quaternions: Array) -> Array:
+    """Unit quaternions over time, shape (..., n, 4), each with the sign that is nearer to the one before."""
+    along = (quaternions[..., 1:, :] * quaternions[..., :-1, :]).sum(axis=-1, keepdims=True)
+    signs = np.cumprod(np.where(along < 0, -1.0, 1.0), axis=-2)
+    return np.concatenate([quaternions[..., :1, :], quaternions[..., 1:, :] * signs], axis=-2)
+
+
 def openings(masonry: Masonry, bodies: list[Body]) -> Array:
     """Largest gap of the contact lines of each joint at the times of the bodies [m], shape (n, joints), 0 where all
     press."""

@@ -25,7 +25,7 @@ from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.files.compas import guid_of, held, model_guid
 from ..quantities import Array, Integers, require_path
-from .bodies import Body
+from .bodies import Body, without_jumps
 from .forces import Forces
 
 Json = dict[str, object]
@@ -69,9 +69,7 @@ def upright(vectors: Array) -> Array:
 
 def turns(quaternions: Array) -> Array:
     """Unit quaternions with w first in the axes and the order of glTF, w last, without jumps of sign, shape (n, 4)."""
-    along = (quaternions[1:] * quaternions[:-1]).sum(axis=1)
-    signs = np.cumprod(np.append(1.0, np.where(along < 0, -1.0, 1.0)))
-    smooth = quaternions * signs[:, None]
+    smooth = without_jumps(quaternions)
     return np.column_stack([upright(smooth[:, 1:]), smooth[:, 0]])
 
 
@@ -272,28 +270,18 @@ def _edge(case: MasonryCase, bodies: list[Body], forces: Forces, sample: int, nu
     slides = presses and np.linalg.norm(slid) >= SLIPS * case.masonry.joint_friction[number] * pressed
     frame = {"point": corners.mean(axis=0).tolist(), "xaxis": along[0].tolist(), "yaxis": along[1].tolist()}
     where = held("compas.geometry/Frame", frame, guid_of("frame", joint.name))
-    points = [
-        held("compas.geometry/Point", at, guid_of("point", (joint.name, i))) for i, at in enumerate(corners.tolist())
-    ]
-    at_points = [
-        {"c_np": max(0.0, n), "c_nn": max(0.0, -n), "c_u": u, "c_v": v}
-        for n, u, v in np.column_stack([*parts.values()]).tolist()
-    ]
-    contact = {
-        "points": points,
-        "frame": where,
-        "size": joint.area,
-        "mesh": None,
-        "name": joint.name,
-        "forces": at_points,
-    }
+    guids = [guid_of("point", (joint.name, i)) for i in range(len(corners))]
+    points = [held("compas.geometry/Point", *point) for point in zip(corners.tolist(), guids, strict=True)]
+    rows = np.column_stack([*parts.values()]).tolist()
+    at_points = [{"c_np": max(0.0, n), "c_nn": max(0.0, -n), "c_u": u, "c_v": v} for n, u, v in rows]
+    contact = {"points": points, "frame": where, "size": joint.area, "mesh": None, "name": joint.name}
+    contact["forces"] = at_points
+    polygon = held("compas.geometry/Polygon", {"points": corners.tolist()}, guid_of("polygon", joint.name))
     edge = {
         "face_contact": True,
         "edge_contact": False,
         "point_contact": False,
-        "contact_polygon": held(
-            "compas.geometry/Polygon", {"points": corners.tolist()}, guid_of("polygon", joint.name)
-        ),
+        "contact_polygon": polygon,
         "contact_points": corners.tolist(),
         "contact_frame": where,
         "contact_data": held("compas_dem.interactions/FrictionContact", contact, guid_of("contact", joint.name)),

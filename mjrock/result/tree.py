@@ -82,7 +82,7 @@ def unit_and_text(kind: type, name: str) -> tuple[str, str]:
     lines = (kind.__doc__ or "").split("\n")
     for i, line in enumerate(lines):
         if (head := ARGUMENT.match(line)) and name in (names := head["names"].split(", ")):
-            below = takewhile(partial(_is_below, _indent(line)), lines[i + 1 :])
+            below = takewhile(partial(_is_below, line), lines[i + 1 :])
             text = " ".join([head["text"], *filter(None, map(str.strip, below))])
             unit = next(iter([*BRACKETS.findall(text), *BRACKETS.findall(" ".join(lines[:3]))]), "")
             units = unit.split(", ")
@@ -90,12 +90,9 @@ def unit_and_text(kind: type, name: str) -> tuple[str, str]:
     return "", ""
 
 
-def _indent(line: str) -> int:
-    return len(line) - len(line.lstrip())
-
-
-def _is_below(indent: int, line: str) -> bool:
-    return not line.strip() or _indent(line) > indent
+def _is_below(head: str, line: str) -> bool:
+    """Whether a line is empty, or is indented further than another one."""
+    return not line.strip() or len(line) - len(line.lstrip()) > len(head) - len(head.lstrip())
 
 
 class Writer:
@@ -172,7 +169,8 @@ class Writer:
         held = value if plain is None else plain()
         parts = {name: self.tree(getattr(held, name), f"{path}.{name}", kind, name) for name in fields_of(kind)}
         if not is_named_tuple(kind):
-            cached = {name for base in kind.__mro__ for name, one in vars(base).items() if _is_cached(one)}
+            members = (pair for base in kind.__mro__ for pair in vars(base).items())
+            cached = {name for name, one in members if isinstance(one, cached_property)}
             for name in sorted(vars(value).keys() - parts.keys() - cached):
                 self._lose(getattr(value, name), f"{path}.{name}")
         formula = {"formula": kind.formula} if getattr(kind, "formula", "") else {}  # of a law of the user
@@ -182,10 +180,6 @@ class Writer:
         what = f"{type(value).__name__} {getattr(value, '__qualname__', '') or spelt(value)[:60]}"
         self.lost[path] = what
         return {"class": name_of(NotKept), "what": what}
-
-
-def _is_cached(one: object) -> bool:
-    return isinstance(one, cached_property)
 
 
 class Reader:
