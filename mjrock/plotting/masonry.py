@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -73,22 +74,18 @@ def blocks(
         ValueError: for cracks of dry joints, a pose of another shape, a value outside its range, or axes of two
             dimensions for blocks in space.
     """
-    run, time, others = masonry if isinstance(masonry, Response) else None, np.zeros(1), ax.get_children()
-    if run is not None and run.joints is None:
+    magnified, others = require_within("magnified", magnified, 0.0, 1e6), ax.get_children()
+    if isinstance(masonry, Response) and masonry.joints is None:
         raise ValueError("blocks takes masonry or a response of it, and this response is one of a wall")
-    if run is None or pose is not None:
-        if at is not None or forces is not None:
-            raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
-        case = replace(masonry.of_masonry, supports=()) if isinstance(masonry, Response) else MasonryCase(masonry, 1.0)
-    else:
-        sample, case = sample_at(run.t, at), run.of_masonry
-        pose, time = run.pose[sample], run.t[sample : sample + 1]
+    if isinstance(masonry, Response) and pose is None:
         if forces is not None:
-            require_shown("forces", forces, run)
-    magnified, freedom = require_within("magnified", magnified, 0.0, 1e6), SPACE if case.in_space else PLANE
-    rest = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
-    placed = (rest if pose is None else _of_free(case.masonry, pose))[None]
-    moving = Moving(case, time, placed, magnified)
+            require_shown("forces", forces, masonry)
+        moving = replace(masonry.moving.at([sample_at(masonry.t, at)]), magnify=magnified)
+    elif at is not None or forces is not None:
+        raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
+    else:
+        moving = _at_pose(masonry, pose, magnified)
+    case = cast(MasonryCase, moving.case)
     if case.in_space:
         bodies = Solids(moving, camera, required_limits(limits, "xyz"))
         draw_solids(ax, bodies, ax.bbox)(0)
@@ -96,13 +93,21 @@ def blocks(
     else:
         flat = Bodies.of_moving(moving, limits)
         draw_outlines(ax, flat)(0)
-        if joints and pose is None:
+        if joints and pose is None and not isinstance(masonry, Response):
             _joints(ax, case.masonry.plane_joints)
         _view(ax, flat)
-    if run is not None and forces is not None:
-        forces_on(ax, run, moving, forces)(0)
+    if isinstance(masonry, Response) and forces is not None:
+        forces_on(ax, masonry, moving, forces)(0)
     make_static(ax, others)
     return ax
+
+
+def _at_pose(masonry: Masonry | Response, pose: ArrayLike | None, magnified: float) -> Moving:
+    """Masonry, or that of a response with its supports as they are drawn, at a pose; at rest without one."""
+    case = replace(masonry.of_masonry, supports=()) if isinstance(masonry, Response) else MasonryCase(masonry, 1.0)
+    freedom = SPACE if case.in_space else PLANE
+    rest = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
+    return Moving(case, np.zeros(1), (rest if pose is None else _of_free(case.masonry, pose))[None], magnified)
 
 
 def _of_free(masonry: Masonry, pose: ArrayLike) -> Array:

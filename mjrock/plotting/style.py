@@ -13,6 +13,7 @@ from typing import Any
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from ..contacts.files import replacing
 from ..quantities import require_kind, require_path
@@ -160,7 +161,7 @@ def write_title(figure: Figure, text: str, size: float = 11.0) -> float:
     return 1.3 * size * len(title.splitlines()) / 72
 
 
-def figure_of_panels(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, Any]:
+def figure_of_panels(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, NDArray[Any]]:
     """A figure with `count` panels of a size [inch] in rows of some columns, and its Axes, shape (rows, columns).
 
     Panels are narrower where the figure would be wider than `WIDEST`.
