@@ -103,6 +103,7 @@ def drawn(found: Sequence[dict[str, Path]]) -> Figure:
     draw_paths(left, found)
     draw_pairs(right, [{run: path.peak for run, path in one.items()} for one in found])
     below_figure(figure, left)
+    right.legend(frameon=False, fontsize=SMALL, loc="upper left", bbox_to_anchor=(0.0, 0.8))
     return figure
 
 
@@ -118,6 +119,7 @@ def draw_paths(ax: Axes, found: Sequence[dict[str, Path]]) -> None:
         theta = 1e3 * found[shown][run].rotation[:, block]
         ax.plot(SAMPLE * np.arange(len(theta)), theta, linewidth=1.1, label=run, **look)
     if math.isfinite(late[shown]):
+        ax.set_ylim(top=1.1 * ax.get_ylim()[1])
         ax.axvline(late[shown], color="0.5", linewidth=0.8, linestyle=":")
         ax.text(late[shown], ax.get_ylim()[1], " they part", fontsize=SMALL, va="top")
     ax.set(xlabel="$t$ [s]", ylabel="rotation [mrad]")
@@ -131,9 +133,9 @@ def draw_pairs(ax: Axes, peaks: Sequence[dict[str, float]]) -> None:
     low = 0.7 * min(value for one in peaks for value in one.values())
     for other, marker in ((first, "o"), (third, "x")):
         x, y = ([min(one[run], 1.4 * edge) for one in peaks] for run in (second, other))
-        ax.plot(x, y, marker, color=RUNS[other]["color"], markerfacecolor="none")
+        ax.plot(x, y, marker, color=RUNS[other]["color"], markerfacecolor="none", label=other)
     draw_square(ax, low, edge)
-    ax.text(0.98 * edge, low, "overturned ", rotation=90, fontsize=SMALL, ha="right", va="bottom", color="0.3")
+    ax.text(1.4 * edge, 1.1 * low, "overturned", rotation=90, fontsize=SMALL, ha="center", va="bottom", color="0.3")
     ax.set(xlabel="peak rotation, explicit [rad]", ylabel="peak rotation of the other run [rad]")
     ax.set_title("peaks of all records", fontsize=9)
 

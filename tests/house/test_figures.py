@@ -148,6 +148,15 @@ def test_no_word_of_a_picture_is_cut_off_by_its_edge():
     assert cut == []
 
 
+def test_no_picture_is_half_empty():
+    """Rows and columns in which nothing is darker than the ground of a view in space."""
+    empty = {}
+    for name, grey in pictures():
+        shares = [1 - (grey < 225).any(axis=axis).mean() for axis in (0, 1)]
+        empty |= {name: shares} if max(shares) > 0.45 else {}
+    assert empty == {}
+
+
 def test_the_record_names_no_place_of_a_machine():
     text = (FOLDER / figure_record.NAME).read_text(encoding="utf-8")
     assert not re.search(r"/(?:home|tmp|root|work|Users)\b", text)
