@@ -8,6 +8,8 @@ Motions are held by rows `grip` of rates that are zero. They may depend on one a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy  # which imports its parts when they are named
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array
@@ -52,6 +54,32 @@ def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     matrix = csr_array((values[there], columns[there], begins), shape=(rows, unknowns))
     matrix.sum_duplicates()
     return matrix
+
+
+def of_pairs(values: Array, bodies: Integers, unknowns: int) -> csr_array:
+    """The sum of matrices of pairs of bodies, each for the unknowns of the first and then of the second one.
+
+    Args:
+        values: shape (pairs, unknowns of two bodies, unknowns of two bodies).
+        bodies: their numbers, negative for one that is fixed, shape (pairs, 2).
+        unknowns: of all bodies.
+
+    Returns:
+        The matrix, shape (unknowns, unknowns).
+    """
+    nv = values.shape[1] // 2
+    unknown = np.where(bodies[:, :, None] < 0, -1, nv * bodies[:, :, None] + np.arange(nv)).reshape(-1, 2 * nv)
+    unknown = unknown.astype(np.int32)
+    rows, columns = np.broadcast_arrays(unknown[:, :, None], unknown[:, None])
+    there = (rows >= 0) & (columns >= 0) & (values != 0)
+    return csr_array((values[there], (rows[there], columns[there])), shape=(unknowns, unknowns))
+
+
+def summed(matrices: Sequence[csr_array]) -> csr_array:
+    """The sum of some matrices, added at once."""
+    rows, columns = (np.concatenate([part.tocoo().coords[i] for part in matrices]) for i in range(2))
+    values = np.concatenate([part.data for part in matrices])
+    return csr_array((values, (rows, columns)), shape=matrices[0].shape)
 
 
 def rates_of(pair: Integers, arms: tuple[Array, Array], way: Array, bodies: int) -> csr_array:

@@ -45,7 +45,7 @@ from ..geometry.kinematics import (
 )
 from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
-from ..linear import entries, highest_square, sprung
+from ..linear import entries, highest_square, of_pairs, sprung, summed
 from ..problem.masonry.laws.joint_law import LawRows, law_rows, resting, stored, tangent_stiffness
 from ..problem.masonry.laws.own_law import OwnSprings
 from ..quantities import GRAVITY, Array, Flags, Integers, frozen
@@ -54,6 +54,8 @@ from .masses import coupling
 NO_PRODUCTS: Array = np.empty((0, 3))
 """Of bodies of the plane, and of bodies of space whose axes are principal ones."""
 NO_PRODUCTS.setflags(write=False)
+BENT_AT_ONCE = 32768
+"""Springs whose geometric stiffness is made at once, which takes 150 MB in space [-]."""
 
 
 class Structure(NamedTuple):
@@ -316,17 +318,19 @@ class Potential:
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
-        frames, none, nv = frames_of(pose, places.freedom), np.zeros_like(masses), places.freedom.nv
+        frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
         acting = self.pushes(pose)
-        bent = np.zeros((len(acting), 2 * nv, 2 * nv))
         drag = np.zeros((len(places.body), places.freedom.translations - 1)) if drag is None else drag
-        _curvatures(places, ties, frames, none, (acting, drag), bent)
-        bodies = np.repeat(self._bodies, nv, axis=1)
-        unknown = np.where(bodies < 0, -1, nv * bodies + np.tile(np.arange(nv), 2))
-        there = (unknown[:, :, None] >= 0) & (unknown[:, None] >= 0) & (bent != 0)
-        rows, columns = np.broadcast_to(unknown[:, :, None], bent.shape), np.broadcast_to(unknown[:, None], bent.shape)
-        shape = (len(masses), len(masses))
-        of_springs = csr_array((bent[there], (rows[there], columns[there])), shape=shape)
+        bends = acting != 0
+        bends[: len(drag)] |= drag.any(axis=1)
+        which = np.flatnonzero(bends)
+        parts = []
+        for start in range(0, max(len(which), 1), BENT_AT_ONCE):
+            some = which[start : start + BENT_AT_ONCE]
+            bent = np.zeros((len(some), 2 * places.freedom.nv, 2 * places.freedom.nv))
+            _curvatures(places, ties, frames, none, (acting, drag), some, bent)
+            parts.append(of_pairs(bent, self._bodies[some], len(masses)))
+        of_springs = parts[0] if len(parts) == 1 else summed(parts)
         return csr_array(of_springs + _turning_forces(forces, frames, len(masses)))
 
     def hessian(self, pose: Array) -> csr_array:
@@ -409,19 +413,24 @@ def _slips(places: Places, frames: Array, slips: Array) -> None:
 
 @compiled
 def _curvatures(
-    places: Places, ties: Ties, frames: Array, none: Array, forces: tuple[Array, Array], curvature: Array
+    places: Places,
+    ties: Ties,
+    frames: Array,
+    none: Array,
+    forces: tuple[Array, Array],
+    which: Integers,
+    curvature: Array,
 ) -> None:
-    """Write the geometric stiffness of each spring and of its friction, for the velocities of its first and then of its
-    second body.
+    """Write the geometric stiffness of some springs and of their friction, for the velocities of the first and then of
+    the second body of each, shape (springs, 2 nv, 2 nv).
 
     What is quadratic in the velocities in the second rate of an opening is its second derivative along them."""
     nv, unit, (push, drag) = len(none) // len(frames), none, forces
-    for i in range(len(push)):
-        if push[i] == 0 and (i >= len(drag) or not drag[i].any()):
-            continue
+    for at, i in enumerate(which):
         body, other = _bodies(places, ties, i)
-        for p in range(2 * nv if other >= 0 else nv):
-            for r in range(2 * nv if other >= 0 else nv):
+        count = 2 * nv if other >= 0 else nv
+        for p in range(count):
+            for r in range(p, count):
                 row = nv * body + p if p < nv else nv * other + p - nv
                 column = nv * body + r if r < nv else nv * other + r - nv
                 for sign in (1.0, -1.0):
@@ -430,8 +439,9 @@ def _curvatures(
                     bent = push[i] * opening(places, ties, i, frames, unit, unit).swept
                     if i < len(drag):
                         bent += swept_by_friction(places, i, frames, unit, drag)
-                    curvature[i, p, r] -= 0.25 * sign * bent
+                    curvature[at, p, r] -= 0.25 * sign * bent
                     unit[row], unit[column] = 0.0, 0.0
+                curvature[at, r, p] = curvature[at, p, r]
 
 
 @inlined

@@ -10,6 +10,7 @@ from mjrock.geometry.kinematics import meeting
 from mjrock.geometry.poses import rotations
 from mjrock.geometry.vectors import tangent
 from mjrock.problem.wall.effect import LinkLaw
+from mjrock.scene import potential as potential_module
 from mjrock.scene.parts import Bodies, ConstantForces, ContactPoints, Links
 
 
@@ -47,6 +48,17 @@ def test_derivatives_of_the_energy(held):
     np.testing.assert_allclose(potential.hessian(pose).toarray(), found, rtol=1e-12, atol=1e-12 * np.abs(second).max())
     bent = np.abs(potential.curvature(pose).toarray()).max()
     assert bent > 1e4  # what the check of the second derivatives is about is not a trifle
+
+
+def test_geometric_stiffness_is_the_same_made_in_parts(held, monkeypatch):
+    """To rounding: parts are summed in another order."""
+    potential, drag = held.potential, np.array([[3e4], [-1e4], [2e4], [0.0]])
+    pose = np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05])
+    whole = potential.curvature(pose, drag).toarray()
+    monkeypatch.setattr(potential_module, "BENT_AT_ONCE", 2)
+    np.testing.assert_allclose(
+        potential.curvature(pose, drag).toarray(), whole, rtol=0, atol=1e-12 * np.abs(whole).max()
+    )
 
 
 def test_friction_has_a_geometric_stiffness(held):
