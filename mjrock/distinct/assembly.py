@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from .contacts.faces import edges_of, margins
 from .contacts.touches import FIRST_OPENING
 from .kinds.lists import no_laws
 from .rotation import is_flat, set_rotations_and_spins
-from .rows import Rows, joined, kinds, rows
+from .rows import Rows, kinds, rows
 from .supports import moving
 from .system import System
 
@@ -63,19 +64,16 @@ def add_joints(lines: Rows, scene: Scene) -> Rows:
     of, joints = scene.contacts.joint, scene.rest_geometry.joints
     number = np.array([solid.body for solid in scene.rest_geometry.solids])
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
-    tables = [
-        edges_of(face, origins[block], met)
-        for joint, faces in zip(joints, scene.rest_geometry.faces, strict=True)
-        for block, face, met in zip((joint.below, joint.above), faces, faces[::-1], strict=True)
-    ]
-    edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
+    below, above = np.array([(joint.below, joint.above) for joint in joints]).T
+    faces = list(chain.from_iterable(scene.rest_geometry.faces))
+    met = [face for pair in scene.rest_geometry.faces for face in reversed(pair)]
+    edges, counts = edges_of(faces, origins[np.column_stack([below, above]).ravel()], met)
     ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)
-    above = scene.sense > 0
+    is_above = scene.sense > 0
     fixed = np.cumsum(number < 0) - 1
-    below = fixed[[joint.below for joint in joints]]
-    lines["sense"], lines["fixed"] = scene.sense, np.where(lines["face"] < 0, below[of], -1)
-    lines["first"], lines["last"] = ends[of, np.where(above, 0, 1)].T
-    lines["own_first"], lines["own_last"] = ends[of, np.where(above, 1, 0)].T
+    lines["sense"], lines["fixed"] = scene.sense, np.where(lines["face"] < 0, fixed[below][of], -1)
+    lines["first"], lines["last"] = ends[of, np.where(is_above, 0, 1)].T
+    lines["own_first"], lines["own_last"] = ends[of, np.where(is_above, 1, 0)].T
     lines["margin"] = margins(lines, edges)
     sprung = np.isfinite(lines["k_s"])
     lines["c_s"][sprung] = lines["c"][sprung] * lines["k_s"][sprung] / lines["k"][sprung]

@@ -8,6 +8,7 @@ import pytest
 import mjrock as mr
 from mjrock.distinct.contacts import faces
 from mjrock.distinct.rows import kinds, rows
+from mjrock.geometry.hull import Side
 from mjrock.problem.wall.rest_geometry import Face
 
 TURN = 0.3
@@ -62,10 +63,27 @@ def outline(width, middle=0.0):
 @pytest.mark.parametrize("centroid", [6.8, 5.5])
 def test_a_face_is_longer_by_a_share_of_the_shorter_one(other, shorter, centroid):
     """Of 2 m about x = 7. The normal turns over as much beyond either end."""
-    edges = faces.edges_of(outline(2.0, 7.0), np.array([centroid, 1.0]), outline(other, 7.3))
+    edges, _ = faces.edges_of([outline(2.0, 7.0)], np.array([[centroid, 1.0]]), [outline(other, 7.3)])
     np.testing.assert_allclose(edges["reach"], np.add([centroid - 6, 8 - centroid], 0.02 * shorter), rtol=1e-12)
     np.testing.assert_allclose(edges["band"], 0.02 * shorter + 2 * 0.02**2 * shorter, rtol=1e-12)
     np.testing.assert_array_equal(edges["way"], [[-1.0, 0.0], [1.0, 0.0]])
+
+
+def polygon(corners, size):
+    """A face across x whose outline is regular."""
+    angles = 2 * np.pi * np.arange(corners) / corners
+    ring = size * np.column_stack([np.zeros(corners), np.cos(angles), np.sin(angles)])
+    return Face.in_space(Side(ring, np.array([1.0, 0.0, 0.0])))
+
+
+def test_faces_of_many_outlines_have_the_edges_of_each_alone():
+    sides = [polygon(corners, size) for corners, size in ((4, 1.0), (3, 2.0), (4, 0.3), (5, 1.0), (3, 0.7))]
+    origins, met = np.arange(15.0).reshape(5, 3), [*sides[1:], sides[0]]
+    edges, begin = faces.edges_of(sides, origins, met)
+    np.testing.assert_array_equal(begin, [0, 4, 7, 11, 16, 19])
+    for i, (one, other) in enumerate(zip(sides, met, strict=True)):
+        alone, _ = faces.edges_of([one], origins[i : i + 1], [other])
+        np.testing.assert_array_equal(edges[begin[i] : begin[i + 1]], alone)
 
 
 def square(reach=1.0, band=0.5):

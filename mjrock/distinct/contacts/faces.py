@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...compiled import inlined
 from ...geometry.vectors import Vector, components, dot, minus, scaled
 from ...problem.wall.rest_geometry import Face
-from ...quantities import Array
+from ...quantities import Array, Integers
 from ..rows import Rows, kinds, rows
 
 OVERHANG = 0.02
@@ -19,24 +21,45 @@ ROUNDS = 3
 for a rectangle."""
 
 
-def edges_of(face: Face, origin: Array, met: Face) -> Rows:
-    """The edges of a face, which is taken to be longer by `OVERHANG` at either end, from a point of its block [m].
+def edges_of(faces: Sequence[Face], origins: Array, met: Sequence[Face]) -> tuple[Rows, Integers]:
+    """The edges of faces, which are taken to be longer by `OVERHANG` at either end, and where those of each begin.
 
-    A joint is made by this face and another that is `met`.
+    Args:
+        faces: of joints.
+        origins: a point of the block of each [m], shape (faces, d).
+        met: the face of the other block of the joint of each.
+
+    Returns:
+        The edges, and the number of the first one of each face, with that after the last, shape (faces + 1,).
     """
-    places = (face.corners - origin) @ face.ways.T  # (corners, edges)
-    extent = np.minimum(np.ptp(places, axis=0), np.ptp(met.corners @ face.ways.T, axis=0))
-    reach, band = places.max(axis=0) + OVERHANG * extent, OVERHANG * (1 + 2 * OVERHANG) * extent
-    edge = kinds(len(origin)).edge
-    return rows(edge, len(face.ways), way=face.ways, reach=reach, band=band)
+    begin = np.cumsum([0, *(len(face.ways) for face in faces)])
+    edges = rows(kinds(origins.shape[1]).edge, int(begin[-1]))
+    pairs = zip(faces, met, strict=True)
+    shapes = np.array([(len(one.ways), len(one.corners), len(other.corners)) for one, other in pairs])
+    for shape in np.unique(shapes, axis=0):
+        which = np.flatnonzero((shapes == shape).all(axis=1)).tolist()
+        ways, corners, others = (
+            np.array(each)
+            for each in zip(*((faces[i].ways, faces[i].corners, met[i].corners) for i in which), strict=True)
+        )
+        along = ways.swapaxes(1, 2)
+        places = (corners - origins[which][:, None]) @ along  # (faces, corners, edges)
+        extent = np.minimum(np.ptp(places, axis=1), np.ptp(others @ along, axis=1))
+        of = begin[which][:, None] + np.arange(len(ways[0]))
+        edges["way"][of], edges["reach"][of] = ways, places.max(axis=1) + OVERHANG * extent
+        edges["band"][of] = OVERHANG * (1 + 2 * OVERHANG) * extent
+    return edges, begin
 
 
 def margins(lines: Rows, edges: Rows) -> Array:
     """Square of the smallest distance of each line from the end of its face [m2], shape (m,)."""
-    margin = np.empty(len(lines))
-    for i, (place, first, last) in enumerate(zip(lines["origin"], lines["first"], lines["last"], strict=True)):
-        margin[i] = max(float((edges["reach"][first:last] - edges["way"][first:last] @ place).min()), 0.0)
-    return np.asarray(margin**2)
+    margin, counts = np.empty(len(lines)), lines["last"] - lines["first"]
+    for count in np.unique(counts):
+        which = np.flatnonzero(counts == count)
+        of = lines["first"][which][:, None] + np.arange(count)
+        along = (edges["way"][of] @ lines["origin"][which][:, :, None])[:, :, 0]
+        margin[which] = np.maximum((edges["reach"][of] - along).min(axis=1), 0.0)
+    return margin**2
 
 
 @inlined
