@@ -16,12 +16,23 @@ def cross(a: Array, b: Array) -> Array:
     return product
 
 
+def cross_in_space(a: Array, b: Array) -> Array:
+    """The vector product of vectors with shape (..., 3), in a fraction of the time that `numpy.cross` takes for few."""
+    product: Array = a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
+    return product
+
+
+def next_of(corners: Array) -> Array:
+    """The corner after each one of a polygon, shape of the corners; `numpy.roll` takes five times as long."""
+    return np.concatenate([corners[1:], corners[:1]])
+
+
 def clipped(polygon: Array, window: Array) -> Array:
     """The part of a convex polygon within another; no corners where there is none.
 
     It is cut by one edge after the other (Sutherland and Hodgman, Communications of the ACM 17, 1974, 32-42).
     """
-    for start, way in zip(window, np.roll(window, -1, axis=0) - window, strict=True):
+    for start, way in zip(window, next_of(window) - window, strict=True):
         inwards = cross(way, polygon - start)
         if (inwards >= 0).all():
             continue
@@ -55,7 +66,7 @@ def cleaned(polygon: Array, tolerance: float) -> Array:
     wider.
     """
     while len(polygon):
-        before, after = np.roll(polygon, 1, axis=0), np.roll(polygon, -1, axis=0)
+        before, after = np.concatenate([polygon[-1:], polygon[:-1]]), next_of(polygon)
         chord = np.hypot(*(after - before).T)
         height = np.hypot(*(polygon - before).T)
         np.divide(cross(polygon - before, after - before), chord, out=height, where=chord > 0)
@@ -70,13 +81,13 @@ def cleaned(polygon: Array, tolerance: float) -> Array:
 def area(polygon: Array) -> float:
     """Area of a polygon [m2]."""
     about = polygon - polygon[0]
-    return 0.5 * float(cross(about, np.roll(about, -1, axis=0)).sum())
+    return 0.5 * float(cross(about, next_of(about)).sum())
 
 
 def polygon_centroid(polygon: Array) -> Array:
     """Centroid of the area of a polygon [m], shape (2,)."""
     about = polygon - polygon[0]
-    after = np.roll(about, -1, axis=0)
+    after = next_of(about)
     twice = cross(about, after)
     middle: Array = polygon[0] + (twice[:, None] * (about + after)).sum(axis=0) / (3 * twice.sum())
     return middle
@@ -84,14 +95,14 @@ def polygon_centroid(polygon: Array) -> Array:
 
 def width(polygon: Array) -> float:
     """The smallest extent of a convex polygon in any direction of its plane [m]."""
-    edges = np.roll(polygon, -1, axis=0) - polygon
+    edges = next_of(polygon) - polygon
     across = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
     return float(np.ptp(polygon @ across.T, axis=0).min())
 
 
 def within(polygon: Array, points: Array) -> Array:
     """How far points lie within the edges of a convex polygon, the least of all edges [m], negative outside, (p,)."""
-    edges = np.roll(polygon, -1, axis=0) - polygon
+    edges = next_of(polygon) - polygon
     inwards = cross(edges, points[:, None] - polygon) / np.hypot(*edges.T)
     return np.asarray(inwards.min(axis=1))
 
@@ -103,9 +114,9 @@ def shares(polygon: Array, point: Array) -> Array:
     """
     spokes = polygon - point
     lengths = np.hypot(*spokes.T)
-    after = np.roll(spokes, -1, axis=0)
+    after = next_of(spokes)
     # tan of half the angle between a spoke and the next
-    halves = cross(spokes, after) / (lengths * np.roll(lengths, -1) + (spokes * after).sum(axis=1))
+    halves = cross(spokes, after) / (lengths * next_of(lengths) + (spokes * after).sum(axis=1))
     weights = (halves + np.roll(halves, 1)) / lengths
     normed: Array = weights / weights.sum()
     return normed
@@ -163,7 +174,7 @@ def sectioned(polygon: Array, points: int) -> tuple[Array, Array]:
 
 def _quarters(polygon: Array) -> list[Array]:
     """Quadrilaterals of a polygon: one per corner, between it, the middles of its edges and the centroid."""
-    middle, halves = polygon_centroid(polygon), 0.5 * (polygon + np.roll(polygon, -1, axis=0))
+    middle, halves = polygon_centroid(polygon), 0.5 * (polygon + next_of(polygon))
     return [np.array([polygon[i], halves[i], middle, halves[i - 1]]) for i in range(len(polygon))]
 
 

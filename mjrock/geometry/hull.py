@@ -12,6 +12,7 @@ import numpy as np
 import scipy
 
 from ..quantities import Array
+from .convex import cross_in_space, next_of
 
 Faces = tuple[tuple[int, ...], ...]
 """Numbers of the corners of each face, counterclockwise as seen from outside."""
@@ -172,7 +173,7 @@ def hull_of(points: Array) -> Hull:
 def _coplanar(points: Array, facets: scipy.spatial.ConvexHull) -> list[list[int]]:
     """Corners of the facets of each plane, the planes of the largest facets first. Points have an extent of 1."""
     a, b, c = points[facets.simplices].transpose(1, 0, 2)
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    areas = np.linalg.norm(cross_in_space(b - a, c - a), axis=1)
     left = np.ones(len(areas), dtype=bool)
     planes = []
     for seed in np.argsort(-areas, kind="stable"):
@@ -195,7 +196,7 @@ def _around(ring: Array, middle: Array) -> tuple[list[int], Array]:
     if normal @ middle < 0:
         order, normal = order[::-1], -normal
     first = int(np.argmin(order))  # each face starts at its lowest number
-    return np.roll(order, -first).tolist(), normal / np.linalg.norm(normal)
+    return [*order[first:].tolist(), *order[:first].tolist()], normal / np.linalg.norm(normal)
 
 
 def face_edges(face: tuple[int, ...]) -> list[tuple[int, int]]:
@@ -211,7 +212,7 @@ def triangles_of(faces: Iterable[tuple[int, ...]]) -> list[tuple[int, int, int]]
 def area_vector(ring: Array) -> Array:
     """The normal of a plane polygon, as long as its area, shape (3,); the ring is counterclockwise about it, (n, 3)."""
     about = ring - ring[0]
-    summed: Array = 0.5 * np.cross(about, np.roll(about, -1, axis=0)).sum(axis=0)
+    summed: Array = 0.5 * cross_in_space(about, next_of(about)).sum(axis=0)
     return summed
 
 

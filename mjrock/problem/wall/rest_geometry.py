@@ -11,6 +11,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from ...geometry.convex import cross_in_space, next_of
 from ...geometry.hull import Convex, Faces, Side
 from ...quantities import Array, Flags, Integers
 from .block import Block
@@ -120,7 +121,7 @@ class Face(NamedTuple):
     @classmethod
     def in_space(cls, side: Side) -> Face:
         """A side of a block in space."""
-        ways = np.cross(np.roll(side.corners, -1, axis=0) - side.corners, side.normal)
+        ways = cross_in_space(next_of(side.corners) - side.corners, side.normal)
         return cls(side.corners, side.normal, ways / np.linalg.norm(ways, axis=1)[:, None])
 
 

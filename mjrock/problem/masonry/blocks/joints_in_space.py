@@ -111,9 +111,9 @@ class Facing(NamedTuple):
 
 def axes_across(normals: Array) -> Array:
     """Two unit vectors across each of some normals, shape (m, 3), right-handed with it, shape (m, 2, 3)."""
-    first = np.cross(np.eye(3)[np.abs(normals).argmin(axis=1)], normals)
+    first = convex.cross_in_space(np.eye(3)[np.abs(normals).argmin(axis=1)], normals)
     first /= np.linalg.norm(first, axis=1)[:, None]
-    return np.asarray(np.stack([first, np.cross(normals, first)], axis=1) + 0.0)
+    return np.asarray(np.stack([first, convex.cross_in_space(normals, first)], axis=1) + 0.0)
 
 
 def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
@@ -125,7 +125,7 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     lengths = np.linalg.norm(first, axis=1)
     blunt = lengths <= BLUNT * np.linalg.norm(forces, axis=-1)
     first = np.where(blunt[:, None], axes_across(normals)[:, 0], first / np.where(blunt, 1.0, lengths)[:, None])
-    return first, np.cross(normals, first)
+    return first, convex.cross_in_space(normals, first)
 
 
 def joints_in_space(
@@ -175,7 +175,7 @@ def _depth_across_edges(block: Convex, neighbour: Convex) -> float:
     Beside the normals of their faces these are the directions in which convex bodies can be apart (Gottschalk,
     Separating axis theorem, Technical Report TR96-024, UNC Chapel Hill, 1996).
     """
-    across = np.cross(block.edges[:, None], neighbour.edges[None]).reshape(-1, 3)
+    across = convex.cross_in_space(block.edges[:, None], neighbour.edges[None]).reshape(-1, 3)
     lengths = np.linalg.norm(across, axis=1)
     across = across[lengths > 1e-6] / lengths[lengths > 1e-6, None]
     if not len(across):

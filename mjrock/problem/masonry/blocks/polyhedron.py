@@ -143,7 +143,7 @@ class Polyhedron:
         """The convex parts that it is made of: itself."""
         return (self,)
 
-    @property
+    @cached_property
     def sides(self) -> tuple[Side, ...]:
         """Its faces."""
         return tuple(
