@@ -261,21 +261,52 @@ def test_where_there_is_no_standard_error_it_compiles_in_silence(monkeypatch, tm
 
 
 @pytest.mark.slow
-def test_the_command_stores_what_scripts_call(tmp_path):
-    """A wall and theory then compile nothing. The command says where the loops are. Those of explicit steps, which take
-    the longest, may be stored already."""
+def test_the_command_stores_what_it_finds_missing(tmp_path):
+    """Here rocking theory, the soonest compiled. The command names the folder of the loops."""
     copy = tmp_path / "mjrock"
     shutil.copytree(PACKAGE, copy)
-    for folder in ("engine", "theory"):
-        for path in (copy / folder).rglob("*.nb[ci]"):
-            path.unlink()
-    command = [sys.executable, "-m", "mjrock", "compile"]
-    said = subprocess.check_output(command, env=os.environ | {"PYTHONPATH": str(tmp_path)}, cwd=tmp_path, text=True)
-    assert said.startswith(f"the loops are stored in {copy}; ")
     before = sorted(copy.rglob("*.nbc"))
+    gone = [path for path in before if path.parents[1].name == "theory"]
+    assert gone
+    for path in (copy / "theory").rglob("*.nb[ci]"):
+        path.unlink()
+    command = [sys.executable, "-m", "mjrock", "compile"]
+    printed = subprocess.check_output(command, env=os.environ | {"PYTHONPATH": str(tmp_path)}, cwd=tmp_path, text=True)
+    assert printed.startswith(f"the loops are stored in {copy}; ")
+    assert [path for path in gone if not path.exists()] == []
     assert len(before) > 30
-    assert run(tmp_path / "stored.npz", home=tmp_path, MJROCK_INTERPRET="0") == ""
-    assert sorted(copy.rglob("*.nbc")) == before
+
+
+COVERED = (
+    """
+import gc, sys
+from mjrock.compiled import Loop
+from mjrock.study.compilation import RUNS, carry_out
+
+def signatures():
+    loops = [each for each in gc.get_objects() if type(each) is Loop]
+    return {(loop.__qualname__, types) for loop in loops for types in loop.signatures}
+
+first = signatures()
+for number in range(len(RUNS)):
+    carry_out(number)
+of_command = signatures()
+"""
+    + RUN
+    + """
+print(len(of_command - first), len(signatures() - of_command), *signatures() - of_command)
+"""
+)
+"""How many loops the command compiles, and which a script compiles after it."""
+
+
+@pytest.mark.slow
+def test_the_command_compiles_what_scripts_call(tmp_path):
+    """A wall in MuJoCo and rocking theory need no loop for arguments of other types."""
+    command, setting = [sys.executable, "-c", COVERED, str(tmp_path / "a.npz")], os.environ | {"MJROCK_INTERPRET": "0"}
+    of_command, more, *which = subprocess.check_output(command, env=setting, text=True).split(maxsplit=2)
+    assert int(of_command) > 10
+    assert int(more) == 0, which
 
 
 def test_squares_are_products():
