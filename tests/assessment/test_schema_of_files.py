@@ -88,11 +88,13 @@ def test_a_class_may_be_named_where_there_is_no_other(validator):
 
 
 def test_a_file_that_is_read_fits_and_parts_that_stand_once_mean_what_they_mean_in_full(validator, documents):
-    """The schema with every part in its place gives the same verdict on every damaged file, and is built otherwise."""
+    """The schema with every part in its place gives the same verdict on every damaged file, and is built otherwise.
+
+    A template has each damage, and a whole file, of up to twenty mechanisms, two of them."""
     draw, whole = random.Random(4), jsonschema.Draft202012Validator(whole_schema())
-    refused = 0
+    refused = tried = 0
     for name, document in documents.items():
-        for damage in DAMAGES:
+        for damage in draw.sample(list(DAMAGES), 2 if name.startswith("file") else len(DAMAGES)):
             damaged = copy.deepcopy(document)
             table = draw.choice(list(tables_in(damaged)))
             key = draw.choice(sorted(table))
@@ -100,5 +102,5 @@ def test_a_file_that_is_read_fits_and_parts_that_stand_once_mean_what_they_mean_
             fits = validator.is_valid(damaged)
             assert fits == whole.is_valid(damaged), (name, damage, key)
             assert fits or not is_read(damaged), (name, damage, key)
-            refused += not fits
-    assert refused > 40
+            refused, tried = refused + (not fits), tried + 1
+    assert refused > 0.6 * tried

@@ -1,9 +1,11 @@
 """`mjrock new`, `check`, `report` and `schema`: templates run as they are, and a verdict is that of the objects."""
 
+import io
 import json
 import re
 import subprocess
 import sys
+from functools import cache
 from itertools import pairwise
 
 import pytest
@@ -33,6 +35,12 @@ def texts():
     return templates()
 
 
+@cache
+def checks_of(text):
+    """The checks of a file by its text, made once."""
+    return mr.from_toml(text=text).check()
+
+
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
     """An empty folder."""
@@ -58,7 +66,7 @@ def test_a_template_is_checked_as_it_is_and_fits_into_100_columns(name, here, ca
     text = (here / "wall.toml").read_text(encoding="utf-8")
     assert printed(capsys, "new", name) == text
     assert max(map(len, text.splitlines())) <= WIDE
-    checks = mr.from_toml("wall.toml").check()
+    checks = checks_of(text)
     holds = all(verdict.holds for check in checks.values() for verdict in check.verdicts)
     said = printed(capsys, "check", "wall.toml", status=Status.HOLDS if holds else Status.FAILS)
     assert said.count("C8.7.1.2.1.") == sum(len(check.verdicts) for check in checks.values())
@@ -70,7 +78,7 @@ def test_keys_that_may_be_left_out_have_the_values_that_a_template_shows(name, t
     text = texts[name]
     whole = re.sub(r"(?m)^#(?=\w+ = \S)", "", text)
     assert whole.count("\n#") < text.count("\n#") - 2
-    given, left_out = mr.from_toml(text=whole).check(), mr.from_toml(text=text).check()
+    given, left_out = checks_of(whole), checks_of(text)
     assert {key: check.steps for key, check in given.items()} == {key: one.steps for key, one in left_out.items()}
 
 
@@ -144,21 +152,14 @@ def test_a_folder_is_no_file(here, capsys):
     assert refused(capsys, "check", ".") == "error: .: is not a file\n"
 
 
-def test_the_standard_input_is_a_file_too():
-    command = [sys.executable, "-m", "mjrock", "check", "-"]
-    done = subprocess.run(command, input=THICK.encode(), capture_output=True, check=False)
+def test_the_standard_input_is_a_file_too_and_a_check_needs_no_simulator(capsys, monkeypatch):
+    code = "import sys; from mjrock.__main__ import main; main(['check', '-']); print('mujoco' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], input=THICK.encode(), capture_output=True, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
-    assert done.stdout.decode().startswith("standard input\n")
-    done = subprocess.run(command, input=b"\xffa", capture_output=True, check=False)
-    assert done.returncode == Status.ERROR
-    assert b"standard input:1: is no text in UTF-8" in done.stderr
-
-
-def test_a_check_needs_no_simulator(here):
-    (here / "wall.toml").write_text(THICK)
-    code = "import sys; from mjrock.__main__ import main; main(['check', 'wall.toml']); print('mujoco' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stdout.endswith("False\n"), done.stderr
+    assert done.stdout.startswith(b"standard input\n")
+    assert done.stdout.endswith(b"False\n")
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"\xffa")))
+    assert "standard input:1: is no text in UTF-8" in refused(capsys, "check", "-")
 
 
 def test_a_report_is_written_beside_its_file_and_replaces_nothing_by_itself(here, capsys):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.masonry.builders import in_space
 
 SIZE = (0.8, 0.4, (0.2, 0.1))
 MORTAR = mr.Bond(0.2e6, 0.3e6, 15.0, 130.0)
@@ -54,6 +55,8 @@ def test_what_cannot_be_is_named():
 
 
 @pytest.mark.parametrize(("options", "named"), [({"leaves": 2}, "leaves = 2"), ({"headers": 1}, "headers = 1")])
-def test_more_blocks_than_there_may_be_are_refused_by_what_makes_them(options, named):
-    with pytest.raises(ValueError, match=rf"{named}.* make a wall of \d+ blocks; the valid range ends at 5000"):
-        mr.Masonry.wallette(323.0, 1.0, (0.5, 0.25), 0.25, **options)
+def test_more_blocks_than_there_may_be_are_refused_by_what_makes_them(options, named, monkeypatch):
+    monkeypatch.setattr(in_space, "MOST_BODIES", 76)
+    assert len(mr.Masonry.wallette(9.0, 1.0, (0.5, 0.25), 0.25).names) == 76
+    with pytest.raises(ValueError, match=rf"{named}.* make a wall of 1\d\d blocks; the valid range ends at 76"):
+        mr.Masonry.wallette(9.0, 1.0, (0.5, 0.25), 0.25, **options)

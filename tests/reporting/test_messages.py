@@ -34,18 +34,16 @@ def templates_in(path):
             yield from [given.value] if isinstance(given, ast.Constant) else named.get(ast.unparse(given), [])
 
 
-TEMPLATES = {template for path in sorted(ROOT.rglob("*.py")) for template in templates_in(path)}
-
-
 def fields(text):
     return {name for _, name, _, _ in string.Formatter().parse(text) if name}
 
 
 def test_every_template_has_an_italian_text_with_its_values():
-    assert len(TEMPLATES) > 90
+    templates = {template for path in sorted(ROOT.rglob("*.py")) for template in templates_in(path)}
+    assert len(templates) > 90
     italian = tomllib.loads(MESSAGES.read_text("utf-8"))["it"]
-    assert sorted(TEMPLATES - italian.keys()) == []
-    assert sorted(italian.keys() - TEMPLATES) == []
+    assert sorted(templates - italian.keys()) == []
+    assert sorted(italian.keys() - templates) == []
     assert [one for one, text in italian.items() if fields(text) != fields(one)] == []
 
 
