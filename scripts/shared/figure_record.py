@@ -18,6 +18,7 @@ import shlex
 import tokenize
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -59,7 +60,7 @@ def parts(script: Path) -> dict[str, str]:
         if place in codes or module in PLAIN or not path.is_file():
             continue
         text = path.read_text(encoding="utf-8")
-        tree = ast.parse(text)
+        tree = parsed(text)
         imported = {
             alias.asname or alias.name: (str(node.module), alias.name)
             for node in tree.body
@@ -84,6 +85,12 @@ def parts(script: Path) -> dict[str, str]:
     return {place: code for place, code in codes.items() if code}
 
 
+@cache
+def parsed(text: str) -> ast.Module:
+    """A module by its text, which many scripts may use."""
+    return ast.parse(text)
+
+
 def lines_of(text: str, node: ast.stmt) -> str:
     """The lines of a statement of a module, with its decorators."""
     first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
@@ -98,6 +105,7 @@ def names_of(node: ast.stmt) -> set[str]:
     return {one.id for target in targets if target for one in ast.walk(target) if isinstance(one, ast.Name)}
 
 
+@cache
 def code_of(text: str) -> str:
     """The text of a module without docstrings, comments and empty lines."""
     lines = text.splitlines()
