@@ -45,9 +45,20 @@ import pytest
 import mjrock as mr
 
 mr.simulate = lambda *given, **named: pytest.skip("the loops of steps in MuJoCo are others")
-sys.exit(pytest.main(sys.argv[1:]))
+
+
+class FirstAndLast:
+    @pytest.hookimpl(trylast=True)  # of those that are not slow
+    def pytest_collection_modifyitems(self, items):
+        functions = {}
+        for item in items:
+            functions.setdefault(item.nodeid.partition("[")[0], []).append(item)
+        items[:] = [item for each in functions.values() for item in (each[0], *each[1:][-1:])]
+
+
+sys.exit(pytest.main(sys.argv[1:], plugins=[FirstAndLast()]))
 """
-"""Tests, less those of steps in MuJoCo, whose loops would take as long to compile."""
+"""Tests by their first and last arguments, less those of steps in MuJoCo, whose loops would take as long to compile."""
 
 
 SMALL = [
@@ -85,7 +96,7 @@ def test_an_index_beyond_an_array_is_refused(tmp_path):
 
 @pytest.mark.slow
 def test_no_loop_of_the_explicit_steps_writes_beyond_its_arrays(tmp_path):
-    """All everyday tests of this folder, less those of laws of the user, which bring loops of their own."""
+    """The everyday tests of this folder, less those of laws of the user, which bring loops of their own."""
     folder = Path(__file__).parent
     options = [
         "-n",
