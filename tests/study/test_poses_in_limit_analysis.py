@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.masonry.limit.pose import posed
 
 THICK, HIGH = 0.5, 2.0
 ALPHA = math.atan2(THICK, HIGH)
@@ -216,3 +217,18 @@ def test_a_tie_that_the_pose_has_made_shorter_or_has_torn_bears_nothing():
         assert mr.collapse_multiplier(column, 1, pose=pose, effects=effect).multiplier == pytest.approx(bare, rel=1e-9)
     held = mr.collapse_multiplier(column, 1, pose=pose, effects=mr.Tie(**tie, block="block_0")).multiplier
     assert held > bare + 0.05
+
+
+def test_a_block_in_space_keeps_its_faces_which_turn_with_it():
+    """They are those of the hull of its corners where these have moved."""
+    moved, _ = posed(wall(in_space=True), toppled(0.1, in_space=True))
+    leaning = moved.blocks[1]
+    assert leaning.corners[:, 0].max() > 0.1
+    for block in moved.blocks:
+        anew = mr.Polyhedron(block.vertices, name=block.name, fixed=block.fixed)
+        assert block == anew
+        faces, others = ({frozenset(face): i for i, face in enumerate(one.faces)} for one in (block, anew))
+        assert len(faces) == 6
+        for face, number in others.items():
+            assert block.normals[faces[face]] == pytest.approx(anew.normals[number], abs=1e-12)
+        assert block.inertia == pytest.approx(anew.inertia, rel=1e-12, abs=1e-9 * anew.inertia.max())

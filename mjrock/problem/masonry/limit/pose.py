@@ -95,9 +95,17 @@ class Moves(NamedTuple):
         return self.part(number, block)
 
     def part(self, number: int, part: Polygon | Polyhedron) -> Polygon | Polyhedron:
-        """A convex part of a block where it has moved."""
+        """A convex part of a block where it has moved. A body in space keeps its faces, which turn with it: to find
+        them anew takes a third of a limit analysis."""
         corners = np.array(part.vertices)
-        return replace(part, vertices=self.at([number] * len(corners), corners))  # type: ignore[arg-type]
+        places = self.at([number] * len(corners), corners)
+        if isinstance(part, Polygon):
+            return replace(part, vertices=places)  # type: ignore[arg-type]
+        moved = object.__new__(Polyhedron)
+        keep(moved, **{each.name: getattr(part, each.name) for each in fields(part)})
+        hull = part.hull._replace(normals=self.turned(number, part.normals))
+        keep(moved, vertices=tuple(map(tuple, places.tolist())), hull=hull)
+        return moved
 
 
 def posed(masonry: Masonry, pose: ArrayLike, effects: Sequence[Effect] = ()) -> tuple[Masonry, tuple[Effect, ...]]:
