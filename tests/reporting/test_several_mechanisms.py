@@ -204,7 +204,7 @@ def test_what_a_design_tries_names_no_file_beyond_the_folder(tmp_path):
     """A key of a path is held to the folder, as that of the file is."""
     (tmp_path / "inner").mkdir()
     for file in ("outer.json", "inner/a.json"):
-        mr.Masonry.column(0.5, 2.0, 2).to_compas(tmp_path / file)
+        mr.Masonry.box((0.5, 0.5, 2.0)).to_compas(tmp_path / file)
     masonry = 'kind = "MasonryCase"\n[masonry]\nmake = "from_compas"\npath = "a.json"\nfixed = ["ground"]\n'
     text = TIED.format(language="en")
     site = text[text.index("[site]") : text.index("[", text.index("[site]") + 1)]
