@@ -17,7 +17,7 @@ from ..geometry.kinematics import meeting, over_face, where_friction_acts
 from ..geometry.vectors import increase, moment, plus, scaled, vector
 from ..problem.masonry.case import AnyCase
 from ..quantities import Array, Integers
-from ..result.bodies import Moving
+from ..result.bodies import BodyMotion
 from ..result.forces import Forces, KeptForces, forces_of
 from ..result.ties import Plastic, motion_of_ties
 from ..scene.scene import Scene
@@ -61,7 +61,7 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
     points = points_of(scene, steps.method)
     _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.for_scene(scene), loads)
     pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
-    ties = motion_of_ties(Moving(case, steps.t, pose), plastic)
+    ties = motion_of_ties(BodyMotion(case, steps.t, pose), plastic)
     of = chosen[sample]
     pulled = {name: ties[name].force[of] for name in scene.links.sprung.names}
     pulled |= dict(zip(scene.links.damped.names, -steps.record.damping[of].T, strict=True))

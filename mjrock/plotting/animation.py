@@ -249,7 +249,7 @@ def animate(
         speed: time of the motion that passes in a second of the picture [-], 0.001 to 1000; 1 is real time.
         fps: frames a second [1/s], 1 to 120. In a GIF a frame lasts a whole number of hundredths of a second, at least
             two; the motion keeps its speed.
-        magnify: factor on all displacements [-], 0.01 to 10000; 1 is true to scale. The picture says it.
+        magnify: factor on all displacements [-], 0.01 to 10000; 1 is true to scale. The picture has it as text.
         title: what stands above, at most 1000 characters.
         dpi: resolution [1/inch], 20 to 600; the picture is 8 inches wide.
         camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;

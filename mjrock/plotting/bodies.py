@@ -29,7 +29,7 @@ from ..quantities import (
     require_within,
     shown,
 )
-from ..result.bodies import Moving
+from ..result.bodies import BodyMotion
 from ..result.response import Response
 from ..result.ties import LinkEnd, elongation_of, link_ends
 from ..scene.tints import FIXED_COLOUR, TINTS, colours_of, distinct_tints
@@ -134,7 +134,7 @@ class Bodies:
         limits: lowest and highest x, and lowest and highest z, of the picture [m]; None shows what moves, see `extent`.
     """
 
-    moving: Moving
+    moving: BodyMotion
     colours: Array
     limits: Array | None = None
 
@@ -148,7 +148,7 @@ class Bodies:
         return cls.of_moving(replace(response.moving, magnify=magnify), limits)
 
     @classmethod
-    def of_moving(cls, moving: Moving, limits: ArrayLike | None = None) -> Bodies:
+    def of_moving(cls, moving: BodyMotion, limits: ArrayLike | None = None) -> Bodies:
         """The bodies of a case."""
         geometry = moving.case.rest_geometry
         free = [solid.body >= 0 for solid in geometry.solids]
@@ -186,7 +186,7 @@ class Bodies:
         free, stays = _outlines("outlines", outlines), _outlines("fixed", fixed)
         magnify = require_within("magnify", magnify, 0.01, 1e4)
         case = cast(AnyCase, LooseBodies(free, require_array("rests", rests, (len(free), 2)), stays))
-        moving = Moving(case, times, require_array("poses", poses, (len(times), len(free), 3)), magnify)
+        moving = BodyMotion(case, times, require_array("poses", poses, (len(times), len(free), 3)), magnify)
         colours = np.array([TINTS[tint] for tint in distinct_tints(len(free), ())])
         return cls(moving, colours, required_limits(limits, "xz"))
 
@@ -323,7 +323,7 @@ def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     return combined(updates)
 
 
-def anchored(ax: Axes, moving: Moving, tie: Anchored, *, markersize: float, edge: float = -np.inf) -> Update:
+def anchored(ax: Axes, moving: BodyMotion, tie: Anchored, *, markersize: float, edge: float = -np.inf) -> Update:
     """Draw a link of the plane, and its anchor as a square. An anchor beyond an x [m] is drawn there."""
     held, anchor = link_ends(moving.case, tie)
     if anchor.block is None and anchor.point[0] < edge:
@@ -341,7 +341,7 @@ def anchored(ax: Axes, moving: Moving, tie: Anchored, *, markersize: float, edge
     return update
 
 
-def link(ax: Axes, moving: Moving, tie: Anchored, ends: Array) -> Update:
+def link(ax: Axes, moving: BodyMotion, tie: Anchored, ends: Array) -> Update:
     """Draw a link between its ends [m], shape (n, 2, d): solid where it pulls, dotted where it is slack, gone once it
     broke."""
     pulls, broken = pulling(moving, tie)
@@ -356,12 +356,12 @@ def link(ax: Axes, moving: Moving, tie: Anchored, ends: Array) -> Update:
     return update
 
 
-def placed_ends(moving: Moving, *ends: LinkEnd) -> Array:
+def placed_ends(moving: BodyMotion, *ends: LinkEnd) -> Array:
     """Where the ends of a link are drawn [m], shape (n, ends, d)."""
     return np.stack([moving.placed(end.block, end.point[None])[:, 0] for end in ends], axis=1)
 
 
-def pulling(moving: Moving, tie: Anchored, before: float = 0.0) -> tuple[Flags, Flags]:
+def pulling(moving: BodyMotion, tie: Anchored, before: float = 0.0) -> tuple[Flags, Flags]:
     """Whether a link acts at each frame, and whether it has broken, from how far its slider had moved before [m].
 
     A tie acts where it is longer than when it was slack or last yielded, and what also pushes acts always.

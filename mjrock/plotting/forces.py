@@ -12,7 +12,7 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from ..problem.masonry.blocks.joints import Joint
 from ..quantities import Array, Integers, require_one_of
-from ..result.bodies import Moving
+from ..result.bodies import BodyMotion
 from ..result.response import Response
 from .bodies import FORCE, Update, named_line
 
@@ -76,7 +76,7 @@ class DrawnForces:
         bodies: where the bodies are.
     """
 
-    def __init__(self, response: Response, bodies: Moving) -> None:
+    def __init__(self, response: Response, bodies: BodyMotion) -> None:
         self.response, self.forces, self.bodies = response, response.forces, bodies
         self.frames = self.forces.frames
         self.sample = np.maximum(np.searchsorted(response.t, bodies.t * (1 + 1e-12), side="right") - 1, 0)
@@ -167,7 +167,7 @@ def edges_of(outline: Array) -> Array:
     return np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
 
 
-def forces_on(ax: Axes, response: Response, bodies: Moving, how: str) -> Update:
+def forces_on(ax: Axes, response: Response, bodies: BodyMotion, how: str) -> Update:
     """Draw the forces of the joints on blocks that are drawn already, and write the force of the scale."""
     drawn = DrawnForces(response, bodies)
     cracks = how == "cracks"

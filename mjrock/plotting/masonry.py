@@ -22,7 +22,7 @@ from ..problem.masonry.limit.pose import pose_of_all
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.effect import Effect
 from ..quantities import Array, require_flag, require_kind, require_within
-from ..result.bodies import Moving
+from ..result.bodies import BodyMotion
 from ..result.motion import sample_at
 from ..result.response import Response
 from .bodies import FORCE, Bodies, combined, draw_outlines, make_static, named_line, required_limits
@@ -102,12 +102,12 @@ def blocks(
     return ax
 
 
-def _at_pose(masonry: Masonry | Response, pose: ArrayLike | None, magnified: float) -> Moving:
+def _at_pose(masonry: Masonry | Response, pose: ArrayLike | None, magnified: float) -> BodyMotion:
     """Masonry, or that of a response with its supports as they are drawn, at a pose; at rest without one."""
     case = replace(masonry.of_masonry, supports=()) if isinstance(masonry, Response) else MasonryCase(masonry, 1.0)
     freedom = SPACE if case.in_space else PLANE
     rest = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
-    return Moving(case, np.zeros(1), (rest if pose is None else _of_free(case.masonry, pose))[None], magnified)
+    return BodyMotion(case, np.zeros(1), (rest if pose is None else _of_free(case.masonry, pose))[None], magnified)
 
 
 def _of_free(masonry: Masonry, pose: ArrayLike) -> Array:
@@ -224,11 +224,11 @@ def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool 
         draw_loads(ax, masonry, collapse.effects, collapse.loads)
     if forces and not masonry.in_space:
         case = MasonryCase(masonry, 1.0)
-        _draw_joint_forces(ax, Moving(case, np.zeros(1), pose[None]), masonry, collapse.forces)
+        _draw_joint_forces(ax, BodyMotion(case, np.zeros(1), pose[None]), masonry, collapse.forces)
     return ax
 
 
-def _draw_joint_forces(ax: Axes, moving: Moving, masonry: Masonry, forces: JointForces) -> None:
+def _draw_joint_forces(ax: Axes, moving: BodyMotion, masonry: Masonry, forces: JointForces) -> None:
     """A line for each force of a joint, where the joint has moved."""
     normal, along = forces.normal, forces.eccentricity
     pressing = np.stack([normal, forces.shear], axis=1)
@@ -282,7 +282,7 @@ def draw_loads(
 
 
 def _force_of(masonry: Masonry, effect: Effect) -> tuple[Array, Array] | None:
-    """Where an effect pushes [m] and its force [N], that of an axle on the ground; None where an arrow says nothing."""
+    """Where an effect pushes [m] and its force [N], that of an axle on the ground; None where no arrow is drawn."""
     item = effect.report_item
     if isinstance(item, Axle):
         return np.array([item.at, item.top]), np.array([0.0, -item.force])

@@ -28,7 +28,7 @@ from .style import Picture, figure_of, png, wrapped
 from .wall import sketch
 
 MOST_BLOCKS = 3000
-"""Blocks up to which masonry is drawn unasked, which takes some seconds."""
+"""Most blocks of masonry that a notebook draws by itself, which takes some seconds."""
 PICTURES: dict[type, Callable[..., Figure | Axes | None]] = {
     Case: sketch,
     MasonryCase: lambda case, title: _masonry(case.masonry),

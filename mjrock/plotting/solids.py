@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers, keep, require_array, require_within
-from ..result.bodies import Moving
+from ..result.bodies import BodyMotion
 from ..result.response import Response
 from ..result.ties import link_ends
 from ..scene.tints import colours_of
@@ -67,7 +67,7 @@ class Solids:
         ValueError: for a value outside its range.
     """
 
-    moving: Moving
+    moving: BodyMotion
     camera: Sequence[float] | None = None
     limits: Array | None = None
 

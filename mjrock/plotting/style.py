@@ -42,7 +42,7 @@ FINE = 200
 COARSE = 120
 """Dots of a figure in a notebook [1/inch]."""
 BEHIND: Look = {"facecolor": "white", "alpha": 0.9, "edgecolor": "none", "pad": 0.5}
-"""A box behind words that may lie on lines."""
+"""A box behind text that may lie on lines."""
 ON_LINES: Look = {"frameon": True, "framealpha": 0.8, "edgecolor": "none", "fancybox": False, "fontsize": 8}
 """A legend that may lie on lines."""
 

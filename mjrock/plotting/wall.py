@@ -16,7 +16,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored, Effect, Point
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import require_flag, require_text
-from ..result.bodies import Moving
+from ..result.bodies import BodyMotion
 from .bodies import FORCE, GROUND_COLOUR, STONE, Bodies, Update, anchored, combined, draw_outlines, make_static
 from .picture import anything, picture
 from .style import BEHIND, WIDEST, Look, Picture, figure_of, plain_names, width_of, wrapped, write_title
@@ -30,7 +30,7 @@ LEADER: Look = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (
 TALLEST, LARGEST, LEAST = 3.4, 2.0, 1.7
 """Largest height of a drawing, largest width of the section, and least height of both in one scale [inch]."""
 POINTS = 4001
-"""Rotations at which ties are looked at, up to the overturning."""
+"""Number of rotations at which forces of ties are computed, up to the overturning."""
 LEADING, APART, EDGE, LINE = 0.2, 0.4, 0.15, 0.15
 """Room for leaders, between the drawings and at the edges, and height of a line [inch]."""
 SMALL = 8.0
@@ -76,7 +76,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     return combined(updates)
 
 
-def _openings(ax: Axes, case: Case, moving: Moving) -> Update:
+def _openings(ax: Axes, case: Case, moving: BodyMotion) -> Update:
     """Sill and head of each opening as dashed lines through the thickness."""
     wall = case.block
     heights = sorted({z for opening in wall.openings for z in (opening.sill, opening.head) if z > 0})
@@ -105,7 +105,7 @@ def tie_texts(ties: Sequence[Anchored], left: float, height: float) -> list[str]
     return texts
 
 
-def _force(ax: Axes, case: Case, effect: Effect, force: Point, moving: Moving) -> Update:
+def _force(ax: Axes, case: Case, effect: Effect, force: Point, moving: BodyMotion) -> Update:
     """A force downwards as an arrow onto its point, any other as one from its point along the force."""
     length, loads = 2 * ARROW * case.block.h, force[0] == 0
     places = moving.placed(0, np.array([[effect.offset, effect.height]]))[:, 0]
@@ -128,7 +128,7 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, moving: Moving) -
     return update
 
 
-def _mass(ax: Axes, added: Effect, moving: Moving) -> Update:
+def _mass(ax: Axes, added: Effect, moving: BodyMotion) -> Update:
     """An added mass: its outline, or a dot with its size where it is at a point."""
     if len(added.outline):
         corners = moving.placed(0, added.outline)
@@ -150,10 +150,10 @@ def _mass(ax: Axes, added: Effect, moving: Moving) -> Update:
 def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
-    A tie that breaks before the wall overturns says how far the centroid has then moved outwards as the wall turns
-    about its toe. Openings of one sill are drawn at equal distances: where they are along the wall plays no part.
-    Section and elevation have one scale. The elevation of a wall so long that it would leave no room for the section
-    has a smaller one, which its title gives.
+    The note on a tie that breaks before the wall overturns gives how far the centroid has then moved outwards, by a
+    rotation about the toe. Openings of one sill are drawn at equal distances: their places along the wall do not
+    matter. Section and elevation have one scale. The elevation of a wall so long that it would leave no room for the
+    section has a smaller one, which its title gives.
 
     Args:
         case: the wall and its effects.
@@ -231,7 +231,7 @@ def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text
 def section(ax: Axes, case: Case, stop: str = "stop") -> None:
     """The wall and all that it meets and carries, its thickness, and the height of the stop, which has a name."""
     wall, height, others = case.wall, 2 * case.block.h, ax.get_children()
-    bodies = Bodies.of_moving(Moving(case, np.zeros(1), np.zeros((1, 1, 3))))
+    bodies = Bodies.of_moving(BodyMotion(case, np.zeros(1), np.zeros((1, 1, 3))))
     draw_outlines(ax, bodies)(0)
     surroundings(ax, case, bodies)(0)
     for text in list(ax.texts):

@@ -52,7 +52,7 @@ HEADS = {
 MADE = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM")
 """Fields of the header of a motion that a report names as they are."""
 SCALED = re.compile(r"(?P<target>.+); factor (?P<factor>[\d.e+-]+) over T = (?P<periods>.+) s")
-"""How a header says to what its motion was scaled, see `scaled_by`."""
+"""The entry of a header with the spectrum that its motion was scaled to, see `scaled_by`."""
 ON_A_FLOOR = " on a floor"
 """How the names of motions and spectra of floors end."""
 
@@ -64,7 +64,7 @@ class Input(NamedTuple):
         key: its name in the program, by which `basis` names it.
         name: in words.
         value: with its unit.
-        rests: what it rests on where the user says nothing: "not_given"; "computed" of what follows from others;
+        rests: what it rests on where the user gives nothing: "not_given"; "computed" of what follows from others;
             "assumed" of what the program takes where nothing is given.
     """
 

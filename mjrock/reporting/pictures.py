@@ -22,7 +22,7 @@ from ..problem.masonry.limit.collapse import Collapse
 from ..problem.wall.case import Case
 from ..problem.wall.effects import constant_forces_of
 from ..quantities import Array
-from ..result.bodies import Moving
+from ..result.bodies import BodyMotion
 from ..result.response import Response
 from ..study.loading.design import Design
 from ..study.loading.limit_analysis import LimitCurve
@@ -123,7 +123,7 @@ def wall_drawn(case: Case, words: Words) -> Drawing:
     loaded = any(force[0] == 0 for _, force in constant_forces_of(case.effects).values())
     high = left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h
     elevation(right, case, (0.0, high))
-    opened = Bodies.of_moving(Moving(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None]))
+    opened = Bodies.of_moving(BodyMotion(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None]))
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
     named = _names(case, words)
     outside = max([width_of(figure, words("hinge"), SMALL), *(one.width for one in named if not one.inside)])

@@ -18,7 +18,7 @@ Value = TypeVar("Value")
 FILE = Path(__file__).with_name("texts.toml")
 """The texts of all languages. A further language is a further line of each."""
 MESSAGES = FILE.with_name("messages.toml")
-"""What the program says of input in languages other than that of its messages, by their English templates."""
+"""Messages about input in other languages, by their English templates."""
 SCALES: dict[str, tuple[tuple[float, float, str], ...]] = {
     "m": ((0.1, 1, "m"), (0, 1e-3, "mm")),
     "s": ((0.01, 1, "s"), (0, 1e-3, "ms")),

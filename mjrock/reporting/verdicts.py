@@ -130,7 +130,7 @@ def codes_of(mechanisms: Sequence[Mechanism], language: str) -> list[Code]:
 
 
 def sentences(codes: Sequence[Code], key: str, words: Words) -> list[str]:
-    """What each code says under a key, where it says anything."""
+    """The text of each code under a key, where it has one."""
     return [text for code in codes if (text := code.text(key, words.language))]
 
 

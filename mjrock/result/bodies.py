@@ -66,7 +66,7 @@ class Body(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Moving:
+class BodyMotion:
     """Where the bodies of a case are, for forces, ties, pictures and files.
 
     Args:
@@ -108,11 +108,11 @@ class Moving:
             return np.zeros((len(self.t), *points.shape))
         return displaced(points - self.case.centroids[block], self.pose_of(block))
 
-    def at(self, numbers: Sequence[int] | Integers) -> Moving:
+    def at(self, numbers: Sequence[int] | Integers) -> BodyMotion:
         """The body at some of the times."""
         return replace(self, t=self.t[numbers], pose=self.pose[numbers])
 
-    def between(self, times: Array) -> Moving:
+    def between(self, times: Array) -> BodyMotion:
         """The body at other times [s]; poses are interpolated linearly between the samples."""
         columns = self.pose.reshape(len(self.t), -1).T
         pose = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1)
@@ -158,7 +158,7 @@ def frames_at(t: Array, fps: float) -> Integers:
     return np.asarray(kept[np.unique(t[kept].astype(np.float32), return_index=True)[1]])
 
 
-def bodies_of(moving: Moving, velocity: Array) -> list[Body]:
+def bodies_of(moving: BodyMotion, velocity: Array) -> list[Body]:
     """All bodies, in the order of the blocks, or the wall and what it stands against.
 
     Args:

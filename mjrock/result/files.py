@@ -207,7 +207,7 @@ def _grid(
 
 
 def _array(name: str, values: Array | NDArray[np.uint8], tuples: int = 0) -> str:
-    """An array. That of no point or cell says how many numbers it has."""
+    """The element of an array. One of neither points nor cells has its number of tuples."""
     kind = {"f": "Float64", "i": "Int64", "u": "UInt8"}[values.dtype.kind]
     wide = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
     wide += f' NumberOfTuples="{tuples}"' if tuples else ""

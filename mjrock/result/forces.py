@@ -11,7 +11,7 @@ import numpy as np
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.rest_geometry import JointFrames
 from ..quantities import Array, require_size
-from .bodies import Moving
+from .bodies import BodyMotion
 from .ties import across
 
 ANCHORS = "anchors"
@@ -127,7 +127,7 @@ class KeptForces(NamedTuple):
 def forces_of(case: AnyCase, frames: JointFrames, gathered: KeptForces) -> Forces:
     """The forces of a run from those that were kept."""
     d = frames.middle.shape[1]
-    middle, axes = Moving(case, gathered.t, gathered.pose).joints(frames)
+    middle, axes = BodyMotion(case, gathered.t, gathered.pose).joints(frames)
     force, about = gathered.loads[..., :d], gathered.loads[..., d:]
     along = np.matmul(axes, force[..., None])[..., 0]
     normal, shear = along[..., 0], along[..., 1:]
@@ -167,7 +167,7 @@ def guides_of(case: AnyCase, gathered: KeptForces) -> dict[str, Array]:
 
 def add_links(case: AnyCase, gathered: KeptForces, reactions: dict[str, Array]) -> None:
     """Add the forces of links to the reactions of the blocks that they are anchored on, and to that of all anchors."""
-    moving, blocks = Moving(case, gathered.t, gathered.pose), case.blocks
+    moving, blocks = BodyMotion(case, gathered.t, gathered.pose), case.blocks
     for name, pulled in gathered.pulled.items():
         if name not in case.links:
             continue  # of a device that only explicit steps have

@@ -36,7 +36,7 @@ UNIT_ROUNDING = 1e-6
 """Largest difference of the length of a quaternion from one [-]."""
 
 
-class Unpaid(NamedTuple):
+class EnergyImbalance(NamedTuple):
     """Energy without an account [J], what it is compared with [J] and in words, and the share that is warned of."""
 
     energy: float
@@ -66,10 +66,10 @@ class WallProblem:
         """Impacts and peaks, see `wall_reading`."""
         return wall_reading(self.case, self.contacts, t, motion, released=released)
 
-    def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
+    def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> EnergyImbalance:
         """Energy [J] that has appeared while the wall could still come back."""
         unpaid = ledger.residual[self.case.returns_from(motion.theta[:, 0])].max(initial=0.0)
-        return Unpaid(float(unpaid), scale, "the energy there was", RESIDUAL_OF_WALL)
+        return EnergyImbalance(float(unpaid), scale, "the energy there was", RESIDUAL_OF_WALL)
 
 
 @dataclass(frozen=True)
@@ -92,9 +92,9 @@ class MasonryProblem:
         """Openings, slidings and falls, see `masonry_reading`."""
         return masonry_reading(self.case, scene, t, motion, beside)
 
-    def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> Unpaid:
+    def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> EnergyImbalance:
         """Energy [J] that has appeared or vanished."""
-        return Unpaid(float(np.abs(ledger.residual).max()), ledger.largest, "its largest part", UNPAID)
+        return EnergyImbalance(float(np.abs(ledger.residual).max()), ledger.largest, "its largest part", UNPAID)
 
 
 Problem = WallProblem | MasonryProblem

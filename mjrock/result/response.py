@@ -18,7 +18,7 @@ from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.rest_geometry import in_space
 from ..quantities import Array, keep, require_path, require_within, shown
-from .bodies import Moving, bodies_of, frames_at, openings
+from .bodies import BodyMotion, bodies_of, frames_at, openings
 from .ending import Outcome
 from .files import comments_text, results_text, texts_of_bodies, texts_of_joints, write_gltf, write_series
 from .forces import Forces
@@ -131,9 +131,9 @@ class Response(NotebookPicture):
         return self.motion.energy
 
     @property
-    def moving(self) -> Moving:
+    def moving(self) -> BodyMotion:
         """Where the bodies are at the samples."""
-        return Moving(self.case, self.t, self.pose)
+        return BodyMotion(self.case, self.t, self.pose)
 
     @property
     def in_space(self) -> bool:
@@ -411,7 +411,7 @@ class Response(NotebookPicture):
     def save(self, path: str | Path) -> Path:
         """Write all of it to a file of HDF5, from which `mjrock.load` reads it to the bit.
 
-        Opened by h5py or xarray the file says itself what is in it, see docs/results.md. It needs h5py, the extra
+        Opened by h5py or xarray the file describes its content, see docs/results.md. It needs h5py, the extra
         `hdf5`.
 
         Args:

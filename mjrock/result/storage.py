@@ -1,4 +1,4 @@
-"""A response in one file of HDF5, which says itself what is in it, and from which the response is read to the bit.
+"""A response in one file of HDF5, which describes its content, and from which the response is read to the bit.
 
 At the top are the arrays of the response, each with units, a description and its dimensions; xarray and programs for
 NetCDF open them. In the group `answer` are the parts of the response as texts in JSON, see `tree`, and the arrays that
@@ -23,13 +23,13 @@ from .tree import Reader, Tree, UnreadableError, Writer, fields_of, name_of, uni
 from .variables import Variable, attributes_of, variables_of
 
 FORMAT, FORMAT_VERSION = "mjrock response", 1
-"""What a file says that it is, and the number of its layout, which grows when older programs would misread it."""
+"""Name of the format, and number of its layout, which grows when older programs would misread it."""
 GROUP, CHECKSUMS = "answer", "answer/checksums"
 """The group of what a response is made from, and the text with the SHA-256 of every dataset."""
 COMPRESSED = 1000
 """Numbers of an array from which on it is compressed."""
 MEMORY = "numbers that explicit steps go on from, each in SI units"
-"""What an array is whose class does not say it."""
+"""Description of an array whose class has none."""
 NUMBERS_IN_JSON = re.compile(r"\[\n\s+([-\d][^\[\]{}\"]*?)\n\s+\]")
 """A list of numbers in JSON, one a line."""
 

@@ -13,7 +13,7 @@ from ..problem.masonry.case import AnyCase
 from ..problem.wall.effect import Anchored
 from ..quantities import Array, warn_of
 from ..scene.scene import Scene
-from .bodies import Moving
+from .bodies import BodyMotion
 
 PLAUSIBLE = 0.05
 """Share of its length up to which a tie may yield before that is warned of [-]: the characteristic strain at the
@@ -71,12 +71,12 @@ class TieMotion:
     broken: float
 
 
-def motion_of_ties(moving: Moving, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
+def motion_of_ties(moving: BodyMotion, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
     """The ties of a case where its bodies are."""
     return {name: _motion(moving, tie, plastic.get(name)) for name, tie in moving.case.springs.items()}
 
 
-def _motion(moving: Moving, tie: Anchored, ended: Plastic | None) -> TieMotion:
+def _motion(moving: BodyMotion, tie: Anchored, ended: Plastic | None) -> TieMotion:
     elongation, law, t = elongation_of(moving, tie), tie.law, moving.t
     before = 0.0 if ended is None else ended.before
     if law.push > 0:
@@ -95,7 +95,7 @@ def _motion(moving: Moving, tie: Anchored, ended: Plastic | None) -> TieMotion:
     return TieMotion(elongation, drawn, force, law.strength if spent else float(force.max()), broken)
 
 
-def elongation_of(moving: Moving, tie: Anchored) -> Array:
+def elongation_of(moving: BodyMotion, tie: Anchored) -> Array:
     """How much longer than its slack length a tie is where bodies are [m], negative where it is slack, shape (n,)."""
     return np.asarray(np.linalg.norm(across(moving, tie), axis=1) - tie.law.reach)
 
@@ -113,7 +113,7 @@ def link_ends(case: AnyCase, link: Anchored) -> tuple[LinkEnd, LinkEnd]:
     return LinkEnd(link.block, held), LinkEnd(link.anchor_block, link.anchor_of(held))
 
 
-def across(moving: Moving, tie: Anchored) -> Array:
+def across(moving: BodyMotion, tie: Anchored) -> Array:
     """From the anchor of a link to the point that it holds where bodies are [m], shape (n, d)."""
     held, anchor = link_ends(moving.case, tie)
     at_held, at_anchor = (moving.displaced(end.block, end.point[None])[:, 0] for end in (held, anchor))

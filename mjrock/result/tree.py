@@ -31,7 +31,7 @@ SINGLE = (bool, int, str, type(None))
 BRACKETS = re.compile(r"\s\[([^\]:]+)\]")
 """A unit in a docstring."""
 ARGUMENT = re.compile(r"^ +(?P<names>\w+(?:, \w+)*): (?P<text>.*)")
-"""The first line of what a docstring says of arguments."""
+"""The first line of the description of arguments in a docstring."""
 INLINE = 100
 """Most numbers of an array that stands in the tree itself."""
 

@@ -11,7 +11,7 @@ from matplotlib.transforms import Bbox, TransformedBbox
 
 import mjrock as mr
 from mjrock.plotting.solids import MARGIN, Solids, draw_solids, fill_view
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 
 WIDTH, LINE = 7.4, 0.15
 """Width of the picture, and height of a line above a panel [inch]."""
@@ -34,7 +34,7 @@ def states(shown: Sequence[State], camera: tuple[float, float], columns: int = 3
         columns: panels in a row.
     """
     poses = np.stack([one.answer.pose[one.sample] for one in shown])
-    bodies = Solids(Moving(shown[0].answer.case, np.arange(float(len(shown))), poses), camera)
+    bodies = Solids(BodyMotion(shown[0].answer.case, np.arange(float(len(shown))), poses), camera)
     wide, high = bodies.extent_seen
     panel = MARGIN[1] + (WIDTH / columns - MARGIN[0]) * high / wide
     row = panel + LINE * (1 + max(1 + one.label.count("\n") for one in shown))

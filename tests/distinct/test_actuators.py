@@ -5,7 +5,7 @@ import pytest
 from driven import WEIGHT, B, H, panel
 
 import mjrock as mr
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 
 
 def actuator(x, z, displacement, *, in_space=False, stiffness=1e8, damping=2.7e5, **more):
@@ -266,7 +266,7 @@ def test_what_a_guide_presses_down_is_part_of_the_reactions(k_s):
     assert guide[:, 0].min() < -WEIGHT  # it presses down
     forces = answer.forces
     top = forces.joints.index("panel|beam")
-    middle, axes = Moving(case, answer.t, answer.pose).joints(forces.frames)
+    middle, axes = BodyMotion(case, answer.t, answer.pose).joints(forces.frames)
     where = middle[:, top] + forces.eccentricity[:, top, None] * axes[:, top, 1]
     push = forces.normal[:, top, None] * axes[:, top, 0] + forces.shear[:, top, None] * axes[:, top, 1]
     arm = where - [0.0, 2.1] - answer.pose[:, 1, :2]

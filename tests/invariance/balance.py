@@ -11,7 +11,7 @@ import numpy as np
 import mjrock as mr
 from mjrock.problem.masonry.effects import laden
 from mjrock.problem.masonry.histories import motions_of_tilt
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 from mjrock.result.ties import across
 
 
@@ -102,7 +102,7 @@ def outer_forces(answer: mr.Response) -> np.ndarray:
 def joint_forces(answer: mr.Response) -> np.ndarray:
     """What the joints do to each body at all samples [N], shape (n, bodies, d)."""
     kept, d = answer.forces, 3 if answer.in_space else 2
-    axes = Moving(answer.case, answer.t, answer.pose).joints(kept.frames)[1]
+    axes = BodyMotion(answer.case, answer.t, answer.pose).joints(kept.frames)[1]
     shear = kept.shear.reshape(*kept.normal.shape, d - 1)
     force = np.einsum("njk,njkd->njd", np.concatenate([kept.normal[..., None], shear], axis=2), axes)
     total = np.zeros((len(answer.t), len(masses(answer.case)), d))
@@ -120,7 +120,7 @@ def device_forces(answer: mr.Response) -> np.ndarray:
     total = np.zeros((len(answer.t), len(row), 3 if answer.in_space else 2))
     for name, pull in kept.links.items():
         link = case.links[name]
-        way = across(Moving(case, answer.t, answer.pose), link)
+        way = across(BodyMotion(case, answer.t, answer.pose), link)
         force = -pull[:, None] * way / np.linalg.norm(way, axis=1)[:, None]
         total[:, row[link.block]] += force
         if link.anchor_block in row:

@@ -10,7 +10,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation, histories
 from mjrock.plotting.bodies import Bodies, pulling
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 from mjrock.result.motion import SampledMotion
 
 WALL = mr.Block.from_size(thickness=0.6, height=4.2)
@@ -146,7 +146,7 @@ def test_a_tie_that_has_yielded_is_slack_before_it_is_back():
     tie = mr.Tie(4.0, 1e6, strength=1e3)
     case = mr.Case(WALL, 0.0, 1.0, effects=(tie,))
     theta = np.array([0.0, 2e-4, 5e-3, 4e-3, 4.9e-3, 6e-3])
-    moving = Moving(case, np.arange(6.0), WALL.pose(theta)[:, None])
+    moving = BodyMotion(case, np.arange(6.0), WALL.pose(theta)[:, None])
     assert pulling(moving, tie)[0].tolist() == [False, True, True, False, True, True]
 
 

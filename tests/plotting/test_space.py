@@ -13,7 +13,7 @@ from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation
 from mjrock.plotting.rasterizer import FLOOR, INK, SHADED, View
 from mjrock.plotting.solids import Rendering, Solids
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 
 GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")
 PAIR = (mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5), name="front"), mr.Polyhedron.box((1, 1, 1), (-0.5, 0, 0.5)))
@@ -27,7 +27,7 @@ def axes():
 
 def posed(masonry, pose, magnify=1.0, camera=None):
     """Masonry at a pose, as a picture has it."""
-    return Solids(Moving(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose[None], magnify), camera)
+    return Solids(BodyMotion(mr.MasonryCase(masonry, 1.0), np.zeros(1), pose[None], magnify), camera)
 
 
 def drawn_on(ax):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result.bodies import Moving, bodies_of
+from mjrock.result.bodies import BodyMotion, bodies_of
 
 trimesh, meshio = pytest.importorskip("trimesh"), pytest.importorskip("meshio")
 
@@ -69,7 +69,7 @@ def test_meshio_finds_blocks_where_they_are_and_forces_of_joints(pillar, tmp_pat
 )
 def test_the_body_of_a_wall_has_its_mass(wall):
     case, still = mr.Case(wall, 0.1 * wall.alpha, 1.0), np.zeros((1, 1, 3))
-    body = bodies_of(Moving(case, np.zeros(1), still), still)[0]
+    body = bodies_of(BodyMotion(case, np.zeros(1), still), still)[0]
     fans = [(face[0], *face[i : i + 2]) for face in body.faces for i in range(1, len(face) - 1)]
     mesh = trimesh.Trimesh(body.corners, fans)
     assert mesh.volume * wall.density == pytest.approx(wall.mass, rel=1e-9)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 from mjrock.result.ties import across
 
 
@@ -38,7 +38,7 @@ def test_the_joint_on_the_lowest_free_block_moves_and_turns_with_it():
     block = mr.Block.from_size(thickness=0.5, height=0.8, length=1.0, density=2000.0)
     case = mr.MasonryCase(mr.Masonry.stack([block, block], 1e9), 1.0)
     x, z, turn = 0.1, 0.2, 0.3
-    middle, axes = Moving(case, np.zeros(1), np.array([[(x, z, turn), (0.0, 0.0, 0.0)]])).joints(
+    middle, axes = BodyMotion(case, np.zeros(1), np.array([[(x, z, turn), (0.0, 0.0, 0.0)]])).joints(
         case.rest_geometry.frames
     )
     np.testing.assert_allclose(middle[0, 0], (0.0, 0.0), atol=1e-12)
@@ -52,7 +52,7 @@ def test_the_joint_on_a_support_moves_with_it():
     masonry = mr.Masonry.stack([block], 1e9)
     ground = next(name for name, one in zip(masonry.names, masonry.blocks, strict=True) if one.fixed)
     case = mr.MasonryCase(masonry, 1.0, supports={ground: ([0.0, 1.0], [0.0, 0.2], [0.0, -0.1])})
-    middle, axes = Moving(case, np.array([0.5]), np.zeros((1, 1, 3))).joints(case.rest_geometry.frames)
+    middle, axes = BodyMotion(case, np.array([0.5]), np.zeros((1, 1, 3))).joints(case.rest_geometry.frames)
     np.testing.assert_allclose(middle[0, 0], (0.1, -0.05), atol=1e-12)
     np.testing.assert_allclose(axes[0, 0, 0], (0.0, 1.0), atol=1e-12)
 
@@ -61,7 +61,7 @@ def test_a_tie_of_a_wall_holds_its_inner_face():
     """Turned about its outer toe, at half the thickness outwards."""
     wall = mr.Block.from_size(thickness=0.5, height=4.0, length=2.0, density=1800.0)
     case, turn = mr.Case(wall, 0.0, 1.0, motion=mr.GroundMotion.rectangular(1.0, 0.5), effects=mr.Tie(3.0, 1e6)), 0.1
-    way = across(Moving(case, np.zeros(1), wall.pose(np.array([turn]))[None]), case.links["tie_0"])[0]
+    way = across(BodyMotion(case, np.zeros(1), wall.pose(np.array([turn]))[None]), case.links["tie_0"])[0]
     sine, cosine = np.sin(turn), np.cos(turn)
     outwards = case.links["tie_0"].length + 0.25 - 0.5 * cosine + 3.0 * sine + 0.25
     np.testing.assert_allclose(way, (outwards, 0.5 * sine + 3.0 * cosine - 3.0), atol=1e-12)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 from mjrock.result.ties import Plastic, motion_of_ties
 
 WALL = mr.Block.from_size(0.6, 4.2)
@@ -19,7 +19,7 @@ def pulled(effect, moved, ended=None):
     (name,) = case.springs
     pose = np.zeros((len(T), 1, 3))
     pose[:, 0, 0] = moved
-    return motion_of_ties(Moving(case, T, pose), {} if ended is None else {name: ended})[name]
+    return motion_of_ties(BodyMotion(case, T, pose), {} if ended is None else {name: ended})[name]
 
 
 @pytest.mark.parametrize("slip", [0.5, 5e3])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.result.bodies import Moving
+from mjrock.result.bodies import BodyMotion
 
 BOND = mr.Bond(tension=0.05e6, cohesion=0.07e6, opening_energy=0.5, slip_energy=5.0)
 
@@ -27,7 +27,7 @@ LIFTED = mr.GroundMotion.sine(13.0, 0.1, cycles=2)
 def free_body(masonry, answer, accel, rise):
     """Largest force and moment that the joints of a block lack, over its mass times acceleration and its weight."""
     forces, pose, h = answer.forces, answer.pose, answer.t[1]
-    middle, axes = Moving(answer.case, answer.t, pose).joints(forces.frames)
+    middle, axes = BodyMotion(answer.case, answer.t, pose).joints(forces.frames)
     local = np.concatenate([forces.normal[..., None], forces.shear[..., None]], axis=2)
     force = (local[..., None] * axes).sum(axis=2)
     turned = (pose[2:] - 2 * pose[1:-1] + pose[:-2]) / h**2

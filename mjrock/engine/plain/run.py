@@ -12,7 +12,7 @@ import numpy as np
 from ...geometry.frames import PLANE
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, require_size, warn_of
-from ...result.bodies import Moving
+from ...result.bodies import BodyMotion
 from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, KeptForces, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
@@ -175,7 +175,7 @@ class PlainRun:
     def forces(self, plastic: dict[str, Plastic]) -> Forces:
         """The forces of joints, links and fixed blocks."""
         case, links, at = self.of.problem.case, self.of.scene.links, self.at
-        ties = motion_of_ties(Moving(case, at.t, at.pose), plastic)
+        ties = motion_of_ties(BodyMotion(case, at.t, at.pose), plastic)
         pulled = {name: ties[name].force for name in links.sprung.names}
         pulled |= dict(zip(links.damped.names, at.pulled.T, strict=True))
         return forces_of(case, case.rest_geometry.frames, KeptForces(at.t, at.pose, at.loads, at.held, pulled))
