@@ -198,7 +198,6 @@ def write_card() -> None:
 compile_loops()
 write_live_view()
 copy_films()
-made_pages.write_scripts(LIVE)
 shutil.copy(HERE.parent / "CITATION.cff", LIVE)
 write_card()
 
@@ -226,7 +225,7 @@ TREES: dict[int, str] = {}
 
 def one_tree(app: Any, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
     """Make the tree of pages once for all listings of source in as many folders, which it does not name: .1 s each."""
-    if page.startswith("_modules/"):
+    if page.startswith(("_modules/", "scripts/")):
         depth, tree = page.count("/"), context["toctree"]
         context["toctree"] = lambda **options: TREES.get(depth) or TREES.setdefault(depth, tree(**options))
 
@@ -270,6 +269,7 @@ def setup(app: object) -> None:
     app.connect("autodoc-process-docstring", plain, priority=100)  # type: ignore[attr-defined]
     app.connect("autodoc-process-signature", without_ranges)  # type: ignore[attr-defined]
     app.connect("source-read", made)  # type: ignore[attr-defined]
+    app.connect("html-collect-pages", lambda app: made_pages.listings())  # type: ignore[attr-defined]
     app.connect("html-page-context", one_tree, priority=100)  # type: ignore[attr-defined]  # before the theme takes it
     app.connect("builder-inited", small_pictures, priority=900)  # type: ignore[attr-defined]  # once examples have run
     app.connect("html-page-context", finished)  # type: ignore[attr-defined]

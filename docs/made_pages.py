@@ -7,6 +7,7 @@ import importlib
 import inspect
 import re
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 from PIL import Image
@@ -180,22 +181,21 @@ def section(found: re.Match[str]) -> str:
 
 
 def linked_scripts(page: str, text: str) -> str:
-    """Names of scripts in the prose of a page as links to their text, which `write_scripts` writes."""
+    """Names of scripts in the prose of a page as links to their text, of which `listings` makes pages."""
     up = "../" * page.count("/")
     parts = re.split(r"(?ms)(^`{3,}\{?.*?^`{3,}$)", text)
     parts[::2] = [SCRIPT.sub(rf'<a href="{up}\1.html"><code>\1.py\2</code></a>', part) for part in parts[::2]]
     return "".join(parts)
 
 
-def write_scripts(folder: Path) -> None:
-    """Write each script as a page, with the colours of its language."""
-    form = HtmlFormatter(full=True, linenos="inline", style="default")
+def listings() -> Iterator[tuple[str, dict[str, str], str]]:
+    """Each script as a page of the site: its name, its title and listing, and the template."""
+    form = HtmlFormatter(linespans="line")
     for script in sorted((HERE.parent / "scripts").glob("*/**/*.py")):
         name = script.relative_to(HERE.parent)
-        form.title = str(name)
-        page = folder / name.with_suffix(".html")
-        page.parent.mkdir(parents=True, exist_ok=True)
-        page.write_text(highlight(script.read_text(encoding="utf-8"), PythonLexer(), form), encoding="utf-8")
+        listing = highlight(script.read_text(encoding="utf-8"), PythonLexer(), form)
+        body = f'<h1>{name}</h1><div class="listing">{listing}</div>'
+        yield name.with_suffix("").as_posix(), {"title": str(name), "body": body}, "page.html"
 
 
 @functools.cache
