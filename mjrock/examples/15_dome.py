@@ -27,11 +27,12 @@ for thickness in (0.3, 0.1):  # m
 
 # %%
 # Both after one second.
+box = [(-3.6, 3.6), (-3.6, 3.6), (0.0, 3.2)]  # m, for one scale
 figure = Figure(figsize=(7.0, 3.2), layout="constrained")
 for ax, (thickness, answer) in zip(
     figure.subplots(1, 2, subplot_kw={"projection": "3d"}),
     answers.items(),
     strict=True,
 ):
-    plotting.blocks(ax, answer, at=1.0)
+    plotting.blocks(ax, answer, at=1.0, limits=box)
     ax.set_title(f"{thickness} m thick")

@@ -49,13 +49,14 @@ answer = mr.solve_explicit(
 )
 first, *others = answer.fallen.values()
 print(f"{1 + len(others)} blocks fall, the first after {first:.1f} s")
+box = [(-1.4, 3.0), (-1.7, 1.7), (0.0, 1.6)]  # m, for one scale
 figure = Figure(figsize=(7.4, 2.8), layout="constrained")
 for ax, t in zip(
     figure.subplots(1, 3, subplot_kw={"projection": "3d"}),
     (0.0, first, 7.0),
     strict=True,
 ):
-    plotting.blocks(ax, answer, at=t)
+    plotting.blocks(ax, answer, at=t, limits=box)
     ax.set_title(f"{t:.1f} s")
 
 # %%

@@ -247,7 +247,7 @@ def moved(before: str, after: str) -> str:
     old, new = NUMBER.findall(before), NUMBER.findall(after)
     if len(old) != len(new):
         return f"{len(old)} numbers before, {len(new)} now"
-    pairs = [(float(a), float(b)) for a, b in zip(old, new, strict=True) if a != b]
+    pairs = [(a, b) for a, b in zip(map(float, old), map(float, new), strict=True) if a != b]
     if not pairs:
         return "the words alone have changed"
     a, b = max(pairs, key=lambda pair: abs(pair[1] - pair[0]) / max(map(abs, pair)))

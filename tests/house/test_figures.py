@@ -107,6 +107,9 @@ def test_numbers_that_have_moved_are_printed(repository, capsys):
     printed = capsys.readouterr().out
     assert "curve.txt: 2 of 4 numbers have changed, most of all 0.002 to 0.001" in printed
     assert "last made on " in printed
+    made(repository, "peak -0.0 m", name="zero.txt")
+    made(repository, "peak +0.0 m", name="zero.txt")
+    assert "zero.txt: the words alone have changed" in capsys.readouterr().out
 
 
 def test_a_quick_study_is_not_a_figure(repository):
