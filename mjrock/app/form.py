@@ -15,15 +15,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..assessment.tables import Place
+from ..assessment.sharing import Part
+from ..assessment.tables import Document, Place
 from ..reporting.page import HEADS
 from ..reporting.texts import MINUS, POWERS, Words, languages
 
 TEXTS = Path(__file__).with_name("texts.toml")
 """The texts of the form, beside those of the report."""
-Schema = Mapping[str, Any]
-Tables = dict[str, Any]
-"""Tables of a file, or the input of the form."""
 NAMES = "kind", "make", "solver"
 """Keys that name the class, its constructor or the solver that a table stands for."""
 FILES = "file", "folder"
@@ -104,7 +102,7 @@ class Plan:
         root: the field of the whole file.
     """
 
-    def __init__(self, schema: Schema, words: Words) -> None:
+    def __init__(self, schema: Part, words: Words) -> None:
         self.schema, self.words = schema, words
         self.tables: dict[str, list[Field]] = {}
         self._owners: dict[str, str] = {}
@@ -115,7 +113,7 @@ class Plan:
             fields = [one for one in self.tables[variant.id] if one.key != "language"]
             self.tables[variant.id] = [*fields, several]
 
-    def _field(self, key: str, node: Schema, needed: bool, place: str = "") -> Field:
+    def _field(self, key: str, node: Part, needed: bool, place: str = "") -> Field:
         """The field of a key; `place` is the id of the table that it is in."""
         kinds = list(self._kinds(node))
         plain = [one for _, one in kinds if not _is_table(one)]
@@ -145,7 +143,7 @@ class Plan:
             types=types,
         )
 
-    def _nested(self, kinds: list[tuple[str, Schema]], here: str) -> tuple[str, tuple[Variant, ...]]:
+    def _nested(self, kinds: list[tuple[str, Part]], here: str) -> tuple[str, tuple[Variant, ...]]:
         """The control of a field with tables, and what these may be; an empty one of a field without any."""
         for key, control in (("items", "list"), ("", "table"), ("additionalProperties", "named")):
             for name, one in kinds:
@@ -156,7 +154,7 @@ class Plan:
                     return control, self._variants([pair for pair in every if "properties" in pair[1]], here)
         return ("pairs", ()) if any(_is_table(one) for _, one in kinds) else ("", ())
 
-    def _kinds(self, node: Schema, name: str = "") -> Iterator[tuple[str, Schema]]:
+    def _kinds(self, node: Part, name: str = "") -> Iterator[tuple[str, Part]]:
         """The alternatives of a part of the schema, with the names of those that are definitions."""
         if "$ref" in node:
             name = str(node["$ref"]).rpartition("/")[2]
@@ -167,7 +165,7 @@ class Plan:
         elif node:
             yield name, node
 
-    def _variants(self, tables: list[tuple[str, Schema]], here: str) -> tuple[Variant, ...]:
+    def _variants(self, tables: list[tuple[str, Part]], here: str) -> tuple[Variant, ...]:
         """What a table may be."""
         found = []
         kinds = {one["properties"].get("kind", {}).get("const") for _, one in tables}
@@ -184,7 +182,7 @@ class Plan:
             found.append(Variant(id, self._variant_label(str(one.get("title", "")), names), names, usual))
         return tuple(found)
 
-    def _register(self, id: str, table: Schema) -> None:
+    def _register(self, id: str, table: Part) -> None:
         """Plan the fields of a table, once."""
         if id in self.tables:
             return
@@ -194,7 +192,7 @@ class Plan:
             if key not in NAMES or "const" not in node:
                 self.tables[id].append(self._field(key, node, key in needed, id))
 
-    def _control(self, key: str, plain: list[Schema], types: frozenset[str], chosen: bool) -> str:
+    def _control(self, key: str, plain: list[Part], types: frozenset[str], chosen: bool) -> str:
         """How a value without tables is typed."""
         if any(one.get("x-path") or one.get("items", {}).get("x-path") for one in plain):
             return "folder" if key == "folder" else "file"
@@ -204,7 +202,7 @@ class Plan:
             return "number"
         return "row" if types == {"array"} else "text"
 
-    def _choices(self, plain: list[Schema], types: frozenset[str]) -> tuple[tuple[str, str], ...]:
+    def _choices(self, plain: list[Part], types: frozenset[str]) -> tuple[tuple[str, str], ...]:
         """The values that can be chosen, with their labels; none where others can be typed."""
         texts = [str(value) for one in plain for value in one.get("enum", ())]
         only = [one["const"] for one in plain if "const" in one]
@@ -214,7 +212,7 @@ class Plan:
             return ()
         return (*truths, *((value, self.words.or_else(f"value_{value}", value)) for value in texts))
 
-    def _range(self, node: Schema) -> str:
+    def _range(self, node: Part) -> str:
         """The range of a number in words, with its unit."""
         low, high = node.get("minimum", -math.inf), node.get("maximum", math.inf)
         if not math.isfinite(low):
@@ -240,7 +238,7 @@ class Plan:
         owner = self._owners.get(place, "")
         return [f"{owner}.{key}", f"{owner.partition('.')[0]}.{key}", key]
 
-    def _default(self, node: Schema) -> str:
+    def _default(self, node: Part) -> str:
         default = node.get("default")
         if isinstance(default, bool):
             return text_of(default)
@@ -272,16 +270,16 @@ class Plan:
         fitting = [one for one in field.variants if all(fits(one, key) for key in used)]
         return [*fitting, *(one for one in field.variants if fits(one, NAMES[0])), *field.variants][0]
 
-    def tables_of(self, state: Mapping[str, Any]) -> Tables:
+    def tables_of(self, state: Document) -> Document:
         """The tables of the file that the input of the form stands for."""
         return self._read(self.root, state)
 
-    def _read(self, field: Field, state: Mapping[str, Any]) -> Tables:
+    def _read(self, field: Field, state: Document) -> Document:
         fields = self.tables[self.variant(field, state).id]
         found = {key: self.field(fields, key) for key, one in state.items() if one != ""}
         return {key: self._value(field, state[key]) for key, field in found.items()}
 
-    def _value(self, field: Field | None, value: Any) -> Any:
+    def _value(self, field: Field | None, value: object) -> Any:
         if isinstance(value, Mapping):
             if field is None or field.control in ("named", "pairs"):
                 return {name: self._item(field, one) for name, one in value.items()}
@@ -290,13 +288,13 @@ class Plan:
             return [self._item(field, one) for one in value]
         return typed(value, ANY if field is None else field.types) if isinstance(value, str) else value
 
-    def _item(self, field: Field | None, value: Any) -> Any:
+    def _item(self, field: Field | None, value: object) -> Any:
         """A table of a field, or an item of a list, whose texts stay as they are."""
         if field is None:
             return self._value(None, value)
         return self._read(field, value) if isinstance(value, Mapping) and field.variants else value
 
-    def files_in(self, tables: Mapping[str, Any], field: Field | None = None) -> Iterator[tuple[Place, object]]:
+    def files_in(self, tables: Document, field: Field | None = None) -> Iterator[tuple[Place, object]]:
         """The places of all files that tables of the file name, and what they name."""
         field = field or self.root
         fields = self.tables[self.variant(field, tables).id]
@@ -308,7 +306,7 @@ class Plan:
                 elif own is not None and own.variants and isinstance(one, Mapping):
                     yield from ((at + place, name) for place, name in self._files_of(own, one))
 
-    def _files_of(self, field: Field, table: Mapping[str, Any]) -> Iterator[tuple[Place, object]]:
+    def _files_of(self, field: Field, table: Document) -> Iterator[tuple[Place, object]]:
         """The same of a table, or of tables by name."""
         if field.control != "named":
             yield from self.files_in(table, field)
@@ -329,36 +327,36 @@ class Plan:
         return {"tables": tables, "root": plain(self.root)}
 
 
-def _mechanisms_of(several: Schema) -> Schema:
+def _mechanisms_of(several: Part) -> Part:
     """The table of mechanisms by name, from that of a file with several."""
     parts = several.get("anyOf") or several["oneOf"]
-    found: Schema = parts[0]["properties"]["mechanisms"]
+    found: Part = parts[0]["properties"]["mechanisms"]
     return found
 
 
-def _each(value: Any, place: Place) -> list[tuple[Place, Any]]:
+def _each(value: object, place: Place) -> list[tuple[Place, Any]]:
     """A value with its place, or each item of a list with its own."""
     return [((*place, i), one) for i, one in enumerate(value)] if isinstance(value, list) else [(place, value)]
 
 
-def _is_table(node: Schema) -> bool:
+def _is_table(node: Part) -> bool:
     return node.get("type") == "object" or "properties" in node
 
 
-def _types(node: Schema) -> list[str]:
+def _types(node: Part) -> list[str]:
     if isinstance(node.get("const"), bool):
         return ["boolean"]
     given = node.get("type", "string" if "enum" in node else [])
     return [given] if isinstance(given, str) else list(given)
 
 
-def _unit(node: Schema) -> str:
+def _unit(node: Part) -> str:
     """The unit of a number as it is printed."""
     unit = str(node.get("unit", ""))
     return unit.replace("m3", "m\u00b3").replace("m2", "m\u00b2").replace("s2", "s\u00b2").replace(" ", "\u00b7")
 
 
-def _without_range(text: str, node: Schema) -> str:
+def _without_range(text: str, node: Part) -> str:
     """A description without the range that the schema has too."""
 
     def repeats(found: re.Match[str]) -> bool:
@@ -394,7 +392,7 @@ def typed(text: str, types: frozenset[str]) -> Any:
     return text
 
 
-def text_of(value: Any) -> str:
+def text_of(value: object) -> str:
     """A value of a file as a person would type it, with all its digits."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -405,10 +403,10 @@ def text_of(value: Any) -> str:
     return str(value)
 
 
-def state_of(tables: Mapping[str, Any]) -> Tables:
+def state_of(tables: Document) -> Document:
     """The input of the form that stands for tables of a file: its values as texts."""
 
-    def one(value: Any) -> Any:
+    def one(value: object) -> Any:
         if isinstance(value, Mapping):
             return state_of(value)
         if isinstance(value, list) and value and all(isinstance(each, Mapping) for each in value):

@@ -109,7 +109,7 @@ class FormServer(ThreadingHTTPServer):
             self._tickets.discard(ticket)
             return good
 
-    def handle_error(self, request: Any, client_address: Any) -> None:
+    def handle_error(self, request: object, client_address: object) -> None:
         """Leave out errors of connections that the other side has ended."""
 
 

@@ -25,9 +25,8 @@ from matplotlib.figure import Figure
 
 from ..assessment.assessment import Assessment, assessment_of
 from ..assessment.schema import whole_schema
-from ..assessment.tables import AssessmentError, Fault, parsed, spelt_place
+from ..assessment.tables import AssessmentError, Document, Fault, parsed, spelt_place
 from ..assessment.templates import seeds
-from ..assessment.writing import toml_text
 from ..bars import Progress, progress_given_to
 from ..plotting.browser import view
 from ..quantities import Message, brief, reason, require_kind, shown
@@ -39,8 +38,9 @@ from ..reporting.parts import parts_of
 from ..reporting.texts import FOUND, Words, languages
 from ..reporting.verdicts import Mechanism, answers, kinematic_steps, ranked, required_checks
 from ..result.response import Response
+from ..toml_text import toml_text
 from .form import HERE, TEXTS, Plan, languages_named, state_of, texts_of
-from .worker import Item, Send, Task
+from .worker import Item, Payload, Send, Task
 
 MOST_FILES, LONGEST_NAME = 50, 200
 """Most files of a request, and most characters of the name of one."""
@@ -62,7 +62,7 @@ def plan_of(language: str) -> Plan:
     return Plan(whole_schema(), words_of(language))
 
 
-def form(request: Mapping[str, Any], send: Send) -> None:
+def form(request: Payload, send: Send) -> None:
     """The plan of the form in a language, with its texts and templates."""
     words = words_of(request.get("language"))
     states = {name: state_of(template) for name, template in templates_of().items()}
@@ -82,7 +82,7 @@ def templates_of() -> dict[str, dict[str, Any]]:
     return {name: {key: one for key, one in own.items() if key not in left} for name, own in seeds().items()}
 
 
-def open_file(request: Mapping[str, Any], send: Send) -> None:
+def open_file(request: Payload, send: Send) -> None:
     """The input of the form that stands for the text of a file, and what is wrong with that."""
     text: Any = request.get("text")
     with faults_sent(send, words_of(request.get("language")), TypeError):
@@ -90,13 +90,13 @@ def open_file(request: Mapping[str, Any], send: Send) -> None:
         send({"state": state_of(parsed(text))})
 
 
-def save(request: Mapping[str, Any], send: Send) -> None:
+def save(request: Payload, send: Send) -> None:
     """The input as the text of a file, as it is, also where something is wrong with it."""
     with faults_sent(send, words_in(request), TypeError, ValueError):
         send({"name": "mjrock.toml", "text": toml_text(tables_in(request))})
 
 
-def check(request: Mapping[str, Any], send: Send) -> None:
+def check(request: Payload, send: Send) -> None:
     """The verdict clause by clause, the steps, and the sketch; or what is wrong, with the place of each fault."""
     words = words_in(request)
     with Folder(request) as folder, faults_sent(send, words):
@@ -170,7 +170,7 @@ class Sender:
         self.send({"share": (self.before + part) / self.count, "what": text if progress.total else run})
 
 
-def run(request: Mapping[str, Any], send: Send) -> None:
+def run(request: Payload, send: Send) -> None:
     """The runs of the input, how far they are, what comes of them, and the film of the one that goes farthest."""
     words = words_in(request)
     with Folder(request) as folder, faults_sent(send, words):
@@ -214,7 +214,7 @@ def farthest(responses: Sequence[Response]) -> Response:
     return max(responses, key=lambda one: content_of(one.case).largest(one))
 
 
-def report(request: Mapping[str, Any], send: Send) -> None:
+def report(request: Payload, send: Send) -> None:
     """The report in a language, with the runs that are kept: a PDF, or a page of HTML where WeasyPrint is missing."""
     words = words_of(request.get("language"))
     kept = request.get("responses")
@@ -237,13 +237,13 @@ def document(path: Path) -> Item:
     return {"name": path.name, "type": TYPES.get(path.suffix, "application/octet-stream"), "data": data}
 
 
-def words_in(request: Mapping[str, Any]) -> Words:
+def words_in(request: Payload) -> Words:
     """The words of the language of the input."""
     state = request.get("state")
     return words_of(state.get("language") if isinstance(state, Mapping) else None)
 
 
-def tables_in(request: Mapping[str, Any]) -> dict[str, Any]:
+def tables_in(request: Payload) -> Document:
     """The tables of the file that the input of a request stands for."""
     state: Any = request.get("state")
     require_kind("state", state, dict)
@@ -279,7 +279,7 @@ class Folder:
         TypeError, ValueError: for a name with a folder, for too many files, and for what is no base64.
     """
 
-    def __init__(self, request: Mapping[str, Any]) -> None:
+    def __init__(self, request: Payload) -> None:
         self.request, self.files = request, dict[str, bytes]()
         given = request.get("files") or {}
         require_kind("files", given, dict)

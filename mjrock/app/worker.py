@@ -18,10 +18,12 @@ from typing import Any, NamedTuple
 
 from ..notice import notice
 
+Payload = Mapping[str, Any]
+"""What a task is to answer: an object of JSON that the page has sent."""
 Item = dict[str, Any]
 """A part of an answer, such as how far a run is, or a verdict. What is under "keep" stays with the server as bytes."""
 Send = Callable[[Item], None]
-Task = Callable[[Any, Send], None]
+Task = Callable[[Payload, Send], None]
 """A function that answers a request in parts, each of which it sends."""
 MOST, WAITING = 4, 2
 """Most processes at work at once, and most that wait for work."""
@@ -88,7 +90,7 @@ class Worker:
         self.process.start()
         other.close()
 
-    def parts(self, name: str, request: object, left: Callable[[], bool], limit: float) -> Generator[Item, None, None]:
+    def parts(self, name: str, request: Payload, left: Callable[[], bool], limit: float) -> Generator[Item, None, None]:
         """The parts of an answer as they come.
 
         Args:
@@ -139,7 +141,7 @@ class Team:
         self._idle, self._busy = [Worker(module)], list[Worker]()
         self._closed = False
 
-    def parts(self, name: str, request: object, left: Callable[[], bool], limit: float) -> Generator[Item, None, None]:
+    def parts(self, name: str, request: Payload, left: Callable[[], bool], limit: float) -> Generator[Item, None, None]:
         """The parts of an answer as they come, see `Worker.parts`. The process is killed if they do not all come.
 
         Raises:

@@ -17,12 +17,12 @@ from ..result.response import Response
 from ..study.loading.design import Design, design
 from ..study.loading.dynamic_check import DynamicCheck
 from ..study.loading.mechanism_check import MechanismCheck
+from ..toml_text import toml_text
 from .declarations import REQUIRED, Key, Maker, maker_of
 from .documents import UnwrittenError, mechanism_table, values_of
 from .mechanisms import Mechanism, mechanisms_of
 from .reading import Reader, caused
-from .tables import LARGEST, AssessmentError, Fault, Place, Table, line_of, lines_of, located, parsed
-from .writing import toml_text
+from .tables import LARGEST, AssessmentError, Document, Fault, Place, Table, line_of, lines_of, located, parsed
 
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
     from ..study.analysis import Analysis
@@ -66,7 +66,7 @@ class Assessment:
     language: str = "en"
     project: Mapping[str, str] = field(default_factory=dict)
     name: str = field(default="", compare=False)
-    document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    document: Document = field(default_factory=dict, repr=False, compare=False)
     lines: Mapping[Place, int] = field(default_factory=dict, repr=False, compare=False)
     folder: Path | None = field(default=None, compare=False)
     texts: Mapping[str, Any] = field(default_factory=dict)
@@ -123,7 +123,7 @@ class Assessment:
             raise self._error((), Message("the file has no [design]; give it key and values"))
         place, values = place_of(self.trials["key"]), self.trials["values"]
 
-        def build(value: Any) -> dict[str, MechanismCheck]:
+        def build(value: object) -> dict[str, MechanismCheck]:
             document = replaced(self.document, place, value)
             for table in (document, *document.get("mechanisms", {}).values()):
                 table.pop("records", None)  # no condition of a design is about them, and reading them takes long
@@ -238,7 +238,7 @@ def place_of(text: str) -> Place:
     return tuple(int(number) if number else name for number, name in re.findall(r"\[(\d+)\]|([^.\[\]]+)", text))
 
 
-def replaced(document: Mapping[str, Any], place: Place, value: Any) -> dict[str, Any]:
+def replaced(document: Document, place: Place, value: object) -> dict[str, Any]:
     """A copy of tables in which a key has another value; LookupError for a place that they have not."""
     copied = copy.deepcopy(dict(document))
     table: Any = copied
@@ -307,7 +307,7 @@ def assessment_of_text(text: str, name: str = "", folder: Path | None = None) ->
 
 
 def assessment_of(
-    document: Mapping[str, Any],
+    document: Document,
     name: str = "",
     folder: Path | None = None,
     lines: Mapping[Place, int] | None = None,
@@ -348,7 +348,7 @@ def _texts(reader: Reader, top: Table) -> dict[str, Any]:
     return reader.arguments(reader.required_table(top, "report"), report_maker()) if "report" in top.values else {}
 
 
-def _trials(reader: Reader, top: Table, document: Mapping[str, Any]) -> dict[str, Any]:
+def _trials(reader: Reader, top: Table, document: Document) -> dict[str, Any]:
     """What `[design]` has: a key of the file, its values, and the method that counts."""
     if "design" not in top.values:
         return {}

@@ -14,6 +14,7 @@ from typing import (
     Any,
     Literal,
     Self,
+    TypeAlias,
     Union,
     Unpack,
     get_args,
@@ -29,6 +30,8 @@ from ..problem.wall.effect import CombinedEffect, Effect
 from ..problem.wall.own_link import Link
 from ..quantities import OneOf, Within, alternatives
 
+Hint: TypeAlias = object
+"""The type of an argument as it is annotated: a class, a union, or one with what is declared of it."""
 REQUIRED = MISSING
 """The default of an argument that has none."""
 USUAL_MAKE = {"Block": "from_size", "Restitution": "from_geometry", "Contacts": "from_law"}
@@ -49,7 +52,7 @@ class Key:
     """
 
     name: str
-    hint: Any
+    hint: Hint
     default: Any
     doc: str
 
@@ -61,7 +64,7 @@ class Key:
         return next((note for note in notes if isinstance(note, Within)), None)
 
     @property
-    def kinds(self) -> tuple[Any, ...]:
+    def kinds(self) -> tuple[Hint, ...]:
         """The types that it may be of, one by one, without None."""
         return kinds_of(self.hint)
 
@@ -103,7 +106,7 @@ Makers = Mapping[str, Maker]
 """All that makes an object of a class, by the name that `make` has in the file; "" is the class itself."""
 
 
-def kinds_of(hint: Any) -> tuple[Any, ...]:
+def kinds_of(hint: Hint) -> tuple[Hint, ...]:
     """The types that a value of a hint may be of, one by one, without None and without functions. What may be an array
     may be a number too."""
     kinds = alternatives(hint)
@@ -114,12 +117,12 @@ def kinds_of(hint: Any) -> tuple[Any, ...]:
     return tuple(one for one in kinds if one is not type(None) and get_origin(one) is not Callable)
 
 
-def is_path(kinds: Sequence[Any]) -> bool:
+def is_path(kinds: Sequence[Hint]) -> bool:
     """Whether an argument of these types is the path of a file."""
     return any((get_origin(kind) or kind) is PathLike for kind in kinds)
 
 
-def items_of(kind: Any) -> tuple[Any, ...] | None:
+def items_of(kind: Hint) -> tuple[Hint, ...] | None:
     """The types of the items of a sequence: one for each place of a tuple, or one and an ellipsis; None of others."""
     origin, of = get_origin(kind), get_args(kind)
     if origin is tuple:
@@ -129,7 +132,7 @@ def items_of(kind: Any) -> tuple[Any, ...] | None:
     return None
 
 
-def choices_of(kind: Any) -> tuple[str, ...]:
+def choices_of(kind: Hint) -> tuple[str, ...]:
     """The texts that a literal type may be."""
     return tuple(map(str, get_args(kind))) if get_origin(kind) is Literal else ()
 
@@ -175,7 +178,7 @@ def maker_of(call: Callable[..., Any], owner: type | None = None) -> Maker:
     return Maker(call, own, (inspect.getdoc(call) or "").partition("\n\n")[0].replace("\n", " "))
 
 
-def hints_of(call: Callable[..., Any]) -> dict[str, Any]:
+def hints_of(call: Callable[..., Any]) -> dict[str, Hint]:
     """The types of the arguments of a class or function, with what is declared of them."""
     hints = _evaluated(call)
     own = vars(call).get("__init__") if isinstance(call, type) else None
@@ -184,9 +187,9 @@ def hints_of(call: Callable[..., Any]) -> dict[str, Any]:
     return hints
 
 
-def _evaluated(call: Callable[..., Any]) -> dict[str, Any]:
+def _evaluated(call: Callable[..., Any]) -> dict[str, Hint]:
     """Annotations as types; a name that type checkers alone import stands for any type."""
-    unknown: dict[str, Any] = {}
+    unknown: dict[str, Hint] = {}
     while True:
         try:
             return get_type_hints(call, localns=unknown or None, include_extras=True)
@@ -200,7 +203,7 @@ def _as_of(owner: type, name: str, argument: str) -> str:
     return described(getattr(other, "__func__", other)).get(argument, "")
 
 
-def _options(hint: Any, of_owner: Mapping[str, Key]) -> dict[str, Key]:
+def _options(hint: Hint, of_owner: Mapping[str, Key]) -> dict[str, Key]:
     """The keys that a constructor hands on: those of a typed dictionary, as the class declares them."""
     named = get_args(hint)[0] if get_origin(hint) is Unpack else None
     if not is_typeddict(named):
@@ -251,7 +254,7 @@ def is_public(kind: type) -> bool:
     return own or kind.__name__ in public_names()
 
 
-def classes_of(kinds: Sequence[Any]) -> dict[str, type]:
+def classes_of(kinds: Sequence[Hint]) -> dict[str, type]:
     """The public dataclasses that values of some types may be of, by name, with those derived from them. No file
     can say the law of a `Link`."""
     public_names()

@@ -14,12 +14,13 @@ from ..problem.masonry.histories import Support
 from ..problem.wall.block import Block
 from ..problem.wall.effect import CombinedEffect
 from ..quantities import shown
-from .declarations import USUAL_MAKE, Key, classes_of, is_public, items_of, key_named, kinds_of, maker_of
+from .declarations import USUAL_MAKE, Hint, Key, classes_of, is_public, items_of, key_named, kinds_of, maker_of
 from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, Mechanism
 from .running import DYNAMIC, run_maker, usual_solver
 from .tables import Place, spelt_place
 
-Document = dict[str, Any]
+Tables = dict[str, Any]
+"""Tables of a file that are made."""
 FOUND = "joints"
 """Attributes that are not what was given by their name: the joints of masonry are those that were found."""
 
@@ -37,7 +38,7 @@ class UnwrittenError(ValueError):
         super().__init__(f"{spelt_place(place)} {why}")
 
 
-def table_of(value: Any, kinds: Sequence[Any], place: Place) -> Document:
+def table_of(value: Any, kinds: Sequence[Hint], place: Place) -> Tables:
     """The table of a dataclass, with what is not its default.
 
     Args:
@@ -46,7 +47,7 @@ def table_of(value: Any, kinds: Sequence[Any], place: Place) -> Document:
         place: the key.
     """
     kind: Any = type(value)
-    found: Document = {} if list(classes_of(kinds)) == [kind.__name__] else {"kind": kind.__name__}
+    found: Tables = {} if list(classes_of(kinds)) == [kind.__name__] else {"kind": kind.__name__}
     keys = {name: key for name, key in maker_of(kind, kind).keys.items() if name != FOUND and hasattr(value, name)}
     if kind is Block:  # in whole sizes, as one writes it
         found |= {"thickness": 2 * value.b, "height": 2 * value.h}
@@ -59,9 +60,9 @@ def table_of(value: Any, kinds: Sequence[Any], place: Place) -> Document:
     )
 
 
-def values_of(values: Mapping[str, Any], keys: Mapping[str, Key], place: Place) -> Document:
+def values_of(values: Mapping[str, Any], keys: Mapping[str, Key], place: Place) -> Tables:
     """Arguments by name as the keys of a table. None is left out."""
-    found: Document = {}
+    found: Tables = {}
     for name, value in values.items():
         if name not in keys:
             raise UnwrittenError((*place, name), f"= {shown(value)} is no key of a file; leave it out")
@@ -71,7 +72,7 @@ def values_of(values: Mapping[str, Any], keys: Mapping[str, Key], place: Place) 
     return found
 
 
-def plain(value: Any, kinds: Sequence[Any], place: Place) -> Any:
+def plain(value: object, kinds: Sequence[Hint], place: Place) -> Any:
     """A value as a file has it: a number, a text, a truth, a list or a table.
 
     Raises:
@@ -103,17 +104,17 @@ def plain(value: Any, kinds: Sequence[Any], place: Place) -> Any:
     raise UnwrittenError(place, f"{what}, for which a file has no words; give a number")
 
 
-def _same(value: Any, default: Any) -> bool:
+def _same(value: object, default: object) -> bool:
     """Whether a value is the default of its argument."""
     return value is default or (isinstance(value, bool | int | float | str | tuple) and value == default)
 
 
-def mechanism_table(mechanism: Mechanism, place: Place = ()) -> Document:
+def mechanism_table(mechanism: Mechanism, place: Place = ()) -> Tables:
     """A mechanism with what it is checked against, and its runs, as one table."""
     problem, shaking = mechanism.problem, mechanism.shaking
     if type(problem).__name__ not in MECHANISMS:
         raise UnwrittenError((*place, "problem"), f"= {shown(problem)} is not one of {', '.join(MECHANISMS)}")
-    found: Document = {"kind": type(problem).__name__} | table_of(problem, (type(problem),), place)
+    found: Tables = {"kind": type(problem).__name__} | table_of(problem, (type(problem),), place)
     found |= _demand(mechanism.demand, place)
     sections: dict[str, Any] = {"check": (mechanism.options, CHECK), "limit_curve": (mechanism.curve, CURVE)}
     for name, (values, maker) in (sections | {"dynamic_check": (shaking.dynamic, DYNAMIC)}).items():
@@ -133,12 +134,12 @@ def mechanism_table(mechanism: Mechanism, place: Place = ()) -> Document:
     return found | ({"run": run} if run else {})
 
 
-def _demand(demand: Any, place: Place) -> Document:
+def _demand(demand: object, place: Place) -> Tables:
     """The tables of what a mechanism is checked against: the site, and a floor that all limit states share."""
     if demand is None:
         return {}
     states = demand if isinstance(demand, Mapping) else {"": demand}
-    site, floors = Document(), list[Document]()
+    site, floors = Tables(), list[Tables]()
     for name, one in states.items():
         ground = one.ground if isinstance(one, FloorSpectrum) else one
         if not isinstance(ground, CodeSpectrum | PointSpectrum):

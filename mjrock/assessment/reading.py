@@ -16,6 +16,7 @@ from ..problem.wall.effect import CombinedEffect
 from ..quantities import Message, Within, brief, named, reason, shown
 from .declarations import (
     USUAL_MAKE,
+    Hint,
     Key,
     Maker,
     Makers,
@@ -123,7 +124,7 @@ class Reader:
                 found[name] = tuple(effect for part in parts for effect in part)
         return found
 
-    def _effects_of(self, table: Table, effect: Any, wall: Block | None) -> tuple[Any, ...]:
+    def _effects_of(self, table: Table, effect: object, wall: Block | None) -> tuple[Any, ...]:
         """An effect, or those that one of several stands for."""
         if not isinstance(effect, CombinedEffect):
             return (effect,)
@@ -170,11 +171,11 @@ class Reader:
             raise self.refusal(table.place_of(name), "{place} = {value} is not known; {remedy}", **values)
         return value
 
-    def value(self, key: Key, value: Any, place: Place) -> Any:
+    def value(self, key: Key, value: object, place: Place) -> Any:
         """The value of a key, checked by its declaration; `RefusedError` where something is wrong with it."""
         return self._of_kinds(key.kinds, key.within, value, place)
 
-    def _of_kinds(self, kinds: tuple[Any, ...], within: Within | None, value: Any, place: Place) -> Any:
+    def _of_kinds(self, kinds: tuple[Hint, ...], within: Within | None, value: object, place: Place) -> Any:
         """A value of one of some types, of a number within a range."""
         if isinstance(value, Table):
             return self._table(kinds, value)
@@ -189,7 +190,7 @@ class Reader:
             return self._number(kinds, within, value, place)
         raise self._wrong(place, value, kinds, within)
 
-    def _text(self, kinds: tuple[Any, ...], value: str, place: Place) -> Any:
+    def _text(self, kinds: tuple[Hint, ...], value: str, place: Place) -> Any:
         """A text, one of several, or a path from the folder of the file."""
         known = [choice for kind in kinds for choice in choices_of(kind)]
         if known and value not in known:
@@ -205,7 +206,7 @@ class Reader:
             raise self.refusal(place, "{place} = {value} leads out of the folder of the files", value=brief(value))
         return path
 
-    def _number(self, kinds: tuple[Any, ...], within: Within | None, value: str | float, place: Place) -> Any:
+    def _number(self, kinds: tuple[Hint, ...], within: Within | None, value: str | float, place: Place) -> Any:
         """A number, or a text with a unit."""
         name = spelt_place(place)
         try:
@@ -225,7 +226,7 @@ class Reader:
             self.refuse(place, reason(error))
         raise RefusedError
 
-    def _row(self, kinds: tuple[Any, ...], within: Within | None, value: list[Any], place: Place) -> Any:
+    def _row(self, kinds: tuple[Hint, ...], within: Within | None, value: list[Any], place: Place) -> Any:
         """A list, each item of the type that the argument has there."""
         rows = [items for kind in kinds if (items := items_of(kind)) is not None]
         if not rows:
@@ -247,7 +248,7 @@ class Reader:
             raise RefusedError
         return tuple(found)
 
-    def _table(self, kinds: tuple[Any, ...], table: Table) -> Any:
+    def _table(self, kinds: tuple[Hint, ...], table: Table) -> Any:
         """What a table within another stands for: an object of one of some classes, or texts by name."""
         classes = classes_of(kinds)
         if classes:
@@ -259,7 +260,7 @@ class Reader:
             return {name: self._of_kinds(of, within, one, table.place_of(name)) for name, one in table.values.items()}
         raise self._wrong(table.place, table, kinds, None)
 
-    def _wrong(self, place: Place, value: Any, kinds: tuple[Any, ...], within: Within | None) -> RefusedError:
+    def _wrong(self, place: Place, value: object, kinds: tuple[Hint, ...], within: Within | None) -> RefusedError:
         """Keep that a value is of another type."""
         values = {"value": spelt_value(value), "due": spelt_kinds(kinds, within)}
         return self.refusal(place, "{place} is {value}; it takes {due}", **values)
@@ -280,7 +281,7 @@ class Reader:
         return place, caused(place, error, table.values.get(str(place[-1])) if key else None, within)
 
 
-def caused(place: Place, error: Exception, value: Any = None, within: Within | None = None) -> Message:
+def caused(place: Place, error: Exception, value: object = None, within: Within | None = None) -> Message:
     """The message of an error at a place. In another language one that has no text there stays English, behind what is
     known of the place.
 
@@ -319,19 +320,19 @@ def _named_in(message: str, table: Table, names: Mapping[str, str]) -> Place:
     return place
 
 
-def parted(hint: Any, within: Within | None) -> tuple[tuple[Any, ...], Within | None]:
+def parted(hint: Hint, within: Within | None) -> tuple[tuple[Hint, ...], Within | None]:
     """The types of a hint, and the range of its numbers."""
     key = Key("", hint, None, "")
     return key.kinds, key.within or within
 
 
-def is_mapping(kind: Any) -> bool:
+def is_mapping(kind: Hint) -> bool:
     """Whether an argument of a type is a table of values by free names."""
     origin = get_origin(kind)
     return isinstance(origin, type) and issubclass(origin, Mapping)
 
 
-def spelt_value(value: Any) -> str:
+def spelt_value(value: object) -> str:
     """What a key has, in words."""
     if isinstance(value, Table | list):
         return Message("a table") if isinstance(value, Table) else Message("a list")
@@ -355,7 +356,7 @@ def one_of(known: Sequence[str]) -> Message:
     return Message("it is one of {known}", known=", ".join(known))
 
 
-def spelt_kinds(kinds: tuple[Any, ...], within: Within | None) -> str:
+def spelt_kinds(kinds: tuple[Hint, ...], within: Within | None) -> str:
     """What an argument of some types takes, in words."""
     found: list[str] = []
     if any(kind in NUMERIC or get_origin(kind) in NUMERIC for kind in kinds):

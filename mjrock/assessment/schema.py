@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import typing
 from collections.abc import Iterable, Mapping
-from typing import Any, get_args
+from typing import get_args
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from ..quantities import Within
 from .assessment import DESIGN, OF_ALL, report_maker
 from .declarations import (
     USUAL_MAKE,
+    Hint,
     Key,
     Maker,
     Makers,
@@ -190,7 +191,7 @@ class SchemaWriter:
             found["default"] = key.default
         return found
 
-    def _of_kinds(self, kinds: Iterable[Any], within: Within | None, partial: bool = False) -> Schema:
+    def _of_kinds(self, kinds: Iterable[Hint], within: Within | None, partial: bool = False) -> Schema:
         """The schema of a value of one of some types."""
         kinds = tuple(kinds)
         found: list[Schema] = []
@@ -217,7 +218,7 @@ class SchemaWriter:
         found = [one for i, one in enumerate(found) if one and one not in found[:i]]
         return (found[0] if len(found) == 1 else {"anyOf": found}) if found else {}
 
-    def _list(self, items: tuple[Any, ...], within: Within | None) -> Schema:
+    def _list(self, items: tuple[Hint, ...], within: Within | None) -> Schema:
         """The schema of a list."""
         if items[-1] is ...:
             of = self._of_kinds(*parted(items[0], within))
@@ -241,7 +242,7 @@ def one_of_form(one: Schema) -> Schema:
     return {name: one[name] for name in ("description", "unit", "default") if name in one}
 
 
-def _number(kinds: tuple[Any, ...], within: Within | None) -> Schema:
+def _number(kinds: tuple[Hint, ...], within: Within | None) -> Schema:
     """The schema of a number, or of a text with a unit."""
     whole = within.whole if within else int in kinds and float not in kinds
     found: Schema = {"type": "integer"} if whole else {"type": ["number", "string"]}

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 Schema = dict[str, Any]
+"""A schema, or a part of one."""
+Part = Mapping[str, Any]
+"""A part of a schema that is read alone."""
 ONE, NAMED, SEVERAL = ("items", "additionalProperties", "then", "else"), ("properties", "$defs"), ("anyOf", "oneOf")
 """Keywords whose value is a part of a schema, parts by names, and a list of parts."""
 SHORT = 60
@@ -20,12 +23,12 @@ def shared(whole: Schema) -> Schema:
     names: dict[str, str] = {}
     parts: Schema = {}
 
-    def count(node: Any) -> Any:
+    def count(node: object) -> Any:
         text = _text(node)
         counts[text] += 1
         return _over_parts(node, count) if counts[text] == 1 else node
 
-    def written(node: Any) -> Any:
+    def written(node: object) -> Any:
         text = _text(node)
         if counts[text] == 1 or len(text) <= SHORT:
             return _over_parts(node, written)
@@ -54,7 +57,7 @@ def _beyond(tables: Schema, name: str) -> Schema:
     return {"$ref": f"#/$defs/{free}"} | needed | ({"properties": further} if further else {})
 
 
-def _over_parts(node: Any, call: Callable[[Any], Any]) -> Any:
+def _over_parts(node: object, call: Callable[[Any], Any]) -> Any:
     """A part of a schema, with what a function makes of each part in it."""
     if not isinstance(node, dict):
         return node
@@ -69,6 +72,6 @@ def _over_parts(node: Any, call: Callable[[Any], Any]) -> Any:
     return made
 
 
-def _text(part: Any) -> str:
+def _text(part: object) -> str:
     """A part of a schema as text."""
     return json.dumps(part, sort_keys=True)

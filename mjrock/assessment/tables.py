@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 from ..quantities import Message
 from ..reporting.texts import Words
 
+Document = Mapping[str, Any]
+"""Tables of a file as plain dictionaries and lists, or the input of the form."""
 Place = tuple[str | int, ...]
 """A key by the tables that it is in: ("effects", 0, "height")."""
 LARGEST = 1_000_000
@@ -102,7 +104,7 @@ class Table:
         return Table(self.place, values, places)
 
 
-def located(value: Any, place: Place = ()) -> Any:
+def located(value: object, place: Place = ()) -> Any:
     """Nested dictionaries and lists as tables."""
     if isinstance(value, Mapping):
         keys = {str(name): (*place, str(name)) for name in value}
@@ -146,7 +148,7 @@ def parsed(text: str) -> dict[str, Any]:
         raise AssessmentError((Fault((), deep, 1),)) from None
 
 
-def is_deep(document: Mapping[str, Any]) -> bool:
+def is_deep(document: Document) -> bool:
     """Whether tables and lists are within each other more than MOST_LEVELS times."""
     level: list[Any] = [document]
     for _ in range(MOST_LEVELS):

@@ -9,14 +9,15 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from ..toml_text import toml_key, toml_value
 from .schema import whole_schema
-from .writing import toml_key, toml_value
+from .sharing import Part
+from .tables import Document
 
 FILE = Path(__file__).with_name("templates.toml")
 """The values of all templates."""
 WIDE = 100
 """Columns of a template."""
-Schema = Mapping[str, Any]
 SENTENCE = re.compile(r"(?<=\.)\s+(?=[A-Z`])")
 """Between two sentences."""
 HEAD = """\
@@ -34,7 +35,7 @@ def seeds() -> dict[str, dict[str, Any]]:
     return {name: merged(shared, own) for name, own in found.items()}
 
 
-def merged(shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+def merged(shared: Document, own: Document) -> dict[str, Any]:
     """Tables with what they share, table by table."""
     made = dict(own)
     for name, value in shared.items():
@@ -53,11 +54,11 @@ class Writer:
         explained: names of the classes whose optional keys have been listed.
     """
 
-    def __init__(self, schema: Schema) -> None:
+    def __init__(self, schema: Part) -> None:
         self.schema = schema
         self.explained: set[str] = set()
 
-    def alternatives(self, node: Schema) -> list[Schema]:
+    def alternatives(self, node: Part) -> list[Part]:
         """What a value may be, each without references."""
         if "$ref" in node:
             rest = {key: value for key, value in node.items() if key != "$ref"}
@@ -66,7 +67,7 @@ class Writer:
         several = node.get("anyOf") or node.get("oneOf")
         return [one for each in several for one in self.alternatives(each)] if several else [node]
 
-    def fitting(self, node: Schema, value: Mapping[str, Any]) -> Schema:
+    def fitting(self, node: Part, value: Document) -> Part:
         """The alternative that a table is of, by its `kind` and `make`."""
         for one in self.alternatives(node):
             named = [one.get("properties", {}).get(key, {}) for key in ("kind", "make")]
@@ -75,10 +76,10 @@ class Writer:
                 return one
         return {}
 
-    def table(self, node: Schema, value: Mapping[str, Any], path: str) -> Iterator[str]:
+    def table(self, node: Part, value: Document, path: str) -> Iterator[str]:
         """The lines of a table: its keys, those that may be left out, and the tables in it."""
         of = self.fitting(node, value)
-        keys: Schema = of.get("properties", {})
+        keys: Part = of.get("properties", {})
         again = of.get("title", path) in self.explained
         self.explained.add(of.get("title", path))
         below = {name: value[name] for name in sorted(value, key=[*keys, *value].index) if is_table(value[name])}
@@ -100,7 +101,7 @@ class Writer:
             where = f"[{path}]" if path else "this file"
             yield from ("", *comment(f"Further tables of {where}: {', '.join(left)}. See `mjrock schema`."))
 
-    def below(self, node: Schema, value: Any, path: str) -> Iterator[str]:
+    def below(self, node: Part, value: Any, path: str) -> Iterator[str]:
         """The lines of a table in another, or of several in a list."""
         if isinstance(value, Mapping):
             of = self.fitting(node, value)
@@ -114,7 +115,7 @@ class Writer:
             yield from ("", *comment(of.get("description", "")), f"[[{path}]]")
             yield from self.table(of, one, path)
 
-    def holds_tables(self, node: Schema) -> bool:
+    def holds_tables(self, node: Part) -> bool:
         """Whether a key is a table or a list of tables, whatever it is."""
         found = [part for one in self.alternatives(node) for part in self.alternatives(one.get("items") or one)]
         return all("properties" in one or one.get("type") == "object" for one in found)
@@ -126,12 +127,12 @@ def is_table(value: object) -> bool:
     return all(isinstance(one, Mapping) for one in items)
 
 
-def default_of(key: Schema) -> str:
+def default_of(key: Part) -> str:
     """The value of a key that is left out, as TOML; empty where it has none."""
     return toml_value(key["default"]) if "default" in key else ""
 
 
-def explained(line: str, key: Schema) -> Iterator[str]:
+def explained(line: str, key: Part) -> Iterator[str]:
     """A line with what its key means, beside it or above it."""
     text = SENTENCE.split(key.get("description", ""))[0]
     low, high, unit = key.get("minimum"), key.get("maximum"), key.get("unit", "")
@@ -160,7 +161,7 @@ def templates() -> dict[str, str]:
     return {name: written(values, schema) for name, values in seeds().items()}
 
 
-def written(values: dict[str, Any], schema: Schema) -> str:
+def written(values: dict[str, Any], schema: Part) -> str:
     """Values as the text of a template."""
     head = [*comment(values.pop("title")), "#", *(f"# {line}" for line in HEAD.splitlines()), ""]
     root = schema["then" if "mechanisms" in values else "else"]

@@ -125,26 +125,10 @@ def contact_for(
             of a cylinder that stands on a plane, of a blow at `speed` that is deeper than the geoms, of a solver that
             has too few iterations, does not converge or is not tried, and without k of a contact that is soft.
     """
+    given = locals()
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    request = ContactRequest(
-        k=k,
-        k_face=k_face,
-        k_n=k_n,
-        depth=depth,
-        load=load,
-        c=c,
-        restitution=restitution,
-        xi=xi,
-        friction=friction,
-        mass=mass,
-        at=at,
-        normal=normal,
-        contacts=contacts,
-        speed=speed,
-        timestep=timestep,
-        newmark_beta=newmark_beta,
-    )
+    request = ContactRequest(**{each.name: given[each.name] for each in fields(ContactRequest)})
     pose = Pose(whole, keyframe, qpos)
     made = _made(pose, [(pair, request)])
     for _, sentence in _sentences(whole, made):

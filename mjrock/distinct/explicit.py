@@ -103,7 +103,7 @@ def solve_explicit(
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case, remembers=True)
     if start is None:
-        warn_if_still(case, forces=forces)
+        warn_if_still(case.is_still, forces=forces)
     with first_answer(solve_shortly, case=case, contacts=contacts):
         setup = with_motion_damping(
             continued(setup_of_problem(problem, contacts, state), start), mass_damping, local_damping

@@ -122,7 +122,7 @@ def simulate(
     if contacts is not None and contacts.base.friction is None:
         warn_of_low_stop(case)
     if start is None:
-        warn_if_still(case, forces=forces)
+        warn_if_still(case.is_still, forces=forces)
     if options.timestep is not None:
         require_in_text(case)
     if forces:

@@ -75,7 +75,7 @@ def solve_compliant(
     wall = case.wall
     contacts.require_fit(case.block, side_stop=case.one_sided)
     warn_of_low_stop(case)
-    warn_if_still(case)
+    warn_if_still(case.is_still)
     watch = Stopwatch()
     system = Wall(case, contacts)
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.one_sided)

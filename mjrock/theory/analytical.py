@@ -78,7 +78,7 @@ def solve_analytical(
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
         warn_of(unlike, Implausible)
-    warn_if_still(case)
+    warn_if_still(case.is_still)
     watch = Stopwatch()
     with first_answer(solve_analytical, **given):
         motion = _rocking(case, e, rtol, rest)

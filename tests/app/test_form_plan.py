@@ -12,10 +12,10 @@ from mjrock.app.form import TEXTS, Plan, state_of, text_of, texts_of, typed
 from mjrock.assessment.assessment import assessment_of
 from mjrock.assessment.declarations import subclasses_of
 from mjrock.assessment.schema import whole_schema
-from mjrock.assessment.writing import toml_text
 from mjrock.problem.masonry.laws.own_law import OwnLaw
 from mjrock.problem.wall.effect import CombinedEffect, Effect
 from mjrock.reporting.texts import Words, languages, texts
+from mjrock.toml_text import toml_text
 
 NUMBER, TRUTH, ROW = frozenset({"number", "string"}), frozenset({"boolean"}), frozenset({"array"})
 MECHANISMS = {"Case", "Corner", "VerticalBending", "HorizontalBending"}

@@ -10,7 +10,7 @@ import mjrock as mr
 from mjrock.app import tasks
 from mjrock.app.form import state_of
 from mjrock.assessment.templates import seeds
-from mjrock.assessment.writing import toml_text
+from mjrock.toml_text import toml_text
 
 RECORD = "0.0 0.0\n" + "\n".join(f"{0.01 * i:.2f} {2.0 * (-1) ** (i // 30):.1f}" for i in range(1, 200))
 NASTY = "<script>alert(1)</script>"

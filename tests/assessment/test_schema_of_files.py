@@ -11,6 +11,7 @@ import pytest
 import mjrock as mr
 from mjrock.assessment.schema import whole_schema
 from mjrock.assessment.templates import templates
+from mjrock.toml_text import toml_text
 
 jsonschema = pytest.importorskip("jsonschema")
 FILES = {
@@ -49,7 +50,7 @@ def tables_in(value):
 
 def is_read(document):
     try:
-        mr.from_toml(text=mr.assessment.writing.toml_text(document))
+        mr.from_toml(text=toml_text(document))
     except mr.AssessmentError:
         return False
     return True

@@ -15,7 +15,7 @@ from mjrock import contacts
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
     ("contacts",),
-    ("machine", "notice"),
+    ("machine", "notice", "toml_text"),
     ("_version", "bars", "command_line", "background_compilation", "deprecation", "interrupts", "notebook"),
     ("loop_cache",),
     ("compiled", "compiler", "method", "quantities"),

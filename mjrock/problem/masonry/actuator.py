@@ -123,7 +123,7 @@ class Actuator(Effect):
         return f"{where},\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:.4g} kN/mm"
 
 
-def _unit(direction: Any, d: int) -> tuple[float, ...]:
+def _unit(direction: object, d: int) -> tuple[float, ...]:
     """The unit vector of a direction, along x for a number, in d dimensions."""
     given = require_reals("direction of the actuator", direction, f"1, -1 or a vector of the shape ({d},)")
     if given.shape == () and abs(float(given)) == 1:

@@ -46,7 +46,7 @@ OF_MASONRY, IN_SPACE = {"of": "masonry"}, {"of": "masonry in space"}
 """Metadata of a field of an effect that only masonry takes, and of one that only masonry in space takes."""
 
 
-def place_or_none(name: str, value: Any, least: int = 2) -> PointOf | None:
+def place_or_none(name: str, value: object, least: int = 2) -> PointOf | None:
     """A point as a tuple, or None.
 
     Raises:

@@ -70,9 +70,9 @@ def warn_of_low_stop(case: Any) -> None:
         )
 
 
-def warn_if_still(case: Any, *, forces: bool = False) -> None:
+def warn_if_still(is_still: bool, *, forces: bool = False) -> None:
     """Warn of a run of a wall that nothing moves, unless the forces at rest are required."""
-    if case.is_still and not forces:
+    if is_still and not forces:
         warn_of(
             Message(
                 "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run "

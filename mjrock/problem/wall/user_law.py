@@ -128,7 +128,7 @@ def _require_names(name: str, memory: object) -> None:
         raise TypeError(f"{name}.memory = {memory!r} is no tuple of names; give memory = {shape}")
 
 
-def _text(method: Any) -> object:
+def _text(method: object) -> object:
     """What a method does, as its bytecode and constants."""
     code = getattr(method, "__code__", method)
     if not inspect.iscode(code):
@@ -162,7 +162,7 @@ class AppliedLaw:
         shortest: length from which on a slope is taken over a part of it [m].
     """
 
-    law: Any
+    law: UserLaw
     at: ClassVar[str] = "a closing"
     whose: ClassVar[str] = "the law and its lines have"
     says: ClassVar[tuple[str, str, str]] = ("stress", "energy", "damping")
@@ -230,7 +230,7 @@ def _plain(kind: Any, remembers: bool) -> Callable[[Any, float, float], None]:
     """What lets a law answer as plain Python, with its memory or with one that stays as it is."""
     forgets = kind.remember
 
-    def text_of(method: Any) -> Any:
+    def text_of(method: object) -> Any:
         return UserLaw.remember if method is forgets and not remembers else method
 
     answering: Callable[[Any, float, float], None] = kind.answering(text_of)

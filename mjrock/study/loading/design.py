@@ -226,7 +226,7 @@ def design(
     return Design(trials)
 
 
-def _tried(build: Callable[[Any], Any], value: Any, demand: Any, options: Mapping[str, Any]) -> Trial:
+def _tried(build: Callable[[Any], Any], value: object, demand: object, options: Mapping[str, Any]) -> Trial:
     """The checks of a value, or why there are none."""
     try:
         built = build(value)
@@ -260,7 +260,7 @@ def _checked(value: Any, built: Any, demand: Any, options: Mapping[str, Any]) ->
     return mechanism_check(built, demand, **options)
 
 
-def label_of(value: Any) -> str:
+def label_of(value: object) -> str:
     """A value as a short text."""
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {label_of(one)}" for name, one in value.items())

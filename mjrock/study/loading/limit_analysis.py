@@ -206,7 +206,7 @@ def _require_alone(**given: object) -> None:
         raise ValueError(f"{named(names)} is for masonry of blocks; a Case has its effects, and rocks in its plane")
 
 
-def overturned(case: Case, direction: object, loads: Any) -> Collapse:
+def overturned(case: Case, direction: object, loads: object) -> Collapse:
     """The factor on the forces that grow at which a wall at rest overturns, see `collapse_multiplier`."""
     way = 0.0 if direction is None else require_real("direction", direction)
     if way not in (-1.0, 0.0, 1.0) or way == direction == 0:
@@ -301,7 +301,7 @@ def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tup
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)
 
 
-def _growing(masonry: Masonry, loads: Any) -> Mapping[str, tuple[float, ...]] | tuple[Effect, ...]:
+def _growing(masonry: Masonry, loads: object) -> Mapping[str, tuple[float, ...]] | tuple[Effect, ...]:
     """Loads that grow, checked: effects with the numbers of their blocks, or forces by the name of a free block."""
     if loads is None:
         return ()

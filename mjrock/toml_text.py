@@ -50,7 +50,7 @@ def _text(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def toml_value(value: Any) -> str:
+def toml_value(value: object) -> str:
     """A value on a line."""
     if isinstance(value, bool):
         return "true" if value else "false"
