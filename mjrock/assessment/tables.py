@@ -55,12 +55,12 @@ class AssessmentError(ValueError):
     @property
     def lines(self) -> list[str]:
         """Each fault on a line, with the file and its line."""
-        before = [
-            f"{self.name or 'line'}{':' if self.name else ' '}{one.line}" if one.line else self.name
-            for one in self.faults
-        ]
-        texts = [Words(self.language).message(one.message) for one in self.faults]
-        return [f"{at}: {text}" if at else text for at, text in zip(before, texts, strict=True)]
+        words = Words(self.language)
+        found = []
+        for one in self.faults:
+            line = f"{self.name}:{one.line}" if self.name else words.message(Message("line {line}", line=one.line))
+            found.append(": ".join(filter(None, (line if one.line else self.name, words.message(one.message)))))
+        return found
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.faults, self.name, self.language)

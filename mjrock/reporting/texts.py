@@ -45,6 +45,8 @@ LENGTH_DECIMALS = 9
 """Decimals of a length [m]: what lies below a nanometre is rounding."""
 WITH_UNIT = re.compile(r"[-\u2212\d.]+ \w+")
 """A number with its unit, such as the length beside a dimension line."""
+PRINTED_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+"""A number as a message has it."""
 SHARED = 4
 """Digits of a share."""
 
@@ -62,19 +64,29 @@ def texts(*more: Path) -> dict[str, dict[str, str]]:
 def drawn_patterns() -> list[tuple[re.Pattern[str], str]]:
     """What plot functions print, in English and with groups for the values, and its key: every text of a key that
     begins with `drawn_`, and the names of solvers."""
-    found = []
-    for key in (key for key in texts() if key.startswith(("drawn_", "short_"))):
-        parts = ((re.escape(literal), name) for literal, name, *_ in string.Formatter().parse(texts()[key]["en"]))
-        pattern = "".join(literal if name is None else f"{literal}(?P<{name}>.+?)" for literal, name in parts)
-        found.append((re.compile(pattern), key))
-    return found
+    keys = (key for key in texts() if key.startswith(("drawn_", "short_")))
+    return [(_pattern(texts()[key]["en"]), key) for key in keys]
 
 
 @cache
-def messages() -> dict[str, dict[str, str]]:
-    """The texts of messages by their language and their English template."""
-    found: dict[str, dict[str, str]] = tomllib.loads(MESSAGES.read_text(encoding="utf-8"))
-    return found
+def messages() -> dict[str, Any]:
+    """The texts of messages by their language and their English template, and under `texts` those of messages that are
+    raised without one."""
+    return tomllib.loads(MESSAGES.read_text(encoding="utf-8"))
+
+
+@cache
+def plain_patterns(language: str) -> list[tuple[re.Pattern[str], str]]:
+    """Messages that are raised without a template, with groups for the values, and their texts in a language; the one
+    that states most comes first."""
+    texts = messages()["texts"].get(language, {})
+    return [(_pattern(one), texts[one]) for one in sorted(texts, key=lambda one: -len(re.sub("{.*?}", "", one)))]
+
+
+def _pattern(template: str) -> re.Pattern[str]:
+    """What is written by a template, with a group for each value."""
+    parts = ((re.escape(literal), name) for literal, name, *_ in string.Formatter().parse(template))
+    return re.compile("".join(text if name is None else f"{text}(?P<{name}>.*?)" for text, name in parts), re.DOTALL)
 
 
 def languages() -> list[str]:
@@ -129,13 +141,25 @@ class Words:
 
         The cause of a refusal that has no text stays behind what is known of its place: the key, value and range.
         """
-        template = messages().get(self.language, {}).get(text.template) if isinstance(text, Message) else None
-        if template is None or not isinstance(text, Message):
+        if not isinstance(text, Message):
+            return self._plain(text)
+        template = messages().get(self.language, {}).get(text.template)
+        if template is None:
             return text
         cause = text.values.get("cause")
         if "known" in text.values and isinstance(cause, str) and self.message(cause) is cause:
             template = self.texts["cause_in_english"][self.language]
         return Filling(self).vformat(template, (), text.values)
+
+    def _plain(self, text: str) -> str:
+        """A message without a template in this language; as it is where it has no text, or its cause has none."""
+        for pattern, template in plain_patterns(self.language):
+            if found := pattern.fullmatch(text):
+                values = {name: self.message(value) for name, value in found.groupdict().items()}
+                if values.get("cause") is None or values["cause"] != found["cause"]:
+                    numbers = {name: self.marked(one) for name, one in values.items() if PRINTED_NUMBER.fullmatch(one)}
+                    return template.format(**values | numbers)
+        return text
 
     def marked(self, text: str) -> str:
         """Numbers of a text with the decimal mark of the language."""

@@ -2,6 +2,7 @@
 
 import ast
 import pickle
+import re
 import string
 import tomllib
 from pathlib import Path
@@ -47,6 +48,51 @@ def test_every_template_has_an_italian_text_with_its_values():
     assert [one for one, text in italian.items() if fields(text) != fields(one)] == []
 
 
+def bare(node):
+    """The text of a literal, with empty braces for the values of an f-string; None of what is no literal."""
+    if isinstance(node, ast.JoinedStr):
+        return "".join(one.value if isinstance(one, ast.Constant) else "{}" for one in node.values)
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
+
+
+def raised_in(folder):
+    """The texts of the errors that the modules of a folder raise."""
+    for path in sorted((ROOT / folder).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call) and node.exc.args:
+                yield bare(node.exc.args[0])
+
+
+def without_names(text):
+    return re.sub(r"\{\w+\}", "{}", text)
+
+
+PLAIN = tomllib.loads(MESSAGES.read_text("utf-8"))["texts"]["it"]
+PARTS = {"path = {}: {}", "{}: {}", "line {}: {}", "body {}: {}", "parts: {}", "blocks: {}"}
+"""What stands before a cause."""
+IN_CODE = {text for path in ROOT.rglob("*.py") for text in map(bare, ast.walk(ast.parse(path.read_text("utf-8"))))}
+
+
+def test_every_text_without_a_template_is_one_of_the_package():
+    """An English text that changes takes its Italian one along."""
+    once = {without_names(one) for one in PLAIN} - PARTS
+    composed = sorted(one for one in once if not any(one in text for text in IN_CODE if text))
+    assert composed == [
+        "between the bounds of {} and {} there are {} m, and no gap up to {} m joins all of them",
+        "between the bounds of {} and {} there are {} m; gap = {} m joins all of them: it finds {} joints",
+        "{}; tolerance = {} m takes them: it finds {} joints",
+    ]
+    assert [one for one, text in PLAIN.items() if fields(text) - fields(one)] == []
+
+
+@pytest.mark.parametrize("folder", ["builders", "blocks"])
+def test_every_refusal_of_blocks_has_an_italian_text(folder):
+    known = {without_names(one) for one in PLAIN}
+    raised = set(raised_in(f"problem/masonry/{folder}")) - {None}
+    assert len(raised) > 15
+    assert sorted(raised - known) == []
+
+
 SITE = "language = 'it'\n[site]\ncode = 'NTC 2018'\nag = 2.0\nF0 = 2.5\nTc = 0.33\nsoil = 'B'\n"
 WALL = "[wall]\nthickness = 0.5\nheight = 5.0\n"
 IN_ITALIAN = {
@@ -78,6 +124,43 @@ def test_a_refusal_is_in_the_language_of_its_file(said):
         mr.from_toml(text=SITE.replace("'it'", "'en'") + IN_ITALIAN[said])
     assert said not in str(english.value)
     assert str(english.value).partition(":")[0] == line.partition(":")[0].replace("riga", "line")
+
+
+BLOCKS = """language = 'it'
+kind = 'MasonryCase'
+duration = 1.0
+[masonry]
+kind = 'Masonry'
+blocks = [
+    { kind = 'Polygon', vertices = %s },
+    { kind = 'Polygon', vertices = [[0, 0], [1, 0], [1, 1], [0, 1]], fixed = true },
+]
+"""
+OF_BLOCKS = {
+    "riga 7: masonry.blocks[0].vertices: i vertici racchiudono un'area di 0 m2": "[[0, 0], [1, 0], [0.5, 0]]",
+    "vertices: il vertice 2 in [0.5, 0.5] m è rientrante": "[[0, 0], [2, 0], [0.5, 0.5], [0, 2]]",
+    "tra gli ingombri di block_0 e block_1 ci sono 2 m, e nessuna distanza (gap) fino a 0,1 m li unisce tutti": (
+        "[[0, 3], [1, 3], [1, 4], [0, 4]]"
+    ),
+}
+
+
+@pytest.mark.parametrize("said", OF_BLOCKS)
+def test_a_refusal_of_blocks_is_in_the_language_of_its_file(said):
+    with pytest.raises(mr.AssessmentError) as caught:
+        mr.from_toml(text=BLOCKS % OF_BLOCKS[said])
+    (line,) = caught.value.lines
+    assert said in line
+    assert "in inglese" not in line
+
+
+def test_a_refusal_of_a_record_is_in_the_language_of_its_file(tmp_path):
+    (tmp_path / "shaken.csv").write_text("t,a\n0,1\n0.01,x\n")
+    (tmp_path / "wall.toml").write_text(f"{SITE}{WALL}[records]\nfolder = '.'\npattern = '*.csv'\n")
+    with pytest.raises(mr.AssessmentError) as caught:
+        mr.from_toml(tmp_path / "wall.toml")
+    (line,) = caught.value.lines
+    assert "shaken.csv: riga 3: 'x' non è un numero finito come -0.015, 1.5E-02 o 1.5D-02. È stato letto come" in line
 
 
 def test_a_cause_without_a_text_stays_english_behind_the_key_its_value_and_its_range():
