@@ -7,7 +7,6 @@ MuJoCo. A `DampingLaw` has one formula for the base and one for the side.
 
 from __future__ import annotations
 
-import json
 import math
 import tomllib
 from collections.abc import Mapping
@@ -34,6 +33,7 @@ from ...quantities import (
     warn_of,
     within_ranges,
 )
+from ...toml_text import toml_text
 from ..wall.block import Block
 from .restitution import Restitution
 
@@ -421,17 +421,11 @@ class DampingLaw:
             OSError: if the file cannot be written.
         """
         names = [entry.name for entry in fields(self) if entry.name not in ("base", "side", "errors")]
-        head = {name: getattr(self, name) for name in names}
-        lines = [f"{key} = {_toml(value)}" for key, value in head.items() if value is not None]
+        made: dict[str, object] = {name: getattr(self, name) for name in names}
         for part, form in (("base", self.base), ("side", self.side)):
-            lines += ["", f"[{part}]", f'form = "{type(form).__name__}"']
-            errors = self.errors.get(part, {})
-            for key, value in asdict(form).items():  # type: ignore[call-overload]
-                note = f"  # +- {errors[key]:.2g}" if key in errors else ""
-                lines.append(f"{key} = {_toml(value)}{note}")
-            if errors:
-                lines += ["", f"[errors.{part}]", *(f"{key} = {_toml(value)}" for key, value in errors.items())]
-        return write_text(require_path("path", path), "\n".join(lines) + "\n")
+            made[part] = {"form": type(form).__name__} | asdict(form)  # type: ignore[call-overload]
+        made |= {"errors": self.errors} if self.errors else {}
+        return write_text(require_path("path", path), toml_text(made))
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -464,17 +458,6 @@ def rebound_over_uplift(wall: Block, e: Restitution, k_n: float, amplitude: floa
     released = float(wall.potential_energy(amplitude * wall.alpha))
     rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha
     return float(rebound / Groups.from_wall(wall, e, k_n, amplitude=amplitude).softness)
-
-
-def _toml(value: object) -> str:
-    """A value as TOML; numbers at full precision."""
-    if isinstance(value, tuple):
-        return f"[{', '.join(_toml(item) for item in value)}]"
-    if isinstance(value, float) and math.isnan(value):
-        return "nan"
-    if isinstance(value, bool | str):
-        return json.dumps(value, ensure_ascii=False)
-    return repr(value)
 
 
 PUBLISHED = DampingLaw(
