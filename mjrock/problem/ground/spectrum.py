@@ -159,7 +159,7 @@ class CodeSpectrum:
         return self.ag * self.S
 
     def at_height(
-        self,
+        self: CodeSpectrum | PointSpectrum,
         period: Periods,
         damping: BuildingDamping = 0.05,
         *,
@@ -315,16 +315,7 @@ class PointSpectrum(_Alike):
         """Peak acceleration of the ground, S_e at the first period [m/s2]."""
         return float(self.acceleration[0])
 
-    def at_height(
-        self,
-        period: Periods,
-        damping: BuildingDamping = 0.05,
-        *,
-        participation: Participation = 1.0,
-        height: ModeShape = 1.0,
-    ) -> FloorSpectrum:
-        """The spectrum on a floor, as `CodeSpectrum.at_height`."""
-        return FloorSpectrum(self, *building_modes(period, damping, participation, height))
+    at_height = CodeSpectrum.at_height
 
 
 SpectrumOfCode = CodeSpectrum | FloorSpectrum | PointSpectrum
