@@ -47,7 +47,6 @@ def keep_array(
     kind: type = float,
     above: float | None = None,
     least: float | None = None,
-    infinite: bool = False,
 ) -> None:
     """Keep a field of a part as an array of the kind that compiled functions take.
 
@@ -63,7 +62,7 @@ def keep_array(
     values = values if values.size else values.reshape(shape)
     if values.shape != shape:
         raise ValueError(f"{label} has the shape {values.shape}; {shape} is needed")
-    require_values(label, values, above, least, infinite)
+    require_values(label, values, above, least)
     object.__setattr__(part, name, frozen(values))
 
 
