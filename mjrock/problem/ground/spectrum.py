@@ -13,7 +13,6 @@ from ...quantities import (
     GRAVITY,
     Array,
     Implausible,
-    Message,
     OneOf,
     Within,
     frozen,
@@ -221,12 +220,9 @@ class FloorSpectrum(_Alike):
     def __post_init__(self) -> None:
         if self.peak < self.ground.peak:
             warn_of(
-                Message(
-                    "the floor has a peak of {peak:.3g} m/s2 and the ground one of {ground:.3g} m/s2: up to T_1 "
-                    "C7.2.5 takes the modes alone; give more modes, or check the mechanism on the ground too",
-                    peak=self.peak,
-                    ground=self.ground.peak,
-                ),
+                f"the floor has a peak of {self.peak:.3g} m/s2 and the ground one of {self.ground.peak:.3g} "
+                "m/s2: up to T_1 C7.2.5 takes the modes alone; give more modes, or check the mechanism on the "
+                "ground too",
                 Implausible,
             )
 
@@ -322,12 +318,6 @@ SpectrumOfCode = CodeSpectrum | FloorSpectrum | PointSpectrum
 """The spectrum of a code, on the ground or on a floor, or one given as points."""
 
 
-OF_NTC = "{name} = {value} is of NTC 2018; {code} takes ag and soil"
-OF_EC8 = "{name} = {value} is of a national annex of EC8; NTC 2018 takes soil, F0 and Tc"
-ALIKE_IN_G = "ag = {ag:g} m/s2 is {share:.3g} g; accelerations are in m/s2: is it in g?"
-"""What is wrong with arguments of the other code, and of an acceleration that is likely in g."""
-
-
 @within_ranges
 def code_spectrum(
     code: Annotated[str, OneOf(("NTC 2018", *SITE_EC8))],
@@ -378,34 +368,23 @@ def code_spectrum(
     require_one_of("soil", soil, SITE_NTC)
     require_one_of("topography", topography, TOPOGRAPHY_NTC)
     if ag < PROBABLY_IN_G:
-        warn_of(
-            Message(ALIKE_IN_G, ag=ag, share=ag / GRAVITY),
-            Implausible,
-        )
+        warn_of(f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?", Implausible)
     if code in SITE_EC8:
         for name, value in (("F0", F0), ("Tc", Tc)):
             if value is not None:
-                raise ValueError(Message(OF_NTC, name=name, value=spelt(value), code=code))
+                raise ValueError(f"{name} = {spelt(value)} is of NTC 2018; {code} takes ag and soil")
         if topography != "T1":
-            raise ValueError(
-                Message(
-                    "topography = {topography} is of NTC 2018; multiply ag for {code}", topography=topography, code=code
-                )
-            )
+            raise ValueError(f"topography = {topography} is of NTC 2018; multiply ag for {code}")
         recommended, national = SITE_EC8[code][soil], (S, TB, TC, TD)
         own = [given or usual for given, usual in zip(national, recommended, strict=False)]
         if not own[1] < own[2] < own[3]:
-            raise ValueError(
-                Message("TB, TC, TD = {TB:g}, {TC:g}, {TD:g} s do not increase", TB=own[1], TC=own[2], TD=own[3])
-            )
+            raise ValueError(f"TB, TC, TD = {own[1]:g}, {own[2]:g}, {own[3]:g} s do not increase")
         return CodeSpectrum(code, ag, own[0], 2.5, own[1], own[2], own[3], recommended[4], damping, soil)
     for name, value in (("S", S), ("TB", TB), ("TC", TC), ("TD", TD)):
         if value is not None:
-            raise ValueError(Message(OF_EC8, name=name, value=spelt(value)))
+            raise ValueError(f"{name} = {spelt(value)} is of a national annex of EC8; NTC 2018 takes soil, F0 and Tc")
     if F0 is None or Tc is None:
-        raise ValueError(
-            Message("{name} is missing: NTC 2018 takes ag, F0 and Tc of the limit state", name="Tc" if F0 else "F0")
-        )
+        raise ValueError(f"{'Tc' if F0 else 'F0'} is missing: NTC 2018 takes ag, F0 and Tc of the limit state")
     first, second, least, most, factor, power, TE = SITE_NTC[soil]
     S = min(max(first - second * F0 * ag / GRAVITY, least), most) * TOPOGRAPHY_NTC[topography]
     TC = factor * Tc**power * Tc
@@ -554,13 +533,7 @@ def factor_to_spectrum(
     for value in values:
         require_within("target", value, 1e-6, 1e4, "m/s2")
     if values.shape != spectrum.period.shape:
-        raise ValueError(
-            Message(
-                "target has {values} values and periods {period}; they have to be pairs",
-                values=len(values),
-                period=len(spectrum.period),
-            )
-        )
+        raise ValueError(f"target has {len(values)} values and periods {len(spectrum.period)}; they have to be pairs")
     if motion.peak == 0:
-        raise ValueError(Message("motion is at rest: no factor gives it a spectrum"))
+        raise ValueError("motion is at rest: no factor gives it a spectrum")
     return float(np.exp(np.log(values / spectrum.Sa).mean()))

@@ -20,7 +20,6 @@ from ...quantities import (
     Array,
     Density,
     Implausible,
-    Message,
     Within,
     keep,
     keep_declared,
@@ -95,9 +94,8 @@ def require_strip(wall: Block, *, stepped: bool) -> None:
     """Raise a TypeError or a ValueError unless a wall is a plain rectangle, or has a profile alone where it may."""
     require_kind("wall", wall, Block)
     if wall.openings or wall.gable or wall.masses or wall.inset or (wall.profile and not stepped):
-        valid = Message("rectangle, with a profile or without") if stepped else Message("plain rectangle")
-        cut = "wall = {wall!r} is not a {valid}; cut it to the strip between its openings"
-        raise ValueError(Message(cut, wall=wall, valid=valid))
+        valid = "rectangle, with a profile or without" if stepped else "plain rectangle"
+        raise ValueError(f"wall = {wall!r} is not a {valid}; cut it to the strip between its openings")
 
 
 @dataclass(frozen=True)
@@ -362,12 +360,8 @@ class HorizontalBending:
             keep(self, crack=require_within("crack", self.crack, 0.01 * length, 0.99 * length, "m"))
         if self.friction > TYPICAL_FRICTION:
             warn_of(
-                Message(
-                    "the strip slides before it bends unless friction at its ends and crack is {friction:.2g}; "
-                    "{usual:g} is usual",
-                    friction=self.friction,
-                    usual=TYPICAL_FRICTION,
-                ),
+                f"the strip slides before it bends unless friction at its ends and crack is {self.friction:.2g}; "
+                f"{TYPICAL_FRICTION:g} is usual",
                 Implausible,
             )
 

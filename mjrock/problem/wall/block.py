@@ -16,7 +16,6 @@ from ...quantities import (
     Array,
     Density,
     Implausible,
-    Message,
     OneOf,
     Real,
     Within,
@@ -87,31 +86,17 @@ class Block:
         keep_declared(self)
         require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
         if not 0 <= self.inset < self.b:
-            raise ValueError(
-                Message(
-                    "inset = {inset:g} m is outside the valid range 0 <= inset < b = {b:g} m",
-                    inset=self.inset,
-                    b=self.b,
-                )
-            )
+            raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
         if self.density > HEAVIEST:
             warn_of(
-                Message(
-                    "density = {density:g} kg/m3, and stone has up to {heaviest:g} kg/m3: is it a weight in N/m3?",
-                    density=self.density,
-                    heaviest=HEAVIEST,
-                ),
+                f"density = {self.density:g} kg/m3, and stone has up to {HEAVIEST:g} kg/m3: is it a weight in N/m3?",
                 Implausible,
             )
         self._require_parts()
         if not self.centroid_offset < self.half_base:
             raise ValueError(
-                Message(
-                    "the centroid of the wall lies {offset:g} m from the middle of the base; the valid "
-                    "range is less than {edge:g} m, where the outer edge is",
-                    offset=self.centroid_offset,
-                    edge=self.half_base,
-                )
+                f"the centroid of the wall lies {self.centroid_offset:g} m from the middle of the base; the "
+                f"valid range is less than {self.half_base:g} m, where the outer edge is"
             )
         require_within("slenderness h / (b - inset)", self.slenderness, 1.0, 200.0)
 
@@ -159,13 +144,7 @@ class Block:
             ValueError: as `Block`.
         """
         if height < thickness:
-            raise ValueError(
-                Message(
-                    "height = {height:g} m is less than thickness = {thickness:g} m: are they swapped?",
-                    height=height,
-                    thickness=thickness,
-                )
-            )
+            raise ValueError(f"height = {height:g} m is less than thickness = {thickness:g} m: are they swapped?")
         height = require_within("height", height, 1e-2, min(200.0, 200 * thickness), "m")
         parts = {"openings": openings, "profile": profile, "masses": masses, "gable": gable, "plumb": plumb}
         return cls(thickness / 2, height / 2, length, density, inset, **parts)  # type: ignore[arg-type]

@@ -14,7 +14,6 @@ from ...quantities import (
     Array,
     Flags,
     Implausible,
-    Message,
     Within,
     keep,
     keep_declared,
@@ -103,32 +102,24 @@ class Case(Carrying):
         inner = float(wedges[:, 0].min(initial=-b))  # a load may rest on wedges of side walls
         for i, effect in enumerate(self.effects):
             if isinstance(effect, SideStop):
-                raise TypeError(Message("effects[{i}] = {effect}: give it as side_stop", i=i, effect=shown(effect)))
+                raise TypeError(f"effects[{i}] = {shown(effect)}: give it as side_stop")
             require_kind(f"effects[{i}]", effect, *EFFECT_KINDS)
             if effect.block:
                 raise ValueError(
-                    Message(
-                        "effects[{i}], block = {block}, is outside the valid range: a wall has block 0",
-                        i=i,
-                        block=effect.block,
-                    )
+                    f"effects[{i}], block = {effect.block}, is outside the valid range: a wall has block 0"
                 )
             require_only(f"effects[{i}]", effect)
             require_within(f"effects[{i}], height of the {type(effect).__name__}", effect.height, 0.0, top, "m")
             if isinstance(effect, Load):
                 require_within(f"effects[{i}], offset of the Load", effect.offset, inner, b, "m")
-        for side, way in ((1.0, Message("outwards")), (-1.0, Message("inwards"))):
+        for side, way in ((1.0, "outwards"), (-1.0, "inwards")):
             held = side > 0 and self.overturning_rotation > 0  # by ties
             if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0 and not held:
                 raise ValueError(
-                    Message(
-                        "the loads and thrusts overturn the wall {way} as it stands: their moment about the toe and "
-                        "that of the weight is {moment:.4g} N m, and no tie makes up for it; the valid range is above "
-                        "0: lower the thrust, or give a {remedy}",
-                        way=way,
-                        moment=self.restoring.towards(side).P,
-                        remedy=Message("tie that can hold it") if side > 0 else Message("side stop"),
-                    )
+                    f"the loads and thrusts overturn the wall {way} as it stands: their moment about the toe "
+                    f"and that of the weight is {self.restoring.towards(side).P:.4g} N m, and no tie makes up "
+                    "for it; the valid range is above 0: lower the thrust, or give a "
+                    f"{'tie that can hold it' if side > 0 else 'side stop'}"
                 )
 
     def __repr__(self) -> str:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from ...quantities import GRAVITY, Message, Within, keep_declared, require_kind, require_within, short_repr
+from ...quantities import GRAVITY, Within, keep_declared, require_kind, require_within, short_repr
 from .block import Block
 from .effect import CombinedEffect
 from .effects import Load, Thrust
@@ -61,13 +61,9 @@ class EarthPressure(CombinedEffect):
         require_within("wall_friction", self.wall_friction, 0.0, phi, "rad")
         if not self.slope < phi or phi - self.inclination < self.slope:
             raise ValueError(
-                Message(
-                    "slope = {slope:g} rad and k_h = {k_h:g}: the surface of the earth slides by itself, as "
-                    "friction_angle - arctan(k_h / (1 - k_v)) = {phi:.4g} rad; the valid range is above the slope",
-                    slope=self.slope,
-                    k_h=self.k_h,
-                    phi=phi - self.inclination,
-                )
+                f"slope = {self.slope:g} rad and k_h = {self.k_h:g}: the surface of the earth slides by itself, "
+                f"as friction_angle - arctan(k_h / (1 - k_v)) = {phi - self.inclination:.4g} rad; the valid "
+                "range is above the slope"
             )
 
     @property

@@ -16,7 +16,6 @@ import numpy as np
 from ...compiled import inlined
 from ...quantities import (
     Array,
-    Message,
     Within,
     keep,
     keep_declared,
@@ -74,14 +73,7 @@ def _height(kind: str, height: float | None, at: PointOf) -> float:
         height is not None
         and require_within(f"height of the {kind}", height, -FARTHEST_POINT, FARTHEST_POINT, "m") != at[-1]
     ):
-        raise ValueError(
-            Message(
-                "height of the {kind} = {height} m is given with at = {at} m; leave it out",
-                kind=kind,
-                height=height,
-                at=at,
-            )
-        )
+        raise ValueError(f"height of the {kind} = {height} m is given with at = {at} m; leave it out")
     return at[-1]
 
 
@@ -90,15 +82,7 @@ def require_only(name: str, effect: Any, *kinds: str) -> None:
     for entry in fields(effect):
         given, of = getattr(effect, entry.name), entry.metadata.get("of")
         if given is not None and of is not None and of not in kinds:
-            raise ValueError(
-                Message(
-                    "{name}, {key} = {given} is for {of}; leave it out, and give height",
-                    name=name,
-                    key=entry.name,
-                    given=given,
-                    of=of,
-                )
-            )
+            raise ValueError(f"{name}, {entry.name} = {given} is for {of}; leave it out, and give height")
 
 
 class LinkLaw(NamedTuple):
@@ -217,13 +201,7 @@ class Effect:
             if hasattr(self, name):
                 keep(self, **{name: place_or_none(f"{name} of the {kind}", getattr(self, name))})
         if self.at is None and (anchor := getattr(self, "anchor", None)) is not None:
-            raise ValueError(
-                Message(
-                    "anchor of the {kind} = {anchor} m goes with at, the point that is held; give it too",
-                    kind=kind,
-                    anchor=anchor,
-                )
-            )
+            raise ValueError(f"anchor of the {kind} = {anchor} m goes with at, the point that is held; give it too")
         if anchor_block is not None:
             keep(self, anchor_block=_block(f"anchor_block of the {kind}", anchor_block))
         if self.at is not None:

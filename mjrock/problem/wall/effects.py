@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from ...notebook import NotebookPicture
-from ...quantities import Message, Within, keep, keep_declared, named, require_kind, require_sequence, short_repr
+from ...quantities import Within, keep, keep_declared, named, require_kind, require_sequence, short_repr
 from ..ground.motion import GroundMotion
 from .effect import (
     HIGHEST_WALL,
@@ -162,9 +162,7 @@ class Thrust(Effect):
             length = math.hypot(*given)
             if not length > 1e-9:
                 name = f"direction of the thrust = {given}"
-                raise ValueError(
-                    Message("{name} has no length; the valid range are vectors longer than 1e-9", name=name)
-                )
+                raise ValueError(f"{name} has no length; the valid range are vectors longer than 1e-9")
             keep(self, direction=(given[0] / length, given[1] / length, given[2] / length))
         super().__post_init__()
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...quantities import GRAVITY, Implausible, Message, percent_text, warn_of
+from ...quantities import GRAVITY, Implausible, percent_text, warn_of
 from ..ground.motion import GroundMotion
 from .effect import Anchored, Effect, resistance
 from .effects import AddedMass, Load, Thrust
@@ -59,13 +59,9 @@ def warn_of_low_stop(case: Any) -> None:
     top = case.stop_top
     if top is not None and top < LOW_STOP * (height := rebound_height(case)):
         warn_of(
-            Message(
-                "the side stop reaches {top:.4g} m, and one below {low:.4g} m pushes the base outwards; "
-                "here the base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against "
-                "still lower stops rebounds too: give the contacts the friction that the base has",
-                top=top,
-                low=LOW_STOP * height,
-            ),
+            f"the side stop reaches {top:.4g} m, and one below {LOW_STOP * height:.4g} m pushes the base "
+            "outwards; here the base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, "
+            "against still lower stops rebounds too: give the contacts the friction that the base has",
             Implausible,
         )
 
@@ -74,10 +70,8 @@ def warn_if_still(is_still: bool, *, forces: bool = False) -> None:
     """Warn of a run of a wall that nothing moves, unless the forces at rest are required."""
     if is_still and not forces:
         warn_of(
-            Message(
-                "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run "
-                "is one of rest; give the case a release or a motion"
-            ),
+            "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run is "
+            "one of rest; give the case a release or a motion",
             Implausible,
         )
 

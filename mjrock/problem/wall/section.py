@@ -17,7 +17,6 @@ import numpy as np
 
 from ...quantities import (
     Array,
-    Message,
     Within,
     keep_declared,
     require_flag,
@@ -129,21 +128,14 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
     pairs: list[tuple[float, float]] = []
     for i, pair in enumerate(profile):
         if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
-            raise TypeError(
-                Message("profile[{i}] = {pair} is not a pair of height and thickness [m]", i=i, pair=shown(pair))
-            )
+            raise TypeError(f"profile[{i}] = {shown(pair)} is not a pair of height and thickness [m]")
         z = require_within(f"profile[{i}], height", pair[0], pairs[-1][0] if pairs else 0.0, height * (1 + 1e-12), "m")
         pairs.append((min(z, height), require_within(f"profile[{i}], thickness", pair[1], 1e-3, 20.0, "m")))
     whole = len(pairs) > 1 and pairs[0][0] == 0 and abs(pairs[-1][0] - height) <= 1e-9 * height
     if not whole or abs(pairs[0][1] / thickness - 1) > 1e-9:
         raise ValueError(
-            Message(
-                "profile = {profile} is outside the valid range: it starts at height 0 with the thickness "
-                "{thickness:g} m and ends at the height {height:g} m",
-                profile=shown(profile),
-                thickness=thickness,
-                height=height,
-            )
+            f"profile = {shown(profile)} is outside the valid range: it starts at height 0 with the thickness "
+            f"{thickness:g} m and ends at the height {height:g} m"
         )
     return ((0.0, thickness), *pairs[1:])
 
@@ -273,14 +265,8 @@ class Front(NamedTuple):
         for i, opening in enumerate(self.openings):
             if opening.head > self.height * (1 + 1e-12):
                 raise ValueError(
-                    Message(
-                        "openings[{i}] reaches from {sill:g} to {head:g} m; the valid range is 0 to {height:g} m, the "
-                        "height of the wall",
-                        i=i,
-                        sill=opening.sill,
-                        head=opening.head,
-                        height=self.height,
-                    )
+                    f"openings[{i}] reaches from {opening.sill:g} to {opening.head:g} m; the valid range is 0 "
+                    f"to {self.height:g} m, the height of the wall"
                 )
         edge = 1e-9 * self.height
         ends = [z for opening in self.openings for z in (opening.sill + edge, opening.head - edge)]
@@ -289,15 +275,10 @@ class Front(NamedTuple):
             at = np.array(z)
             across, length = sum(float(opening.across(at)) for opening in self.openings), float(self.long(at))
             if not across < length * (1 - 1e-9):
-                where = Message("at a height of {z:.4g} m", z=z) if z > 2 * edge else Message("at the base")
+                where = f"at a height of {z:.4g} m" if z > 2 * edge else "at the base"
                 raise ValueError(
-                    Message(
-                        "the openings {where} are {across:g} m wide together; the valid range is less than {length:g} "
-                        "m, the length of the wall there",
-                        where=where,
-                        across=across,
-                        length=length,
-                    )
+                    f"the openings {where} are {across:g} m wide together; the valid range is less than "
+                    f"{length:g} m, the length of the wall there"
                 )
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, TypedDict, Unpack
 
-from ...quantities import Message, OneOf, Within, require_array, require_one_of, require_within, within_ranges
+from ...quantities import OneOf, Within, require_array, require_one_of, require_within, within_ranges
 from .effect import HIGHEST_WALL, OF_MASONRY, Anchored, Height, LinkLaw, OfBlock, PointOf
 
 GOVERNING = ("bar", "punching", "bearing", "other end")
@@ -94,30 +94,18 @@ class Tie(Anchored):
         super().__post_init__()
         if self.strength == 0:
             raise ValueError(
-                Message(
-                    "strength of the tie = 0 N is outside the valid range, which is above 0 N to {strongest:g} "
-                    "N, or inf for a tie that does not yield",
-                    strongest=STRONGEST_TIE,
-                )
+                f"strength of the tie = 0 N is outside the valid range, which is above 0 N to {STRONGEST_TIE:g} "
+                "N, or inf for a tie that does not yield"
             )
         if self.governed_by is not None:
             require_one_of("governed_by of the tie", self.governed_by, GOVERNING)
         if self.prestress and (self.slack or self.prestress >= self.strength):
             beside = f"slack = {self.slack:g} m" if self.slack else f"strength = {self.strength:g} N"
-            raise ValueError(
-                Message(
-                    "prestress of the tie = {prestress:g} N does not go with its {beside}",
-                    prestress=self.prestress,
-                    beside=beside,
-                )
-            )
+            raise ValueError(f"prestress of the tie = {self.prestress:g} N does not go with its {beside}")
         if self.ultimate is not None and self.strength == math.inf:
             raise ValueError(
-                Message(
-                    "ultimate of the tie = {ultimate:g} m, and its strength is infinite: it does not yield and "
-                    "never breaks; give it a strength [N], or leave ultimate out",
-                    ultimate=self.ultimate,
-                )
+                f"ultimate of the tie = {self.ultimate:g} m, and its strength is infinite: it does not yield "
+                "and never breaks; give it a strength [N], or leave ultimate out"
             )
 
     @classmethod

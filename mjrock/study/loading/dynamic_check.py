@@ -19,7 +19,6 @@ from ...problem.wall.case import Case
 from ...quantities import (
     Array,
     Implausible,
-    Message,
     is_iterable,
     listed,
     named,
@@ -275,9 +274,7 @@ def dynamic_check(
     check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], **moved)
     if check.lacking:
         warn_of(
-            Message(
-                "{clause} asks for more: {lacking}", clause=rule.clause or code.name, lacking="; ".join(check.lacking)
-            ),
+            f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}",
             Implausible,
         )
     return check

@@ -18,7 +18,7 @@ from ...problem.wall.effect import Anchored
 from ...problem.wall.effects import link_effects
 from ...problem.wall.restoring_moment import moment_at_strength
 from ...problem.wall.wedge import Corner
-from ...quantities import GRAVITY, Array, Implausible, Message, warn_of
+from ...quantities import GRAVITY, Array, Implausible, warn_of
 from .code import Code
 from .limit_analysis import MOVED, WEAKER, LimitCurve, collapse_multiplier
 from .moving_part import MovingPart, multiplier_of
@@ -157,26 +157,16 @@ def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
 def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: float) -> None:
     """Warn of a curve that ends at d [m] while something is borne; a ValueError says if that is where it begins."""
     if curve.ended.startswith(MOVED):
-        raise ValueError(Message("case = {curve!r} was ended where something is borne; leave out to", curve=curve))
+        raise ValueError(f"case = {curve!r} was ended where something is borne; leave out to")
     if d <= 0:
         raise ValueError(
-            Message(
-                "case = {curve!r} ends as it begins. Of it the linear check alone can be made, with alpha_0 = "
-                "{alpha_0:.4g} and e* = {participation:.4g}; check the limit states by runs, "
-                "dynamic_check(runs, curve=push(masonry, direction, to))",
-                curve=curve,
-                alpha_0=alpha_0,
-                participation=participation,
-            )
+            f"case = {curve!r} ends as it begins. Of it the linear check alone can be made, with alpha_0 = "
+            f"{alpha_0:.4g} and e* = {participation:.4g}; check the limit states by runs, dynamic_check(runs, "
+            "curve=push(masonry, direction, to))"
         )
     warn_of(
-        Message(
-            "case ends at d = {d:.4g} m, where {multiplier:.4g} of the weight is borne: {ended}; the check "
-            "takes that for d_0, and counts nothing beyond",
-            d=d,
-            multiplier=curve.multiplier[-1],
-            ended=curve.ended,
-        ),
+        f"case ends at d = {d:.4g} m, where {curve.multiplier[-1]:.4g} of the weight is borne: {curve.ended}; "
+        "the check takes that for d_0, and counts nothing beyond",
         Implausible,
     )
 
@@ -186,9 +176,7 @@ def _of_wall(case: Case, code: Code) -> MechanismCurve:
     require_wall("case", case, "mr.limit_curve(masonry, direction)")
     curve = pushover(case)
     if not math.isfinite(curve.end):
-        raise ValueError(
-            Message("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
-        )
+        raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
     warn_of_inner_edge(case, float(curve.multiplier[0]))
     wall = case.wall
     weights, heights = _masses(case)
@@ -210,13 +198,9 @@ def warn_of_inner_edge(case: Case, outwards: float) -> None:
     inner = case.restoring.inner.P / (case.wall.weight * case.wall.centroid_height)
     if case.lopsided and inner < (1 - WEAKER) * outwards:
         warn_of(
-            Message(
-                "case has side_stop=False, and the check is of the way outwards, with {outwards:.4g} g; inwards "
-                "the wall starts at {inner:.4g} g: check that way too, with the mirrored wall: the other plumb, "
-                "offsets and forces with the other sign",
-                outwards=outwards,
-                inner=inner,
-            ),
+            f"case has side_stop=False, and the check is of the way outwards, with {outwards:.4g} g; inwards "
+            f"the wall starts at {inner:.4g} g: check that way too, with the mirrored wall: the other plumb, "
+            "offsets and forces with the other sign",
             Implausible,
         )
 
@@ -233,11 +217,14 @@ def _warn_of_ties(
         if breaking.get(name, math.inf) > capacity
     ]
     if holding and (alone is None or capacity > alone):
-        still = "{holding} would still hold there; say by `ultimate` how far a tie can be drawn out [m]"
-        beyond = "{name} = {capacity:.3g} m is more than {alone:.3g} m, at which the curve without ties ends: {still}"
-        ended = "{name} = {capacity:.3g} m lies where the curve without ties has ended: {still}"
-        values = {"name": name, "capacity": capacity, "still": Message(still, holding=", ".join(holding))}
-        warn_of(Message(ended, **values) if alone is None else Message(beyond, alone=alone, **values), Implausible)
+        ended = "lies where the curve without ties has ended"
+        if alone is not None:
+            ended = f"is more than {alone:.3g} m, at which the curve without ties ends"
+        warn_of(
+            f"{name} = {capacity:.3g} m {ended}: {', '.join(holding)} would still hold there; say by `ultimate` how "
+            "far a tie can be drawn out [m]",
+            Implausible,
+        )
 
 
 def _stands_by_ties(curve: LimitCurve, masonry: Masonry, at: int) -> bool:
