@@ -10,18 +10,7 @@ from dataclasses import MISSING, dataclass, is_dataclass
 from functools import cache
 from os import PathLike
 from types import UnionType
-from typing import (
-    Any,
-    Literal,
-    Self,
-    TypeAlias,
-    Union,
-    Unpack,
-    get_args,
-    get_origin,
-    get_type_hints,
-    is_typeddict,
-)
+from typing import Any, Literal, Self, TypeAlias, Union, Unpack, get_args, get_origin, get_type_hints, is_typeddict
 
 import numpy as np
 

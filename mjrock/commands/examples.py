@@ -108,10 +108,7 @@ def answer(argv: Sequence[str]) -> Answer:
         ValueError: for an example that is not there.
         OSError: if a file cannot be written, or is there and may not be replaced.
     """
-    made = parser(
-        "examples",
-        "List the examples, run one, which prints, draws and writes a page, or copy its script.",
-    )
+    made = parser("examples", "List the examples, run one, which prints, draws and writes a page, or copy its script.")
     made.add_argument("name", nargs="?", help="its number or name, such as 7 or push_over; none lists them")
     made.add_argument("-c", "--copy", action="store_true", help="write the script, to be changed, and do not run it")
     add_output(made, "folder of the pictures and the page, or of the script", "the current one")

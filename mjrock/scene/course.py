@@ -50,10 +50,7 @@ class Ground(NamedTuple):
 
     @classmethod
     def from_motions(
-        cls,
-        motion: GroundMotion | None,
-        vertical: GroundMotion | None = None,
-        transverse: GroundMotion | None = None,
+        cls, motion: GroundMotion | None, vertical: GroundMotion | None = None, transverse: GroundMotion | None = None
     ) -> Ground:
         """The arrays of the motions."""
         return cls(Shaking.from_motion(motion), Shaking.from_motion(vertical), Shaking.from_motion(transverse))

@@ -145,10 +145,7 @@ class Restitution:
         if not 0 < alpha < math.asin(math.sqrt(2 / 3)):
             raise ValueError(f"alpha = {alpha:g} rad is outside the valid range 0 < alpha < 0.9553 rad of Eq. 2")
         if alpha > LARGEST_ANGLE and not isinstance(wall, Block):
-            warn_of(
-                f"alpha = {alpha:g} rad is {math.degrees(alpha):.3g} degrees; angles are radians",
-                Implausible,
-            )
+            warn_of(f"alpha = {alpha:g} rad is {math.degrees(alpha):.3g} degrees; angles are radians", Implausible)
         base, side = 1 - 1.5 * math.sin(alpha) ** 2, 1 - 1.5 * math.cos(alpha) ** 2
         return cls(base, side, made_for=(alpha, 1.0))
 

@@ -276,7 +276,7 @@ def stiffness_range(
     if estimate is not None and not (low <= estimate.high and estimate.low <= high):
         warn_of(
             f"the measured frequency gives k_n = {low:.2g} to {high:.2g} N/m3, and {estimate.basis} gives "
-            f"{estimate.low:.2g} to {estimate.high:.2g} N/m3; is the wall detached, and the frequency in Hz?",
+            f"{estimate.low:.2g} to {estimate.high:.2g} N/m3; is the wall detached, and the frequency in Hz?"
         )
     return found
 

@@ -820,7 +820,7 @@ def motion_of(trace: Trace, path: str | PathLike[str]) -> GroundMotion:
     if abs(final) > DRIFT * fastest:
         warn_of(
             f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; it needs a "
-            "baseline correction, motion.corrected(baseline='linear')",
+            "baseline correction, motion.corrected(baseline='linear')"
         )
     return motion
 

@@ -249,10 +249,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         return [level[0] for components in self.values() if (level := _level(components))]
 
     def scaled_to(
-        self,
-        spectrum: ArrayLike | SpectrumOfCode,
-        periods: Periods,
-        damping: Annotated[float, Within(0, 0.9)] = 0.05,
+        self, spectrum: ArrayLike | SpectrumOfCode, periods: Periods, damping: Annotated[float, Within(0, 0.9)] = 0.05
     ) -> RecordSet:
         """The set with each record scaled to a spectrum, all components of a record by one factor.
 
@@ -368,9 +365,7 @@ def records_in(
 
 
 def _read_all(
-    files: Mapping[str, Path],
-    read: Callable[[Path], GroundMotion | Sequence[GroundMotion]],
-    skipped: dict[str, str],
+    files: Mapping[str, Path], read: Callable[[Path], GroundMotion | Sequence[GroundMotion]], skipped: dict[str, str]
 ) -> dict[str, GroundMotion | Sequence[GroundMotion]]:
     """What is read from each file by its name. Those that hold no record are named in `skipped`, with a warning; a
     `NoRecordError` is raised where none holds one."""
@@ -419,10 +414,7 @@ def _joined(one: Records, other: Records) -> RecordSet:
 
 
 def scaled_together(
-    motions: Sequence[GroundMotion],
-    periods: ArrayLike,
-    target: ArrayLike | SpectrumOfCode,
-    damping: float = 0.05,
+    motions: Sequence[GroundMotion], periods: ArrayLike, target: ArrayLike | SpectrumOfCode, damping: float = 0.05
 ) -> tuple[GroundMotion, ...]:
     """The components of a record scaled by one factor to a spectrum, a vertical one by the same.
 

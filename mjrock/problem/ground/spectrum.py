@@ -488,10 +488,7 @@ def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float 
 
 
 def scaled_to_spectrum(
-    motion: GroundMotion,
-    periods: ArrayLike,
-    target: ArrayLike | SpectrumOfCode,
-    damping: float = 0.05,
+    motion: GroundMotion, periods: ArrayLike, target: ArrayLike | SpectrumOfCode, damping: float = 0.05
 ) -> GroundMotion:
     """The motion scaled so that the geometric mean of its Sa over that of a target spectrum is one.
 

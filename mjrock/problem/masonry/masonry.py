@@ -56,17 +56,7 @@ from .drawing import (
     split_faces,
     touches_text,
 )
-from .files.bodies import (
-    AnyPath,
-    FileOptions,
-    Mesh,
-    Scale,
-    about,
-    blocks_of,
-    file_options,
-    meshes_of,
-    names_of_list,
-)
+from .files.bodies import AnyPath, FileOptions, Mesh, Scale, about, blocks_of, file_options, meshes_of, names_of_list
 from .files.compas import compas_text
 from .files.dxf import DensityOfLayer, LengthOfLayer, polygons_of, read_dxf
 from .files.meshes import obj_text

@@ -427,11 +427,7 @@ def shear_wall(
 @friction_of(guide=0.0, floor=10.0)
 @within_ranges
 def between_floors(
-    wall: Block,
-    load: FloorLoad,
-    *,
-    bearing: Bearing = None,
-    crack: CrackHeight = None,
+    wall: Block, load: FloorLoad, *, bearing: Bearing = None, crack: CrackHeight = None
 ) -> list[FlatBlock]:
     """A wall that cracks between two floors, which hold it sideways, seen along its length.
 

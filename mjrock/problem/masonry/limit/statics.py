@@ -215,11 +215,7 @@ def edges_of(across: tuple[Array, ...]) -> Array:
 
 
 def _balanced(
-    masonry: Masonry,
-    applied: Array | float,
-    friction: Array,
-    dear: Array | None = None,
-    ties: Pulls | None = None,
+    masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None, ties: Pulls | None = None
 ) -> scipy.optimize.OptimizeResult:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
