@@ -1,4 +1,5 @@
-"""The machine: how many cores this process has, and the kernels of linear algebra, on which last digits depend."""
+"""The machine: cores and memory that this process may use, and the kernels of linear algebra, on which last digits
+depend."""
 
 from __future__ import annotations
 
@@ -47,6 +48,21 @@ def description() -> str:
     if name := os.environ.get("NUMBA_CPU_NAME"):
         versions.append(f"compiled for {name}")
     return ", ".join(versions)
+
+
+def memory() -> float:
+    """Memory that this process can take [bytes]: what the machine has available, and the limit of its control group;
+    without /proc what the machine has, or infinite where that is not known either."""
+    least = math.inf
+    with contextlib.suppress(AttributeError, OSError, ValueError):
+        least = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    with contextlib.suppress(OSError):
+        table = dict(line.split(":") for line in Path("/proc/meminfo").read_text().splitlines())
+        least = 1024.0 * int(table["MemAvailable"].split()[0])
+    for path in (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes")):
+        with contextlib.suppress(OSError, ValueError):  # "max" stands for none
+            least = min(least, float(path.read_text()))
+    return least
 
 
 def cores() -> int:

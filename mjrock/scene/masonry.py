@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..machine import memory
 from ..problem.masonry.blocks.compound import AnyBlock
 from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
@@ -29,6 +30,9 @@ SETTLEMENT_OF_STIFF = 1e-5
 """Deformation of joints that count as stiff, at each line under the weight of all blocks [m]."""
 BED = 0.5
 """Vertical part of the normal of a joint that counts as level [-]."""
+MEMORY_OF_BLOCK, MEMORY_OF_LINE = {False: 20e3, True: 70e3}, {False: 4e3, True: 6e3}
+"""Memory of set-up for each block and for each of its contact lines, in the plane and in space [bytes]. The factors of
+the stiffness in the search for the pose of rest take the most. `scripts/measure/setup_cost.py` measures it."""
 SHARE_OF_FARTHEST = 0.1
 """Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
 
@@ -40,9 +44,11 @@ def masonry_scene(case: MasonryCase) -> Scene:
     Bodies have the names of the blocks that are not fixed, in order. The groups of contacts are the joints, by name.
 
     Raises:
-        ValueError: if masonry that is to settle does not stand. The message names the blocks that fall.
+        ValueError: if the machine has less memory than set-up takes, or if masonry that is to settle does not stand.
+            The message names the blocks that fall.
     """
     require_kind("case", case, MasonryCase)
+    require_memory(case.masonry)
     if not case.settled:
         return drawn_masonry(case.masonry, case.passive)
     try:
@@ -50,6 +56,22 @@ def masonry_scene(case: MasonryCase) -> Scene:
     except ValueError as error:
         raise ValueError(f"{error}; settled=False in the case runs it as drawn, from springs without load") from None
     return standing_masonry(case.masonry, case.passive)
+
+
+def memory_of(blocks: int, lines: int, *, in_space: bool) -> float:
+    """Memory that set-up of some free blocks with some contact lines takes [bytes], estimated."""
+    return blocks * MEMORY_OF_BLOCK[in_space] + lines * MEMORY_OF_LINE[in_space]
+
+
+def require_memory(masonry: Masonry) -> None:
+    """Raise a ValueError if the machine has less memory than set-up takes, before that takes it."""
+    blocks, lines = len(masonry.free), len(masonry.lines.k)
+    needed, available = memory_of(blocks, lines, in_space=masonry.in_space), memory()
+    if needed > available:
+        raise ValueError(
+            f"blocks = {blocks} on {lines} contact lines need about {needed / 1e9:.3g} GB of memory, and the machine "
+            f"has {available / 1e9:.3g} GB available; give fewer or larger blocks, or fewer points of a joint"
+        )
 
 
 def masonry_course(case: MasonryCase, scene: Scene) -> Course:

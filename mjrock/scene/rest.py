@@ -24,7 +24,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, vstack
 
 from ..geometry.kinematics import Places, gaps
 from ..geometry.poses import moved, turned
-from ..linear import lowest_mode, sprung, times
+from ..linear import lowest_mode, solution, sprung, times
 from ..problem.masonry.laws.joint_law import shear_limit
 from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential, Structure
@@ -330,8 +330,7 @@ def solved(potential: Potential, stiffness: csr_array, missing: Array, loose: fl
     scaled = times(1 / size, csr_array(stiffness))
     scaled.data *= (1 / size)[scaled.indices]
     lent = np.full(len(size), loose * float(np.abs(scaled.diagonal()).max()))
-    motion: Array = scipy.sparse.linalg.splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
-    return motion
+    return solution(csc_array(scaled + diags_array(lent)), missing) / size
 
 
 def sizes(potential: Potential) -> Array:

@@ -128,6 +128,7 @@ WRITES = {
     "sketch": {"sketch.png"},
     "first_pictures": {"effects.png", "tutorial.png", "record.png", "design.png"},
     "speed": {"speed.txt"},
+    "setup_cost": {"setup_cost.csv", "setup_cost.txt"},
     "step_cost": {"step_cost.csv", "step_cost.txt"},
     "step_threads": {f"step_threads.{ending}" for ending in ("png", "csv", "txt")},
     "thresholds": {"thresholds.txt"},

@@ -123,7 +123,7 @@ def test_inserted_blocks_are_counted_before_they_are_inserted(tmp_path):
     """Five levels of ten, 22 kB, would take 20 s; a tower of 60 levels, rows and columns, and many lines likewise."""
     assert len(mr.Masonry.from_dxf(inserting(tmp_path / "a.dxf", 2), ground=True).free) == 100
     for levels, count in ((5, "1e\\+05"), (8, "1e\\+08")):
-        with pytest.raises(ValueError, match=rf"b.dxf: there are {count} outlines, and at most 5000 are taken"):
+        with pytest.raises(ValueError, match=rf"b.dxf: there are {count} outlines, and at most 25000 are taken"):
             mr.Masonry.from_dxf(inserting(tmp_path / "b.dxf", levels), ground=True)
     with pytest.raises(ValueError, match="inserted in each other on more than 50 levels, from B60 on"):
         mr.Masonry.from_dxf(inserting(tmp_path / "b.dxf", 60, 1), ground=True)
@@ -134,7 +134,7 @@ def test_inserted_blocks_are_counted_before_they_are_inserted(tmp_path):
     document.modelspace().add_lwpolyline(box(0, 1, 0, 1), close=True)
     document.modelspace().add_blockref("stone", (0, 0), dxfattribs=field | {"column_count": 300})
     document.saveas(tmp_path / "c.dxf")
-    with pytest.raises(ValueError, match=r"c.dxf: there are 1.8e\+06 things that are inserted, and at most 50000 are"):
+    with pytest.raises(ValueError, match=r"c.dxf: there are 1.8e\+06 things that are inserted, and at most 250000 are"):
         mr.Masonry.from_dxf(tmp_path / "c.dxf", ground=True)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import csr_array
+from scipy.sparse import csc_array, csr_array
 
 import mjrock as mr
 from mjrock import linear
@@ -34,11 +34,13 @@ def measured(masonry):
     return pose, stands, lowest, scene.highest_frequency
 
 
+@pytest.mark.parametrize("many", [linear.MANY_UNKNOWNS, 0])
 @pytest.mark.parametrize("name", WALLS)
-def test_both_ways_agree(name, monkeypatch):
+def test_all_ways_agree(name, many, monkeypatch):
     masonry = WALLS[name]()
     full = measured(masonry)
     monkeypatch.setattr(linear, "FEW", 0)
+    monkeypatch.setattr(linear, "MANY_UNKNOWNS", many)
     sparse = measured(masonry)
     np.testing.assert_allclose(sparse[0], full[0], rtol=0, atol=1e-9 * np.abs(full[0]).max())
     assert sparse[1] == full[1] == (name != "soft")
@@ -50,14 +52,23 @@ def test_motions_that_are_held_twice_or_by_nothing(monkeypatch):
     stiffness = csr_array(np.diag([2.0, 3.0, 0.0, 5.0]))
     grip = csr_array([[1.0, 1.0, 0.0, 0.0]] * 2)
     answers = []
-    for few in (300, 0):
+    for few, many in ((300, 20_000), (0, 20_000), (0, 0)):
         monkeypatch.setattr(linear, "FEW", few)
+        monkeypatch.setattr(linear, "MANY_UNKNOWNS", many)
         for first in (0.0, -4.0):
             value, mode = linear.lowest_mode(csr_array(np.diag([2.0, 3.0, first, 5.0])), 4.0)
             assert value == pytest.approx(first, abs=1e-9)
             np.testing.assert_allclose(np.abs(mode), [0.0, 0.0, 1.0, 0.0], rtol=0, atol=1e-9)
         answers.append(linear.lowest_square(stiffness, np.ones(4), grip, 1e-12))
-    assert answers == pytest.approx([2.5, 2.5], rel=1e-9)
+    assert answers == pytest.approx([2.5, 2.5, 2.5], rel=1e-9)
+
+
+@pytest.mark.parametrize("small", [0.0, 1e-18])
+def test_a_matrix_whose_diagonal_is_no_pivot_is_solved_with_others(small, monkeypatch):
+    monkeypatch.setattr(linear, "MANY_UNKNOWNS", 0)
+    matrix = csc_array([[small, 1.0, 0.0], [1.0, small, 1.0], [0.0, 1.0, 2.0]])
+    motion = np.array([3.0, -1.0, 0.5])
+    np.testing.assert_allclose(linear.solution(matrix, matrix @ motion), motion, rtol=1e-12)
 
 
 def test_what_slides_on_joints_without_friction(monkeypatch):

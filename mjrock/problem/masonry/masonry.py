@@ -115,7 +115,7 @@ class Masonry(Constructors, NotebookPicture):
 
     Args:
         blocks: the blocks, all in the plane, `Polygon` or `Compound` of these, or all in space, `Polyhedron` or
-            `Compound` of these; at least one fixed and one that is not, at most 5000.
+            `Compound` of these; at least one fixed and one that is not, at most 25000.
         k_n: normal stiffness of the joints [N/m3], 1e4 to 1e14, or a function of the joint; None takes 1e10.
         friction: coefficient of friction [-], 0 to 10, or a function of the joint; None takes 0.7.
         xi: damping ratio [-], 0 to 100, or a function of the joint; None takes 0.05. The dashpot of a line is

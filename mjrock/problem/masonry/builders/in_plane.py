@@ -55,8 +55,8 @@ SMALLEST_PIECE = 0.1
 """Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
 DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
 """Depth of a loading beam, and how far it reaches beyond the wall at either end, over the length of the wall [-]."""
-MOST_BODIES = 5000
-"""Most blocks of a wall."""
+MOST_BODIES = 25_000
+"""Most blocks of masonry. What memory they need is known when their joints are, see `scene.masonry.require_memory`."""
 
 
 def rectangle(

@@ -1,0 +1,36 @@
+"""Masonry that needs more memory than there is, is refused before the memory is taken."""
+
+import pytest
+
+import mjrock as mr
+from mjrock import machine
+from mjrock.scene import masonry as scene
+
+COLUMN = mr.Masonry.column(width=0.5, height=2.0, drums=4)
+
+
+@pytest.mark.parametrize("settled", [True, False])
+@pytest.mark.parametrize("solve", [mr.simulate, mr.solve_explicit])
+def test_what_does_not_fit_is_refused_with_both_figures(solve, settled, monkeypatch):
+    monkeypatch.setattr(scene, "memory", lambda: 2000.0)
+    named = r"blocks = 4 on 16 contact lines need about 0.000\d+ GB of memory, and the machine has 2e-06 GB available"
+    with pytest.raises(ValueError, match=named):
+        solve(mr.MasonryCase(COLUMN, 0.01, settled=settled))
+
+
+def test_the_estimate_grows_with_blocks_and_lines():
+    few, more = (scene.memory_of(1000, lines, in_space=True) for lines in (10_000, 20_000))
+    assert 0 < few < more < scene.memory_of(2000, 20_000, in_space=True) == 2 * few
+
+
+@pytest.mark.parametrize(("limit", "least"), [("max", 2048e3), ("1000000", 1e6), (None, 2048e3)])
+def test_memory_is_what_is_available_within_the_limit_of_the_control_group(limit, least, monkeypatch):
+    texts = {"meminfo": "MemTotal:  4096 kB\nMemAvailable:  2000 kB\n", "memory.max": limit}
+
+    def read(path):
+        if (text := texts.get(path.name)) is None:
+            raise FileNotFoundError(path)
+        return text
+
+    monkeypatch.setattr(machine.Path, "read_text", read)
+    assert machine.memory() == least
